@@ -60,10 +60,7 @@ Limits = tuple[Fraction | None, Fraction | None]
 
 
 def find_stable_gains(
-    loop: AnyLoop,
-    limits: Limits | None = None,
-    digits: int = 15,
-    up_to: float | None = None,
+    loop: AnyLoop, limits: Limits | None = None, digits: int = 15, up_to: float | None = None
 ) -> StabilityMap:
     """Return for which gains a loop is stable, proved.
 
@@ -177,11 +174,7 @@ def _factors(
     if low is None or high is None:
         raise _range_needed(loop)
     lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
-    return (
-        lumped,
-        DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to),
-        (low, high),
-    )
+    return (lumped, DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to), (low, high))
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:

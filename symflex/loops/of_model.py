@@ -98,9 +98,7 @@ def _of_network(model: Model, parameter: ModelParameter, given: Mapping[str, Giv
 
 
 def stability(
-    model: Model,
-    given: StabilityOptions,
-    values: Mapping[str, Given] | None = None,
+    model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
 ) -> StabilityMap:
     """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
 

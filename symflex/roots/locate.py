@@ -64,11 +64,7 @@ if TYPE_CHECKING:
 
 
 def locate(
-    bound: AnyBoundFunction,
-    region: Region | None = None,
-    digits: int = 30,
-    *,
-    with_zeros: bool = True,
+    bound: AnyBoundFunction, region: Region | None = None, digits: int = 30, *, with_zeros: bool = True
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
@@ -208,11 +204,7 @@ def _region_of(bound: AnyBoundFunction, region: Region | None) -> tuple[Region, 
 
 
 def locate_distributed(
-    bound: BoundTransferFunction,
-    region: Region | None,
-    digits: int,
-    *,
-    with_zeros: bool = True,
+    bound: BoundTransferFunction, region: Region | None, digits: int, *, with_zeros: bool = True
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
@@ -276,12 +268,7 @@ class _Searched:
     """Numerator, denominator and what cancelled between them, searched in a region."""
 
     def __init__(
-        self,
-        bound: BoundTransferFunction,
-        region: Region,
-        digits: int,
-        *,
-        with_zeros: bool = True,
+        self, bound: BoundTransferFunction, region: Region, digits: int, *, with_zeros: bool = True
     ) -> None:
         self.bound, self.region, self.digits = bound, region, digits
         self._above = bound.num if with_zeros else Factored.number(bound.ratio.ring, 1)

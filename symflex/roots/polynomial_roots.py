@@ -28,9 +28,7 @@ ROUNDING = 1e-12
 
 
 def find_polynomial_roots(
-    problem: RootProblem,
-    digits: int,
-    proposers: tuple[Proposer, ...] = (),
+    problem: RootProblem, digits: int, proposers: tuple[Proposer, ...] = ()
 ) -> tuple[Root, ...]:
     """Enclose every root of a product of polynomials with exact coefficients.
 

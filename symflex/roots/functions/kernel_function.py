@@ -19,11 +19,7 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
-from symflex.algebra.exponential_sum import (
-    REAL,
-    Exponent,
-    combination,
-)
+from symflex.algebra.exponential_sum import REAL, Exponent, combination
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError

@@ -48,11 +48,7 @@ class DiscRoots:
 
 
 def roots_in_disc(
-    cramer: CramerEquations,
-    region: Region,
-    digits: int,
-    *,
-    symmetric: tuple[bool, bool],
+    cramer: CramerEquations, region: Region, digits: int, *, symmetric: tuple[bool, bool]
 ) -> DiscRoots:
     """Return all roots in a disc that holds what the region asks for.
 

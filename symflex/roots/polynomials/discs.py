@@ -327,9 +327,7 @@ def _turns_up(a: tuple[int, float], b: tuple[int, float], c: tuple[int, float]) 
 
 
 def _find_one(
-    derivatives_of: tuple[acb_poly, acb_poly, acb_poly],
-    found: npt.NDArray[np.complex128],
-    start: complex,
+    derivatives_of: tuple[acb_poly, acb_poly, acb_poly], found: npt.NDArray[np.complex128], start: complex
 ) -> complex | None:
     """Return one more root than those found, snapped to the real axis when it is nearly real."""
     p, first, second = derivatives_of

@@ -42,11 +42,7 @@ GROWTH_FLOOR = 2048
 
 
 def isolations(
-    polynomial: PolynomialInS,
-    digits: int,
-    *,
-    in_square: bool,
-    proposers: Sequence[Proposer],
+    polynomial: PolynomialInS, digits: int, *, in_square: bool, proposers: Sequence[Proposer]
 ) -> Iterator[tuple[Disc, ...]]:
     """Enclose every root of a square-free polynomial, ever closer.
 

@@ -43,7 +43,7 @@ def test_roots_that_are_not_all_in_reach_do_not_matter():
     for unusable in (
         replace(roots, poles=(), region=Band(Fraction(1), Fraction(199))),
         replace(roots, poles=(), region=Band(Fraction(2), Fraction(200))),
-        replace(roots, poles=(), certificate=replace(roots.certificate, certified=False)),
+        replace(roots, poles=(), certificate=replace(roots.certificate, reason="no")),
     ):
         np.testing.assert_array_equal(follow_phase(bound, OMEGA, unusable), expected)
 
