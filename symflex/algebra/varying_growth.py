@@ -213,23 +213,31 @@ def legs_along(system: VaryingSystem, largest: arb, reach: arb, bits: int) -> li
 
 
 def _weights(system: VaryingSystem, middle: acb, reach: arb) -> Weights:
-    """Return powers of two that make rows and columns of the coefficients alike (Osborne 1960)."""
+    """Return powers of two that make rows and columns of the coefficients alike."""
     sizes = {
         place: log2(size)
         for place, x in system.bounds(middle, reach).items()
         if place[0] != place[1] and 0 < (size := float(x.upper())) < inf
     }
-    found = [0.0] * system.size
-    for _ in range(BALANCINGS):
+    return tuple(arb(2.0**x) for x in balanced(sizes, system.size, BALANCINGS, BALANCED))
+
+
+def balanced(sizes: Mapping[Place, float], count: int, rounds: int, enough: float = 0) -> list[float]:
+    """Return w so that rows and columns of ``sizes[i, j] + w_j - w_i`` are alike (Osborne 1960).
+
+    It is found in so many rounds, or fewer where one changes w by less than ``enough``.
+    """
+    found = [0.0] * count
+    for _ in range(rounds):
         before = list(found)
-        for i in range(system.size):
+        for i in range(count):
             row = [x + found[k] for (j, k), x in sizes.items() if j == i]
             column = [x - found[j] for (j, k), x in sizes.items() if k == i]
             if row and column:
                 found[i] = (max(row) - max(column)) / 2
-        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < BALANCED:
+        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < enough:
             break
-    return tuple(arb(2.0**x) for x in found)
+    return found
 
 
 def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> arb:

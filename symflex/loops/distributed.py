@@ -22,7 +22,7 @@ from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import precision
 from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.distributed.far_out import Tail, right_tail
+from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
@@ -76,7 +76,7 @@ class DistributedFactors:
         )
 
     @cached_property
-    def _tails(self) -> list[Tail]:
+    def _tails(self) -> list[float | str]:
         low, high = (ball(x) for x in self.limits)
         found = []
         for factor in self.factors:
@@ -93,13 +93,12 @@ class DistributedFactors:
 
         Where it is not, ``reasons`` says why.
         """
-        proved = [tail.radius for tail in self._tails if tail.radius is not None]
         if not self.is_endless:
-            return max(proved), True
+            return max(tail for tail in self._tails if not isinstance(tail, str)), True
         if self.passive is not None and self.passive.rests:
             self.method = "passive loop"
             return self._without_end, True
-        reason = next(tail.reason for tail in self._tails if tail.radius is None)
+        reason = next(tail for tail in self._tails if isinstance(tail, str))
         passive = "; as the loop is passive, none lies right of it"
         self.reasons.append(reason + passive if self.passive is not None else reason)
         return self._without_end, False
@@ -107,7 +106,7 @@ class DistributedFactors:
     @property
     def is_endless(self) -> bool:
         """Whether poles next to the axis have no end along it, or none that is known."""
-        return any(tail.radius is None for tail in self._tails)
+        return any(isinstance(tail, str) for tail in self._tails)
 
     @cached_property
     def passive(self) -> PassiveLoop | None:
@@ -166,9 +165,11 @@ class DistributedFactors:
         most = abs(gain).upper()
         disc = acb(arb(0, most), arb(0, most))
         tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
-        if tail.radius is None and not self.is_endless:
+        if not isinstance(tail, str):
+            return tail
+        if not self.is_endless:
             self.reasons.append("it could not be decided whether the loop gain is one at high frequencies")
-        return tail.radius or last
+        return last
 
     def count(self, gain: Fraction) -> PoleCount:
         """Return how many poles lie right of the axis and on it, as far as they are searched.

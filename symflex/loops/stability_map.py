@@ -226,8 +226,8 @@ class StabilityMap:
             "boundaries": [self._boundary(i) for i in range(len(self.boundaries))],
             "intervals": [
                 {
-                    "low": None if i.low is None else real_json(i.low, self.digits),
-                    "high": None if i.high is None else real_json(i.high, self.digits),
+                    "low": real_json(i.low, self.digits),
+                    "high": real_json(i.high, self.digits),
                     "right_half_plane_poles": i.poles.right,
                     "imaginary_axis_poles": i.poles.axis,
                     "stable": i.poles.is_stable,
@@ -277,7 +277,7 @@ class StabilityMap:
         omega, angle = found.frequency, found.phase_margin
         return {
             "gain": None if found.gain is None else float(found.gain),
-            "omega": None if omega is None else real_json(omega, self.digits),
+            "omega": real_json(omega, self.digits),
             "frequency_hz": None if omega is None else float(hertz(omega).mid()),
             "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
             "limited": found.is_limited,
@@ -299,8 +299,10 @@ class StabilityMap:
         }
 
 
-def real_json(value: arb, digits: int) -> dict[str, str]:
+def real_json(value: arb | None, digits: int) -> dict[str, str] | None:
     """Return the certified decimals of a real number, and a bound of their error."""
+    if value is None:
+        return None
     printed = decimals(value, arb(0), digits)
     return {"value": printed.re, "radius": printed.radius}
 

@@ -50,7 +50,7 @@ from symflex.roots.pole_zero_map import (
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
-from symflex.roots.root import ROUNDING, Root, overlap, root_at_zero
+from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
 from symflex.transfer import BoundNested, bind
 from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
 
@@ -247,7 +247,7 @@ def locate_distributed(
     hidden = in_order(right_beyond(hidden, known))
     # Nobody asked for these modes and no others.
     is_free = is_default and isinstance(where, Modes)
-    found += sum(root.multiplicity for root in (*beyond, *hidden))
+    found += count_roots((*beyond, *hidden))
     return PoleZeroMap(
         bound.name,
         where,

@@ -359,8 +359,7 @@ class _Structure:
 
     def _is_constant(self, coefficient: Factored) -> bool:
         """Tell whether a coefficient vanishes for no s and no K > 0."""
-        powers = self._powers(coefficient)
-        return powers is not None and self._turn(coefficient) != 0 and all(i == 0 for i, _ in powers)
+        return self._turn(coefficient) != 0 and all(i == 0 for i, _ in self._powers(coefficient) or {})
 
     def _turn(self, coefficient: Factored) -> complex:
         """Return 1, -1, 1j or -1j: the side of a coefficient in the complex plane; 0 where it has none.
@@ -378,8 +377,7 @@ class _Structure:
 
     def _is_real(self, coefficient: Factored) -> bool:
         """Tell whether a coefficient is real on the axis, and has one sign there."""
-        powers = self._powers(coefficient)
-        return powers is not None and self._turn(coefficient) != 0 and all(i % 2 == 0 for i, _ in powers)
+        return self._turn(coefficient) != 0 and all(i % 2 == 0 for i, _ in self._powers(coefficient) or {})
 
 
 def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:

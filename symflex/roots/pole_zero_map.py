@@ -13,7 +13,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
-from symflex.roots.root import Root, groups, overlap
+from symflex.roots.root import Root, count_roots, groups, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -182,7 +182,7 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
     if on_axis:
         where = "poles on the imaginary axis"
         if all(root.is_zero for root in on_axis):
-            times = _times(on_axis)
+            times = count_roots(on_axis)
             where = "a pole at 0" if times == 1 else f"{times} poles at 0"
         if unproved and not proof:  # a pole that grows may lie beyond what was counted
             return StabilityVerdict("unknown", None, False, f"{where}; {unproved}")
@@ -199,8 +199,8 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
 def _named_hidden(hidden: Sequence[Root]) -> str:
     """Return which hidden roots are proved not to lie in the open left half plane."""
     on_axis = [root for root in hidden if root.on_imaginary_axis]
-    at_rest = _times([root for root in on_axis if root.is_zero])
-    return hidden_poles(at_rest, _times(on_axis) - at_rest, count_right(hidden))
+    at_rest = count_roots([root for root in on_axis if root.is_zero])
+    return hidden_poles(at_rest, count_roots(on_axis) - at_rest, count_right(hidden))
 
 
 def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
@@ -224,7 +224,7 @@ def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
 
 def count_right(roots: Sequence[Root]) -> int:
     """Return how many roots are proved to lie there, with multiplicity."""
-    return sum(root.multiplicity for root in roots if is_right(root))
+    return count_roots(filter(is_right, roots))
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,11 +291,6 @@ class Exclusion:
         return {"re": self.re, "im": self.im, "radius": self.radius, "reason": self.reason}
 
 
-def _times(roots: Sequence[Root]) -> int:
-    """Return how many roots there are, multiple ones counted as often as they occur."""
-    return sum(root.multiplicity for root in roots)
-
-
 @dataclass(frozen=True, slots=True)
 class PoleZeroMap:
     """Poles and zeros in a region of the s plane.
@@ -341,7 +336,7 @@ class PoleZeroMap:
     unstable: tuple[Root, ...] = ()
 
     def __repr__(self) -> str:
-        counts = f"{_times(self.all_poles)} poles, {_times(self.zeros)} zeros"
+        counts = f"{count_roots(self.all_poles)} poles, {count_roots(self.zeros)} zeros"
         status = "certified" if self.certificate.certified else "not certified"
         return f"<PoleZeroMap {self.tf}: {counts}, {status}, {self.verdict.headline}>"
 
@@ -431,7 +426,7 @@ def find_pole_zero_map(
         roots, everywhere, exceeded = _locate(problem, within, digits)
         located.append(roots)
         every.append(everywhere)
-        found += sum(root.multiplicity for root in everywhere)
+        found += count_roots(everywhere)
         apart = apart and all(root.certified for root in everywhere)
         if exceeded is not None:
             break

@@ -14,7 +14,7 @@ from symflex.roots.polynomials.discs import Disc, Proposer, connected
 from symflex.roots.polynomials.isolation import isolations
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import Splitting, SquareFreePart, split
-from symflex.roots.root import GUARD_BITS, Root, root_at_zero
+from symflex.roots.root import GUARD_BITS, Root, count_roots, root_at_zero
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -167,7 +167,7 @@ def _merge(cluster: Sequence[Root]) -> Root:
     return Root(
         re,
         im,
-        sum(root.multiplicity for root in cluster),
+        count_roots(cluster),
         on_imaginary_axis=all(root.on_imaginary_axis for root in cluster),
         is_real=all(root.is_real for root in cluster),
         certified=False,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -169,6 +169,11 @@ def are_apart(roots: Sequence[Root]) -> bool:
             return False
         near.append((high, root))
     return True
+
+
+def count_roots(roots: Iterable[Root]) -> int:
+    """Return how many roots there are, multiple ones counted as often as they occur."""
+    return sum(root.multiplicity for root in roots)
 
 
 def groups(roots: Sequence[Root]) -> list[list[Root]]:

@@ -31,6 +31,7 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate, lumped
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.precision import to_complex_mpmath, to_mpmath
+from symflex.roots.root import count_roots
 from symflex.transfer import BoundNested
 from symflex.transfer.bind import EnclosedTransferFunction
 
@@ -87,14 +88,10 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     zeros, above = _zeros_below(bound, found, omitted, digits)
     is_exact = not left_out and not bound.is_distributed
     if not is_exact:
-        zeros = _no_more_than(zeros, sum(root.multiplicity for root in poles))
-    excess = max(_count(zeros) - _count(poles), 0) if is_exact else 0
+        zeros = _no_more_than(zeros, count_roots(poles))
+    excess = max(count_roots(zeros) - count_roots(poles), 0) if is_exact else 0
     known = replace(found, zeros=above)
     return KeptRoots(len(_modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
-
-
-def _count(roots: Sequence[Root]) -> int:
-    return sum(root.multiplicity for root in roots)
 
 
 def _modes_of(roots: Sequence[Root]) -> list[Root]:
@@ -127,7 +124,7 @@ def _zeros_below(
 def _no_more_than(zeros: Sequence[Root], poles: int) -> tuple[Root, ...]:
     """Leave out zeros from above, mirror images together, until there are no more of them than poles."""
     kept = list(zeros)
-    while _count(kept) > poles and not kept[-1].is_zero:
+    while count_roots(kept) > poles and not kept[-1].is_zero:
         last = kept[-1].frequency_hz()
         kept = [root for root in kept if root.is_zero or root.frequency_hz() < last * (1 - 1e-12)]
     return tuple(kept)

@@ -139,8 +139,8 @@ class RootDerivative:
             "status": self.status,
             "derivative": _complex_json(self.derivative, digits),
             "normalised": _complex_json(self.normalised, digits),
-            "frequency_hz": _real_json(self.frequency, digits),
-            "damping_ratio": _real_json(self.damping_ratio, digits),
+            "frequency_hz": real_json(self.frequency, digits),
+            "damping_ratio": real_json(self.damping_ratio, digits),
         }
 
 
@@ -149,10 +149,6 @@ def _complex_json(value: acb | None, digits: int) -> dict[str, str] | None:
         return None
     printed = decimals(value.real, value.imag, digits)
     return {"re": printed.re, "im": printed.im, "radius": printed.radius}
-
-
-def _real_json(value: arb | None, digits: int) -> dict[str, str] | None:
-    return None if value is None else real_json(value, digits)
 
 
 ROUNDS = 4

@@ -138,11 +138,8 @@ class StepInfo:
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
         """Return every number as ``value`` and ``radius``, null where it is not found."""
-        found: dict[str, object] = {}
-        for name in ("final", "peak", "peak_time", "overshoot", "rise_time", "settling_time"):
-            ball = getattr(self, name)
-            found[name] = None if ball is None else real_json(ball, digits)
-        return found
+        names = ("final", "peak", "peak_time", "overshoot", "rise_time", "settling_time")
+        return {name: real_json(getattr(self, name), digits) for name in names}
 
 
 def find_step_info(

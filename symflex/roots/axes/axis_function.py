@@ -156,7 +156,7 @@ class _Numbers:
 
 def _numbers(waves: Sequence[AxisWave], enclosures: Enclosures) -> _Numbers:
     """Return what values and derivatives are made of: per wave its terms, and those of the formula above."""
-    growing = sorted({w.growth for w in waves if any(w.growth)}, key=_length)
+    growing = sorted({w.growth for w in waves if any(w.growth)}, key=lambda g: (sum(map(abs, g)), g))
     turning = list(dict.fromkeys(w.phase for w in waves))
     growths, phases = ([enclosures.rate(key) for key in keys] for keys in (growing, turning))
     values, slopes = [], []
@@ -261,10 +261,6 @@ class _AxisDoubles:
             for n, c in odd_slope:
                 slope += (c * t**n if n else c) * sine
         return total, slope, size
-
-
-def _length(multiples: Multiples) -> tuple[int, Multiples]:
-    return sum(map(abs, multiples)), multiples
 
 
 def _products(growths: Sequence[Multiples]) -> tuple[tuple[int, int] | None, ...]:
@@ -392,7 +388,7 @@ class AxisNewton:
         """Return abs(s) of the only root in a ball about t, ``None`` where that is not proved."""
         slope_bits = _level(known + GUARD_BITS, self._half_bits)
         with precision(slope_bits):
-            radius = abs(t) * _shift(known)
+            radius = abs(t) * arb(2) ** -known
             box = arb(t, radius)
             slope = source.values(slope_bits).slope(box)
         for i in range(ROUNDS):
@@ -452,9 +448,3 @@ def _level(bits: int, most: int) -> int:
     while level < bits:
         level += max(FLOAT_BITS, level // 4)
     return min(level, most)
-
-
-@cache
-def _shift(bits: int) -> arb:
-    """Return two to the power of minus so many."""
-    return arb(2) ** -bits

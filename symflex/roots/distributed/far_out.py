@@ -55,19 +55,6 @@ Terms = dict[Exponent, dict[Fraction, acb]]
 
 
 @dataclass(frozen=True, slots=True)
-class Tail:
-    """How far from 0 roots may lie in the closed right half plane."""
-
-    radius: float | None  # beyond which it is proved that there is none [rad/s]
-    reason: str = ""  # why there is no such radius; empty where there is one
-
-    def __post_init__(self) -> None:
-        if (self.radius is None) != bool(self.reason):
-            message = "a tail has either a radius or a reason"
-            raise ValueError(message)
-
-
-@dataclass(frozen=True, slots=True)
 class _Power:
     """``s^power`` times a number.
 
@@ -84,20 +71,20 @@ def right_tail(
     polynomials: Sequence[fmpz_mpoly],
     scales: Sequence[acb],
     start: float,
-) -> Tail:
+) -> float | str:
     """Return a radius beyond which a sum of polynomials in kernels has no root with ``Re(s) >= 0``.
 
     Each polynomial of the ring of ``bound`` is multiplied with its scale, a ball and maybe a complex one.
-    ``start`` is the smallest radius tried [rad/s]. There is no radius where no one term outweighs the others,
-    as in lossless structures, whose poles lie along the axis without end, or where wavenumbers have no
-    formula.
+    ``start`` is the smallest radius tried [rad/s]. There is no radius, but the reason, where no one term
+    outweighs the others, as in lossless structures, whose poles lie along the axis without end, or where
+    wavenumbers have no formula.
     """
     with precision(BITS):
         function = _sum_far_out(bound, polynomials, scales, SECTORS)
         if isinstance(function, str):
-            return Tail(None, function)
+            return function
         radius = _least(start, lambda r: function.dominant_terms(r) is not None)
-        return Tail(radius) if radius is not None else Tail(None, function.obstacle(start * LARGEST))
+        return radius if radius is not None else function.obstacle(start * LARGEST)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision
 from symflex.roots.region import Band, Rectangle, Region
-from symflex.roots.root import FLOAT_BITS, Root, are_apart, root_at_zero
+from symflex.roots.root import FLOAT_BITS, Root, are_apart, count_roots, root_at_zero
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
@@ -97,7 +97,7 @@ class Count:
         ``innermost`` is ln of the radius of a disc about 0 within which none was sought.
         """
         if not are_apart(located):
-            found = sum(root.multiplicity for root in located)
+            found = count_roots(located)
             return Proof(found, found, TOUCHING)
         cells, holes = parts(domain, self.left, self.holes)
         found, unsure = 0, False
@@ -121,7 +121,7 @@ class Count:
         if rest:
             return Proof(found, found, UNPROVED)
         if domain.low == -inf:
-            counted += sum(root.multiplicity for root in at_zero)
+            counted += count_roots(at_zero)
         return Proof(counted, found)
 
     def right(self, high: float) -> int:

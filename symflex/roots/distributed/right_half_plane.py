@@ -121,9 +121,9 @@ def _end(side: Side, reached: float) -> tuple[float, str]:
     for factor, exponent in side.function.part.factors:
         if exponent > 0:
             tail = right_tail(side.function.bound, (factor,), (acb(1),), start)
-            if tail.radius is None:
-                return max(reached, side.function.frequency_of(WAVES)), tail.reason
-            radius = max(radius, tail.radius)
+            if isinstance(tail, str):
+                return max(reached, side.function.frequency_of(WAVES)), tail
+            radius = max(radius, tail)
     return radius, ""
 
 

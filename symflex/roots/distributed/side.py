@@ -42,7 +42,7 @@ from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Modes, Region
-from symflex.roots.root import Root, are_apart, groups, mirror_images, overlap
+from symflex.roots.root import Root, are_apart, count_roots, groups, mirror_images, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -264,7 +264,7 @@ class Side:
     def prove(self, region: Region) -> Proof:
         """Count the roots of the domain that was searched; subdivide it with proof if one is missing."""
         if self._search is None:
-            found = sum(root.multiplicity for root in self.roots)
+            found = count_roots(self.roots)
             return Proof(found, found)
         if self.engine != SUBDIVISION:
             proof = self.counted()
@@ -284,7 +284,7 @@ class Side:
 
     def _subdivided(self) -> Proof:
         """Return what was found in cells that were all counted with proof."""
-        found = sum(root.multiplicity for root in self._located)
+        found = count_roots(self._located)
         if not isinstance(self._search, RootSearch):
             return Proof(found, found, UNPROVED)
         if not self._count.is_empty_within(self._innermost):

@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from flint import arb, arb_mat, ctx
 
+from symflex.algebra.varying_growth import balanced
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -182,17 +184,9 @@ def _is_nilpotent(matrix: Sequence[Sequence[float]]) -> bool:
 
 
 def _weights(entries: Sequence[Sequence[float]]) -> tuple[int, ...]:
-    """Return w so that rows and columns of ``entries[i][j]*2^(w_j - w_i)`` are alike (Osborne 1960)."""
-    n = len(entries)
-    logs = [[log2(x) if x and i != j else None for j, x in enumerate(row)] for i, row in enumerate(entries)]
-    weights = [0.0] * n
-    for _ in range(8):  # a few rounds settle four states
-        for i in range(n):
-            row = [x + weights[j] for j, x in enumerate(logs[i]) if x is not None]
-            column = [x - weights[j] for j in range(n) if (x := logs[j][i]) is not None]
-            if row and column:
-                weights[i] = (max(row) - max(column)) / 2
-    return tuple(map(round, weights))
+    """Return w so that rows and columns of ``entries[i][j]*2^(w_j - w_i)`` are alike."""
+    sizes = {(i, j): log2(x) for i, row in enumerate(entries) for j, x in enumerate(row) if x and i != j}
+    return tuple(map(round, balanced(sizes, len(entries), 8)))  # a few rounds settle four states
 
 
 def _inverse(matrix: arb_mat) -> arb_mat:

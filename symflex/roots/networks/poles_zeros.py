@@ -34,7 +34,7 @@ from symflex.roots.pole_zero_map import (
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
-from symflex.roots.root import Root, count_modes, root_at_zero
+from symflex.roots.root import Root, count_modes, count_roots, root_at_zero
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -118,7 +118,7 @@ class _Sought:
         poles, zeros, hidden = roots
         every = (*poles, *zeros, *(h.root for h in hidden))
         untold = () if all(root.certified for root in every) else (UNTOLD,)
-        count = sum(root.multiplicity for root in (*every, *unstable))
+        count = count_roots((*every, *unstable))
         reason = "; ".join(dict.fromkeys((*reasons, *untold))) or None
         return PoleZeroMap(
             self.name,
@@ -304,8 +304,8 @@ class _NetworkSearch:
     def _most_held(self, each: Eigenvalue) -> int:
         return max(self._held_within(each, border) for border in range(len(self.counter.borders)))
 
-    def _held_within(self, each: Eigenvalue, border: int) -> int:
-        """Return how many eigenvalues of the network held at a border lie in the same interval."""
+    def _held_within(self, each: Eigenvalue, border: int | None) -> int:
+        """Return how many eigenvalues of the network, held at a border or free, lie in the same interval."""
         search = EigenvalueSearch(self.counter, border, self.digits)
         return search.count(each.high) - search.count(each.low)
 
@@ -326,8 +326,7 @@ class _NetworkSearch:
 
     def _poles_within(self, zero: Eigenvalue) -> Eigenvalue | None:
         """Return the poles in the interval of a zero as one; ``None`` where there are none."""
-        search = EigenvalueSearch(self.counter, None, self.digits)
-        found = search.count(zero.high) - search.count(zero.low)
+        found = self._held_within(zero, None)
         return Eigenvalue(zero.low, zero.high, 0, found) if found else None
 
     def roots(self) -> tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]]:

@@ -13,7 +13,6 @@ from symflex import pipeline
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
-from symflex.roots.distributed.far_out import Tail
 from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import (
     ACCUMULATING,
@@ -190,7 +189,7 @@ class Half:
         return self.proof
 
 
-ENDING, ENDLESS = (Tail(7.0),), (Tail(None, "poles have no end"),)
+ENDING, ENDLESS = (7.0,), ("poles have no end",)
 
 
 @pytest.fixture
@@ -240,10 +239,10 @@ def test_roots_accumulate_right_of_the_axis_where_a_hole_begins_there(searching)
 
 def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
     side = Half(0)
-    searching(side, tails=(Tail(0.5),))
+    searching(side, tails=(0.5,))
     assert side.counted_to == [pytest.approx(0.5 * 1.01)]
     side = Half(0, exponents=(1, -1, 2, 1))
-    assert searching(side, tails=(Tail(7.0), Tail(9.0), Tail(8.0))) == RightHalfPlane(())
+    assert searching(side, tails=(7.0, 9.0, 8.0)) == RightHalfPlane(())
     assert side.counted_to == [pytest.approx(9 * 1.01)]
 
 
