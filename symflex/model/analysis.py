@@ -51,8 +51,6 @@ OF_A_LOOP = ("nyquist", "locus")
 IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000
-PER_SECOND = unit_of("1/s").dimension
-SECOND = unit_of("s").dimension
 
 
 def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
@@ -93,14 +91,20 @@ def _frequency(reader: Reader, value: Value) -> Fraction | None:
     """Return a frequency in Hz; a bare number is in Hz, rad/s is converted with pi to 30 digits."""
     if isinstance(value, NumberValue):
         return value.value
-    quantity = reader.quantity(value, "a frequency")
+    quantity = _quantity(reader, value, "a frequency", "Hz")
     if quantity is None:
-        return None
-    if quantity.unit and quantity.dimension != PER_SECOND:
-        reader.note("SF203", f"a frequency is in 'Hz', found '{quantity.unit}'", value.span)
         return None
     number = in_limits(quantity)
     return number if quantity.cycles or not quantity.unit else number / (2 * PI_NEARLY)
+
+
+def _quantity(reader: Reader, value: Value, what: str, unit: str) -> Quantity | None:
+    """Return a quantity of the kind that a unit measures, or a number."""
+    found = reader.quantity(value, what)
+    if found is None or not found.unit or found.dimension == unit_of(unit).dimension:
+        return found
+    reader.note("SF203", f"{what} is in '{unit}', found '{found.unit}'", value.span)
+    return None
 
 
 def in_limits(quantity: Quantity) -> Fraction:
@@ -209,11 +213,8 @@ def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction 
     if isinstance(value, NumberValue):
         number = value.value
     else:
-        quantity = reader.quantity(value, "a time")
+        quantity = _quantity(reader, value, "a time", "s")
         if quantity is None:
-            return None
-        if quantity.unit and quantity.dimension != SECOND:
-            reader.note("SF203", f"a time is in 's', found '{quantity.unit}'", value.span)
             return None
         number = in_limits(quantity)
     if number > 0:

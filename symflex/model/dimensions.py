@@ -158,7 +158,9 @@ class DimensionSystem:
         self._uses: dict[str, list[Use]] = {}
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
-        self._axes: dict[str, Measure] = {}
+        self._axes = dict.fromkeys(
+            scope.along, Measure(unit_of("m").dimension)
+        )  # of x, by what varies along it
         self._coordinate: Measure | None = None
         self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
@@ -221,10 +223,6 @@ class DimensionSystem:
             if len(self.problems) > before:
                 axis = Measure(open=True)
         self._axes.update(dict.fromkeys(unknowns, axis))
-
-    def place_lines(self) -> None:
-        """Take x along elements to be a length."""
-        self._axes.update(dict.fromkeys(self._scope.along, Measure(unit_of("m").dimension)))
 
     def balance(self, equation: Equation, unknowns: Sequence[str] = ()) -> None:
         """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
@@ -502,7 +500,11 @@ class DimensionSystem:
         waiting = [variable]
         while waiting:
             terms, dimension = self._solved[waiting[-1]]
-            stale = [v for v, _ in terms if v in self._solved and self._is_stale(v)]
+            stale = [
+                v
+                for v, _ in terms
+                if v in self._solved and any(u in self._solved for u, _ in self._solved[v][0])
+            ]
             if stale:
                 waiting += stale
                 continue
@@ -514,9 +516,6 @@ class DimensionSystem:
                     merged[other] = merged.get(other, Fraction(0)) + e * weight
             self._solved[waiting.pop()] = (tuple((v, e) for v, e in merged.items() if e), dimension)
         return self._solved[variable]
-
-    def _is_stale(self, variable: Variable) -> bool:
-        return any(v in self._solved for v, _ in self._solved[variable][0])
 
     def _declaration(self, expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
         if isinstance(expression, Name):
