@@ -159,7 +159,7 @@ class ExactEvaluator:
             case Name() | Attribute():
                 return self._name(expression)
             case Negative(operand):
-                return _scale(self._evaluate(operand), Factored.number(self.ring, -1))
+                return self._evaluate(operand) * Factored.number(self.ring, -1)
             case Sum(terms):
                 return self._sum(expression, terms)
             case Product(factors):
@@ -173,7 +173,7 @@ class ExactEvaluator:
                     raise ModelError(
                         Diagnostic("SF224", "division by zero", denominator.span or expression.span)
                     )
-                return _scale(self._evaluate(numerator), divisor**-1)
+                return self._evaluate(numerator) * divisor**-1
             case Power(base, exponent):
                 return self._power(expression, base, exponent)
             case Call(name) if name in self.fields and self.field_value is not None:
@@ -341,10 +341,6 @@ def exact_root(value: Fraction) -> Fraction | None:
     top, bottom = isqrt(value.numerator), isqrt(value.denominator)
     exact = top * top == value.numerator and bottom * bottom == value.denominator
     return Fraction(top, bottom) if exact else None
-
-
-def _scale(value: Factored | LinearForm, factor: Factored) -> Factored | LinearForm:
-    return value * factor
 
 
 def _product(
