@@ -654,7 +654,8 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
     """Return a frequency in Hz, or in rad/s, from a number or a quantity that counts per second."""
     if not isinstance(given, str):
         return exact(given)
-    from symflex.model.analysis import PER_SECOND, in_limits
+    from symflex.model.analysis import in_limits
+    from symflex.model.dimensions import PER_SECOND
     from symflex.model.model import PI_NEARLY
 
     wrong = UsageError(Diagnostic("SF902", f"{flag} takes numbers such as {example}, found '{given[:60]}'"))
@@ -680,7 +681,8 @@ def duration(given: str, flag: str) -> Fraction:
     >>> duration("20 ms", "--until")
     Fraction(1, 50)
     """
-    from symflex.model.analysis import SECOND, in_limits
+    from symflex.model.analysis import in_limits
+    from symflex.model.dimensions import SECOND
 
     message = f"{flag} takes a positive time such as 0.5 or '20 ms', found '{given[:60]}'"
     wrong = UsageError(Diagnostic("SF902", message))

@@ -135,7 +135,8 @@ def julia_module(contents: Contents) -> Export:
         blocks.append(_function_table(table, [m for m in members if m.is_response == is_response], public))
     header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
     if public:
-        header += [*_exported(list(public.values())), ""]
+        first, *others = in_lines(", ".join(public.values()), WIDTH - len("export "))
+        header += [f"export {first}", *(f"    {line}" for line in others), ""]
     text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
     return Export(text, name=main)
 
@@ -209,11 +210,6 @@ def _function_table(table: str, members: Sequence[Member], public: Mapping[str, 
     lines = [f"    {_string(m.tf.name)} => {public[m.key]}," for m in members]
     opening = f"const {table} = Dict{{String, Function}}("
     return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
-
-
-def _exported(names: Sequence[str]) -> list[str]:
-    first, *others = in_lines(", ".join(names), WIDTH - len("export "))
-    return [f"export {first}", *(f"    {line}" for line in others)]
 
 
 def _public(member: Member, functions: JuliaFunctions, digits: int, of_s: str) -> str:

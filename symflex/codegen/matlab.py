@@ -325,7 +325,8 @@ class _File:
                 m.program, self.public[m.key], self.parameters, self.taken - WORDS, own
             )
             local = functions.blocks()
-            blocks += [self._handle(m, functions), *local]
+            given = _given(self.parameters[p] for p in m.program.parameters)
+            blocks += [_function(*self._head(m, "s"), *given, *functions.call()), *local]
             code += "\n".join([*functions.call(), *local])
             if m.key in self.systems:
                 blocks += self._system_functions(self.systems[m.key], own)
@@ -417,11 +418,6 @@ class _File:
             "  p = struct();",
             *(f"  p.{names[p.name]} = {default_value(p) or '[]'};" for p in self.model.parameters),
         )
-
-    def _handle(self, member: Member, functions: LocalFunctions) -> str:
-        """Return the function behind a handle."""
-        given = _given(self.parameters[p] for p in member.program.parameters)
-        return _function(*self._head(member, "s"), *given, *functions.call())
 
     def _response(self, member: Member) -> str:
         """Return the function of the angular frequency, which calls that of s."""

@@ -169,14 +169,11 @@ def identifiers(
             taken.add(text)
     for key, text in wanted.items():
         if key not in found:
-            found[key] = _free(_mangled(text), taken, longest)
+            plain = _OUTSIDE.sub("_", text)
+            plain = plain if plain[:1].isalpha() else f"p_{plain.lstrip('_')}"
+            found[key] = _free(plain, taken, longest)
             taken.add(found[key])
     return {key: found[key] for key in wanted}
-
-
-def _mangled(text: str) -> str:
-    plain = _OUTSIDE.sub("_", text)
-    return plain if plain[:1].isalpha() else f"p_{plain.lstrip('_')}"
 
 
 def _free(text: str, taken: Collection[str], longest: int | None) -> str:

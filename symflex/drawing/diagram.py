@@ -253,22 +253,21 @@ class _Band:
                 x += WIRE if self._kind(node) != "signal" else WIRE / 2
             for branch in (b for b in branches if b.origin is not None):
                 other = branch.origin if node == branch.target else branch.target
+                length = sum(one.width + WIRE for one in self._all_shown(branch))
                 if node in (branch.target, branch.origin) and other in self.x:
-                    x = max(x, self.x[other][1] + self._length(branch) + 2 * WIRE)
+                    x = max(x, self.x[other][1] + length + 2 * WIRE)
             shown = self._shown(node, is_tag=node in self.tags)
             self._place(node, shown, x, 0.0)
+            before = self.path[i - 1] if i else self.before
             if i:
-                self._wire(self.path[i - 1], node, x)
-            elif self.before is not None and self._kind(node) == "sum":
-                self._sign(node, "left", is_minus=self._is_minus(self.before, node))
+                self._lead((self.x[self.path[i - 1]][1], 0.0), (x, 0.0), node)
+            if before is not None and self._kind(node) == "sum":
+                self._sign(node, "left", is_minus=self._is_minus(before, node))
             x += shown.width
         last = self.path[-1]
         if self._kind(last) == "signal" and not self.graph.nodes[last].after:
             name = self.graph.nodes[last].name
             self.items.append(Placed("end", name, arrow((x, 0.0), (x + WIRE, 0.0))))
-
-    def _length(self, branch: _Branch) -> float:
-        return sum(one.width + WIRE for one in self._all_shown(branch))
 
     def _all_shown(self, branch: _Branch) -> list[Built]:
         last = len(branch.nodes) - 1
@@ -278,11 +277,6 @@ class _Band:
         """Draw a straight wire, with a head where it enters a symbol."""
         is_plain = to is None or self._kind(to) == "signal"
         self.items.append(Placed("wire", "", (line(start, end),) if is_plain else arrow(start, end)))
-
-    def _wire(self, before: int, node: int, x: float) -> None:
-        self._lead((self.x[before][1], 0.0), (x, 0.0), node)
-        if self._kind(node) == "sum":
-            self._sign(node, "left", is_minus=self._is_minus(before, node))
 
     def _is_minus(self, before: int, node: int) -> bool:
         return next(m for b, m in self.graph.nodes[node].before if b == before)
@@ -340,7 +334,11 @@ class _Band:
         for i, (node, one) in enumerate(zip(branch.nodes, shown, strict=True)):
             x += sign * WIRE + (spare if is_read and node == branch.nodes[-1] else 0.0)
             self._place(node, one, x if sign > 0 else x - one.width, y)
-            self._wire_back(branch.nodes[i - 1] if i else None, node, (x, before), y, sign)
+            towards = branch.nodes[i - 1] if i else None
+            self._lead((x, y), (before, y), towards)
+            if towards is not None and self._kind(towards) == "sum":
+                side = "right" if sign > 0 else "left"
+                self._sign(towards, side, is_minus=self._is_minus(node, towards))
             x += sign * one.width
             before = x
         edge = level + self.reach[target][is_up]
@@ -386,15 +384,6 @@ class _Band:
         if not is_up and "above" not in taken and self._is_blocked(risers, down, level):
             is_up = not self._is_blocked(risers, up, level)
         return (up if is_up else down), is_up
-
-    def _wire_back(
-        self, before: int | None, node: int, ends: tuple[float, float], y: float, sign: float
-    ) -> None:
-        """Draw the wire from a node of a branch to the one before it, towards the sum."""
-        self._lead((ends[0], y), (ends[1], y), before)
-        if before is not None and self._kind(before) == "sum":
-            side = "right" if sign > 0 else "left"
-            self._sign(before, side, is_minus=self._is_minus(node, before))
 
     def _close(self, branch: _Branch, x: float, end: float, y: float) -> None:
         """Draw the wire from a signal of the path to the branch that it feeds."""

@@ -101,10 +101,6 @@ class Stroke:
     fill: str = PLAIN  # a colour; an outline is closed
     is_dashed: bool = False
 
-    def moved(self, dx: float, dy: float) -> Stroke:
-        """Return the line elsewhere."""
-        return replace(self, points=tuple((x + dx, y + dy) for x, y in self.points))
-
 
 @dataclass(frozen=True, slots=True)
 class Lettering:
@@ -164,7 +160,9 @@ class Placed:
         """Return the part elsewhere."""
         return replace(
             self,
-            strokes=tuple(s.moved(dx, dy) for s in self.strokes),
+            strokes=tuple(
+                replace(s, points=tuple((x + dx, y + dy) for x, y in s.points)) for s in self.strokes
+            ),
             texts=tuple(t.moved(dx, dy) for t in self.texts),
         )
 

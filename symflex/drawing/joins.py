@@ -126,7 +126,9 @@ def _best(
     """Return the corners of the cheapest way of a wire, or nothing."""
     points = _way(one.starts, one.ends, blocked, crossed) or _way(one.starts, one.otherwise, blocked, crossed)
     # A symbol may reach into another one's place, where a way begins or ends.
-    is_struck = any(_is_struck(pair, box) for pair in pairwise(points) for box in solid)
+    is_struck = any(
+        around(pair).grown(0.01).overlaps(box.grown(-0.3)) for pair in pairwise(points) for box in solid
+    )
     return [] if is_struck else points
 
 
@@ -143,10 +145,6 @@ def _drawn(name: str, points: Sequence[Point], *, is_branch: bool) -> Placed:
     dashes = Stroke((*points[:-1], (tip[0] - 2 * d[0], tip[1] - 2 * d[1])), THIN, is_dashed=True)
     dot = (circle(*points[0], 0.9, fill=BLACK),) if is_branch else ()
     return Placed("join", name, (dashes, head(tip, d, 3.0), *dot))
-
-
-def _is_struck(pair: tuple[Point, Point], box: Extent) -> bool:
-    return around(pair).grown(0.01).overlaps(box.grown(-0.3))
 
 
 def _centre(cell: Cell) -> Point:
@@ -173,7 +171,7 @@ def _beside(box: Extent) -> dict[Cell, Point]:
 def _way(
     first: Sequence[Extent], last: Sequence[Extent], blocked: set[Cell], crossed: Mapping[Cell, float]
 ) -> list[Point]:
-    """Return the corners of the cheapest way, or nothing where there is none (A*)."""
+    """Return where the cheapest way begins, turns and ends, or nothing where there is none (A*)."""
     starts = {c: p for box in first for c, p in _beside(box).items() if c not in blocked}
     ends = {c: p for box in last for c, p in _beside(box).items() if c not in blocked}
     if not starts or not ends:
@@ -203,7 +201,12 @@ def _way(
             continue
         seen.add((cell, d))
         if cell in ends and _leads_to(cell, d, ends[cell]):
-            return _corners(cell, d, before, starts, ends)
+            points, place = [ends[cell]], (cell, d)
+            while (earlier := before[place]) is not None:
+                if earlier[1] != place[1]:
+                    points.append(_centre(earlier[0]))
+                place = earlier
+            return [starts[place[0]], *reversed(points[1:]), points[0]]
         paid = best[cell, d] + 1
         for turn, (dx, dy) in enumerate(STEPS):
             other = (cell[0] + dx, cell[1] + dy)
@@ -219,19 +222,3 @@ def _way(
 def _leads_to(cell: Cell, d: int, goal: Point) -> bool:
     (x, y), (dx, dy) = _centre(cell), STEPS[d]
     return (goal[0] - x) * dx + (goal[1] - y) * dy > 0
-
-
-def _corners(
-    cell: Cell,
-    d: int,
-    before: dict[tuple[Cell, int], tuple[Cell, int] | None],
-    starts: dict[Cell, Point],
-    ends: dict[Cell, Point],
-) -> list[Point]:
-    """Return where a way begins, turns and ends."""
-    points, place = [ends[cell]], (cell, d)
-    while (last := before[place]) is not None:
-        if last[1] != place[1]:
-            points.append(_centre(last[0]))
-        place = last
-    return [starts[place[0]], *reversed(points[1:]), points[0]]

@@ -379,7 +379,10 @@ class _Layout:
             cell = level.what
             first, last = low, high
             if cell.is_member:
-                left, right = (self._column_of(side) for side in (cell.left, cell.right))
+                left, right = (
+                    next((self.columns[self.at[e.node]] for e in side if e.node), None)
+                    for side in (cell.left, cell.right)
+                )
                 first = left.x + left.half if left else low
                 last = right.x - right.half if right else high
                 cell.margins = (low - first, last - high)
@@ -395,9 +398,6 @@ class _Layout:
                         face, y = column.x + sign * column.half, level.y + offset
                         self._wire(cell.part.name, (edge, y), (face, y), width=_wire_width(cell, end))
         self._join_walls(g)
-
-    def _column_of(self, side: Sequence[End]) -> Column | None:
-        return next((self.columns[self.at[e.node]] for e in side if e.node), None)
 
     def _join_walls(self, g: int) -> None:
         """Make one wall of those in an outer gap."""

@@ -34,12 +34,12 @@ from symflex.expressions import (
     Call,
     Equation,
     Expression,
-    Name,
     Negative,
     Number,
     Sum,
     format_expression,
     names,
+    names_among,
     substitute,
 )
 from symflex.library.elements import (
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from symflex.equations.distributed import AlongPoint, Distributed, FieldSolution, State
-    from symflex.library.elements import Admittance, Injection, Placing
+    from symflex.library.elements import Placing
     from symflex.library.elements.element import Role
     from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
@@ -456,8 +456,7 @@ class _Assembly:
         """The delay blocks, and the blocks made of them."""
         found = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
         for block in self._ordered_blocks():
-            used = {n.name for _, e in block.values for n in names(e) if isinstance(n, Name)}
-            if used & found:
+            if any(names_among(e, found) for _, e in block.values):
                 found.add(block.name)
         return found
 
@@ -470,7 +469,7 @@ class _Assembly:
         expressions = {d.name: [d.expression] for d in self.model.definitions}
         expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}
         graph = {
-            name: [n.name for e in found for n in names(e) if isinstance(n, Name) and n.name in expressions]
+            name: [n for e in found for n in names_among(e, expressions)]
             for name, found in expressions.items()
         }
         try:
@@ -561,25 +560,18 @@ class _Assembly:
 
     def _take(self, use: PlacedElement, stamp: Stamp) -> None:
         for branch in stamp.branches:
-            self._add_branch(branch)
+            key = (branch.b, branch.a) if (branch.b, branch.a) in self.branches else (branch.a, branch.b)
+            known = self.branches.get(key)
+            self.branches[key] = branch.admittance if known is None else known + branch.admittance
         for injection in stamp.injections:
-            self._inject(injection)
+            if injection.node is not None:
+                minus = Factored.number(self.ring, -1)
+                own = self.balance[injection.node]
+                self.balance[injection.node] = _side_by_side(own, injection.form * minus)
         self.unknowns += stamp.unknowns
         self.rows += stamp.rows
         for quantity, form in stamp.through:
             self.through[Variable("through", use.name, quantity)] = form
-
-    def _add_branch(self, branch: Admittance) -> None:
-        key = (branch.a, branch.b)
-        if (branch.b, branch.a) in self.branches:
-            key = (branch.b, branch.a)
-        known = self.branches.get(key)
-        self.branches[key] = branch.admittance if known is None else known + branch.admittance
-
-    def _inject(self, injection: Injection) -> None:
-        if injection.node is not None:
-            minus = Factored.number(self.ring, -1)
-            self.balance[injection.node] = _side_by_side(self.balance[injection.node], injection.form * minus)
 
     def _balances(self) -> list[EquationRow]:
         """Return each node's balance: what flows out through branches minus what is delivered."""

@@ -385,7 +385,6 @@ def survey(
     is_nameless = is_nameless or is_cut
     settled = None if is_nameless or evaluator.ring.is_sparse else evaluator.settled
     demands = _Demands(moving, settled, is_followed=is_followed)
-    problems: list[Diagnostic] = []
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []
     solutions: dict[str, FieldSolution] = {}
@@ -420,10 +419,8 @@ def survey(
                 medium = next(medium for name, medium, _ in lines if name == owner)
                 demands.need(medium, medium.way(evaluator.constant(call.argument)))
     except SymflexError as error:
-        problems.extend(error.diagnostics)
-    if problems:
         spend()
-        raise error_of(problems)
+        raise error_of([*error.diagnostics]) from None
     if not (lines or delays or solutions):
         return None
     propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)

@@ -73,6 +73,17 @@ class Equations:
     continua: tuple[Continuum, ...] = ()  # the distributed parts
     is_split: bool = False  # what is coupled has several laws somewhere, or equal wavenumbers
 
+    @property
+    def delays(self) -> dict[str, tuple[Factored, Factored]]:
+        """Rate and time of the exponential functions that are generators."""
+        if self.propagation is None:
+            return {}
+        laws, lengths = self.propagation.table.dispersions, self.propagation.lengths
+        return {
+            p.generator: (laws[p.dispersion].shift, lengths[p.dispersion][p.length])
+            for p in self.propagation.propagators
+        }
+
     def __repr__(self) -> str:
         counts = f"{len(self.unknowns)} unknowns, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
         return f"<Equations: {counts}>"

@@ -70,7 +70,7 @@ class LineNetwork:
     ) -> list[Value]:
         """Return the entries in whatever arithmetic the values of names, s and parameters, have."""
         known: dict[str, Value] = {}
-        definitions, delays = dict(self.equations.definitions), self._delays
+        definitions, delays = dict(self.equations.definitions), self.equations.delays
 
         def generator(key: str) -> Value:
             if key not in known:
@@ -97,18 +97,6 @@ class LineNetwork:
             return quotient(product(parts[0]), product(parts[1])) if parts[1] else product(parts[0])
 
         return [total([value(x) for x in terms]) for terms in self.entries]
-
-    @property
-    def _delays(self) -> dict[str, tuple[Factored, Factored]]:
-        """Rate and time of the exponential functions that are generators."""
-        waves = self.equations.propagation
-        if waves is None:
-            return {}
-        laws, lengths = waves.table.dispersions, waves.lengths
-        return {
-            p.generator: (laws[p.dispersion].shift, lengths[p.dispersion][p.length])
-            for p in waves.propagators
-        }
 
 
 @dataclass(frozen=True, slots=True)

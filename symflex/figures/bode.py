@@ -118,14 +118,6 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     return figure
 
 
-def panels(own: tuple[Axes, ...], height: float, ratio: float) -> tuple[Axes, Axes]:
-    """Return axes for magnitudes and phases, the user's if there are any."""
-    if not own:
-        return magnitude_over_phase(COLUMN_INCHES, height, ratio)
-    top, bottom = Canvas(axes=own).own_axes(2)
-    return top, bottom
-
-
 def set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
     """Label the lowest of panels that stand below each other."""
     for axes in panels:
@@ -159,7 +151,10 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
     level = np.where(np.isfinite(level), level, np.nan)
     own = axes_of(ax)
     with nullcontext() if own else paper_style():
-        top, bottom = panels(own, HEIGHT_INCHES + LINE_INCHES, RATIO)
+        if own:
+            top, bottom = Canvas(axes=own).own_axes(2)
+        else:
+            top, bottom = magnitude_over_phase(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES, RATIO)
         figure = root_figure(top)
         colour = COLOURS[len(top.get_lines()) % len(COLOURS)]
         top.plot(frequency, level, color=colour, label=response.tf)

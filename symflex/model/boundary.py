@@ -23,6 +23,7 @@ from symflex.expressions import (
     format_expression,
     measured,
     names,
+    names_among,
     substitute,
 )
 from symflex.library.elements import LineElement
@@ -33,9 +34,8 @@ from symflex.model.reading import QuantityLiteral
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.model.independence import Repetition
     from symflex.model.model import Definition, FieldProblem, PlacedBlock, PlacedElement
@@ -70,14 +70,14 @@ def varying_constants(definitions: Sequence[Definition], blocks: Sequence[Placed
     """Return the names of constants that depend on s; the definitions stand in order of use."""
     varying = {b.name for b in blocks}
     for definition in definitions:
-        if any(isinstance(n, Name) and n.name in {*varying, LAPLACE} for n in names(definition.expression)):
+        if names_among(definition.expression, {*varying, LAPLACE}):
             varying.add(definition.name)
     return frozenset(varying)
 
 
 def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
     """Tell whether an expression of constants depends on s."""
-    return any(isinstance(n, Name) and (n.name == LAPLACE or n.name in varying) for n in names(expression))
+    return bool(names_among(expression, {*varying, LAPLACE}))
 
 
 def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroundings) -> frozenset[str]:
@@ -100,7 +100,8 @@ def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroun
         for equation in field.conditions:
             problems = check_equation(equation, around.scope)
             reader.take(problems)
-            calls = tuple(_values_at_points(equation, around.scope))
+            unknowns = around.scope.unknowns
+            calls = tuple(n for n in names(equation) if isinstance(n, Call) and n.name in unknowns)
             if not problems and not calls:
                 reader.note(
                     "SF248",
@@ -169,10 +170,6 @@ def check_points(
             )
         if not wrong:
             inside.add((stretch.what, place))
-
-
-def _values_at_points(expression: Expression, scope: ModelScope) -> Iterator[Call]:
-    yield from (n for n in names(expression) if isinstance(n, Call) and n.name in scope.unknowns)
 
 
 def _difference(left: Expression, right: Expression) -> Expression:
@@ -270,7 +267,7 @@ def _repeat(reader: Reader, field: FieldProblem, point: RandomPoint) -> bool:
 
 
 def _repetition_message(what: str, repetition: Repetition, equations: Sequence[Equation]) -> str:
-    lines = sorted({_line(equations[i].span) for i in repetition.others})
+    lines = sorted({span.line if (span := equations[i].span) else 0 for i in repetition.others})
     texts = " and ".join(f"'{_text(equations[i])}'" for i in repetition.others)
     where = f" (line {', '.join(map(str, lines))})" if lines and lines[0] else ""
     if repetition.contradicts:
@@ -389,10 +386,6 @@ def _has_tip(field: FieldProblem, point: RandomPoint) -> bool:
             if not any((unknown, 0, highest) in f for f in forms):
                 return True
     return False
-
-
-def _line(span: Span | None) -> int:
-    return span.line if span else 0
 
 
 def _text(equation: Equation) -> str:

@@ -41,6 +41,7 @@ from symflex.expressions import (
     is_number,
     measured,
     names,
+    names_among,
     number,
     power,
     product_of,
@@ -158,7 +159,9 @@ class DimensionSystem:
         self._uses: dict[str, list[Use]] = {}
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
-        self._axes: dict[str, Measure] = {}
+        self._axes = dict.fromkeys(
+            scope.along, Measure(unit_of("m").dimension)
+        )  # of x, by what varies along it
         self._coordinate: Measure | None = None
         self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
@@ -221,10 +224,6 @@ class DimensionSystem:
             if len(self.problems) > before:
                 axis = Measure(open=True)
         self._axes.update(dict.fromkeys(unknowns, axis))
-
-    def place_lines(self) -> None:
-        """Take x along elements to be a length."""
-        self._axes.update(dict.fromkeys(self._scope.along, Measure(unit_of("m").dimension)))
 
     def balance(self, equation: Equation, unknowns: Sequence[str] = ()) -> None:
         """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
@@ -502,7 +501,11 @@ class DimensionSystem:
         waiting = [variable]
         while waiting:
             terms, dimension = self._solved[waiting[-1]]
-            stale = [v for v, _ in terms if v in self._solved and self._is_stale(v)]
+            stale = [
+                v
+                for v, _ in terms
+                if v in self._solved and any(u in self._solved for u, _ in self._solved[v][0])
+            ]
             if stale:
                 waiting += stale
                 continue
@@ -514,9 +517,6 @@ class DimensionSystem:
                     merged[other] = merged.get(other, Fraction(0)) + e * weight
             self._solved[waiting.pop()] = (tuple((v, e) for v, e in merged.items() if e), dimension)
         return self._solved[variable]
-
-    def _is_stale(self, variable: Variable) -> bool:
-        return any(v in self._solved for v, _ in self._solved[variable][0])
 
     def _declaration(self, expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
         if isinstance(expression, Name):
@@ -530,7 +530,7 @@ class DimensionSystem:
 
 def _gain_hint(expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
     """Say that an integral or a derivative has another unit; a gain makes it fit, also a plain number."""
-    has_s = any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+    has_s = names_among(expression, (LAPLACE,))
     if has_s and any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
         return "'s' and '1/s' have units: multiply by a gain; a plain number, as in '1*(u/s)', fits any unit"
     return None

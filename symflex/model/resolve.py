@@ -77,7 +77,6 @@ from symflex.model.units import (
     lower,
     measured_input,
     measured_variables,
-    output_dimension,
     port_unit,
     printed_in_cycles,
     quotients,
@@ -85,7 +84,7 @@ from symflex.model.units import (
 from symflex.model.unused import unused
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.errors import Source, Span
     from symflex.model.settings import Setting
@@ -333,18 +332,26 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     acting += [e for f in draft.fields for e in (*f.equations, *f.conditions)]
     check_unknowns(reader, draft.signals, acting)
     around = _surroundings(draft, scope)
-    _check_lengths(reader, draft, around, unsound)
+    for ranged in ranged_values(draft):
+        if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
+            reader.note("SF249", f"{ranged.what} cannot depend on s", ranged.expression.span)
+            unsound.add(ranged.expression.span)
     check_ranges(reader, draft, around.line, unsound, is_along=False)
     before = len(reader.problems)
     fields_placed = check_fields(reader, draft.fields, around)
-    unsound |= _unsound_equations(draft, reader.problems[before:])
+    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
+    unsound |= {e.span for e in equations if _holds(e, reader.problems[before:])}
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     readings = system.finish()
     reader.take(system.problems)
     # A section of other units has other signs, too.
     unsound |= {r.expression.span for r in ranged_values(draft) if _holds(r.expression, system.problems)}
     check_ranges(reader, draft, around.line, unsound, is_along=True)
-    _check_points(reader, draft, placed, around, fields_placed)
+    along = stretches([f for f in draft.fields if f.name in fields_placed], placed)
+    pointed: list[Expression] = [c for f in draft.fields for c in f.conditions]
+    pointed += [e for e, kind in _all_expressions(draft) if kind == "signal"]
+    for expression in pointed if along else ():
+        check_points(reader, expression, along, around)
     implied = implied_units(placed, draft.blocks)
     parameters = [
         p.resolve(readings.get(p.name, CycleReading.CYCLES), implied.get(p.name, "")) for p in draft.declared
@@ -387,7 +394,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
             replace(
                 o,
                 expression=whole(o.expression),
-                dimension=(d := output_dimension(o, system)),
+                dimension=(d := system.dimension(system.measure(o.expression))),
                 unit="" if d is None else str(d),
             )
             for o in draft.outputs
@@ -450,38 +457,10 @@ def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
     return Surroundings(scope, definitions, varying_constants(draft.definitions, draft.blocks), line)
 
 
-def _check_lengths(reader: Reader, draft: Draft, around: Surroundings, unsound: set[Span | None]) -> None:
-    """Note lengths and delays that depend on s; their places are added to the unsound ones."""
-    for ranged in ranged_values(draft):
-        if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
-            reader.note("SF249", f"{ranged.what} cannot depend on s", ranged.expression.span)
-            unsound.add(ranged.expression.span)
-
-
-def _unsound_equations(draft: Draft, problems: Sequence[Diagnostic]) -> set[Span | None]:
-    """Return the places of the fields' equations and conditions that hold a problem."""
-    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
-    return {e.span for e in equations if _holds(e, problems)}
-
-
 def _holds(expression: Expression, problems: Sequence[Diagnostic]) -> bool:
     """Tell whether some problem lies within an expression."""
     own = expression.span
     return own is not None and any(p.span is not None and _covers(own, p.span) for p in problems)
-
-
-def _check_points(
-    reader: Reader,
-    draft: Draft,
-    elements: Sequence[PlacedElement],
-    around: Surroundings,
-    fields_placed: Collection[str],
-) -> None:
-    along = stretches([f for f in draft.fields if f.name in fields_placed], elements)
-    expressions: list[Expression] = [c for f in draft.fields for c in f.conditions]
-    expressions += [e for e, kind in _all_expressions(draft) if kind == "signal"]
-    for expression in expressions if along else ():
-        check_points(reader, expression, along, around)
 
 
 def _covers(outer: Span, inner: Span) -> bool:

@@ -18,7 +18,6 @@ from symflex.model.model import (
     ExactValue,
     Input,
     ModelParameter,
-    Output,
     PlacedBlock,
     PlacedElement,
     Published,
@@ -64,7 +63,6 @@ def check_units(
             hint = unit_slip(given.unit, given.dimension, unit_of(unit).dimension)
             reader.note("SF203", message, expression.span, hint)
 
-    system.place_lines()
     for definition in draft.definitions:
         # In this order each one finds those it uses already measured, however long the chain.
         system.definition(definition.name)
@@ -233,11 +231,6 @@ def measured_input(source: Input, system: DimensionSystem) -> Input:
     dimension = system.dimension(system.variable(variable))
     unit = source.unit or ("" if dimension is None else str(dimension))
     return replace(source, dimension=dimension, unit=unit)
-
-
-def output_dimension(output: Output, system: DimensionSystem) -> Dimension | None:
-    """Return what an output is measured in, when that is known."""
-    return system.dimension(system.measure(output.expression))
 
 
 def quotients(draft: Draft, system: DimensionSystem) -> Iterator[tuple[tuple[str, str], Dimension]]:

@@ -315,7 +315,8 @@ def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publi
     has its claims judged.
     """
     publication = publication_of((c.facts.source for c in chapters), publications)
-    ordered = _ordered(chapters, publication)
+    order = {name: i for i, name in enumerate(publication.models)} if publication else {}
+    ordered = sorted(chapters, key=lambda c: order.get(c.facts.stem, len(order)))
     facts = [c.facts for c in ordered]
     findings = judge_all(publication, facts) if publication else ()
     files = {name: content for c in ordered for name, content in c.files.items()}
@@ -343,12 +344,6 @@ def _folded(section: Section) -> str:
         return TABLES[section.anchor]
     titles = [b.title for b in section.blocks if isinstance(b, Section) and b.title]
     return ", ".join(title if not i else title[:1].lower() + title[1:] for i, title in enumerate(titles))
-
-
-def _ordered(chapters: Sequence[Chapter], publication: Publication | None) -> list[Chapter]:
-    """Return chapters as their publication orders its models, all others as they were named."""
-    order = {name: i for i, name in enumerate(publication.models)} if publication else {}
-    return sorted(chapters, key=lambda c: order.get(c.facts.stem, len(order)))
 
 
 def _titles(chapters: Sequence[Chapter], publication: Publication | None) -> tuple[str, str]:

@@ -427,7 +427,9 @@ class _Realisation:
         taken: set[str] = set()
         for (column, order), parts in zip(keys, direct, strict=True):
             variable = self.rows.unknowns[column]
-            terms: Combination = ((_derivative(_quantity(variable), order), one),)
+            owner, component = variable.owner, variable.component
+            quantity = Attribute(owner, component) if component else Name(owner)
+            terms: Combination = ((_derivative(quantity, order), one),)
             for i, part in sorted(parts.items()):
                 for j, value in sorted(part.items()):
                     terms = (*terms, (_derivative(Name(self.rows.inputs[j]), i), -value))
@@ -463,12 +465,6 @@ def _rate(power: int) -> str:
 
 def _derivative(quantity: Expression, order: int) -> Expression:
     return product_of([power_of(Name(LAPLACE), order), quantity])
-
-
-def _quantity(variable: Variable) -> Expression:
-    if variable.component:
-        return Attribute(variable.owner, variable.component)
-    return Name(variable.owner)
 
 
 def _divided_by(

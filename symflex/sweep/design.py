@@ -120,7 +120,8 @@ class Design:
         grid = product(*(axis.values for axis in self.axes))
         if not self.draws:
             return tuple(grid)
-        drawn = tuple(zip(*(self._column(r) for r in self.ranges), strict=True))
+        columns = ([r.at(Fraction(x)) for x in own] for r, own in zip(self.ranges, self.shares, strict=True))
+        drawn = tuple(zip(*columns, strict=True))
         return tuple((*place, *draw) for place in grid for draw in drawn)
 
     @cached_property
@@ -134,10 +135,6 @@ class Design:
             places = sorted(range(self.draws), key=keys.__getitem__)
             columns.append(tuple((place + random.random()) / self.draws for place in places))
         return tuple(columns)
-
-    def _column(self, limits: Range) -> tuple[ExactValue, ...]:
-        shares = self.shares[self.ranges.index(limits)]
-        return tuple(limits.at(Fraction(share)) for share in shares)
 
 
 def too_many_points(count: int | str) -> BudgetError:

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from hashlib import sha256
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -98,7 +98,9 @@ def netcdf_bytes(sweep: Sweep) -> bytes:
                 file.createDimension(CHARACTERS, width)
             values = values.astype(f"S{width}").view("S1").reshape(*values.shape, width)
             dims = (*dims, CHARACTERS)
-        variable = file.createVariable(each.name, _storage(values), dims)
+        # netCDF 3 has no integers of 64 bits.
+        stored = np.dtype(np.int32) if values.dtype == np.int64 else values.dtype
+        variable = file.createVariable(each.name, stored, dims)
         variable[...] = values
         for name, value in (("units", each.unit), ("long_name", each.doc)):
             if value:
@@ -115,11 +117,6 @@ class _Unclosed(BytesIO):
     def close(self) -> None:
         self.content = self.getvalue()
         super().close()
-
-
-def _storage(values: Array) -> np.dtype[Any]:
-    # netCDF 3 has no integers of 64 bits.
-    return np.dtype(np.int32) if values.dtype == np.int64 else values.dtype
 
 
 def csv_bytes(sweep: Sweep) -> bytes:

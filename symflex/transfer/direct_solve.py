@@ -160,12 +160,7 @@ class DirectSolve:
                 with suppress(ModelError):  # where it is needed its name is missing
                     values[constant.generator] = acb(later(constant.expression, point.parameters)())
         # Only numbers: definitions may hold delays, and delays may hold definitions.
-        number, waves = GeneratorValues(values), self.equations.propagation
-        delays = {}
-        if waves is not None:
-            laws, lengths = waves.table.dispersions, waves.lengths
-            for p in waves.propagators:
-                delays[p.generator] = laws[p.dispersion].shift, lengths[p.dispersion][p.length]
+        number, delays = GeneratorValues(values), self.equations.delays
         for name, value in self.equations.definitions:
             for delay in [d for d in delays if value.ring.index.get(d) is not None and value.depends_on(d)]:
                 _delay(delay, delays, number)

@@ -133,7 +133,10 @@ class KernelReduction:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
             return ReducedQuotient(one * 0, one, self._modes(modes), self.table)
         before = _solved_for(cancelled, self.solved)
-        above, below, before = (self._in_exponentials(v) for v in (above, below, before))
+        above, below, before = (
+            v.map_factors(self.coordinates.coordinates, self.coordinates.transform)
+            for v in (above, below, before)
+        )
         quotient, shared = self._lowest(above, below, before)
         table, back = self._restorer([quotient, shared])
         quotient, shared = back(quotient), back(shared)
@@ -222,7 +225,7 @@ class KernelReduction:
 
         def shortest(factor: fmpz_mpoly) -> Factored:
             found = [self.normal.reduce(factor, pairs=p) for p in ((False, True) if pairs else (False,))]
-            return min(found, key=_terms)
+            return min(found, key=lambda value: sum(len(f) - 1 for f, _ in value.factors))
 
         return self.normal.balance(value.map_factors(self.ring, shortest))
 
@@ -249,9 +252,6 @@ class KernelReduction:
             if not rest.is_constant():
                 result = result * Factored.polynomial(self.ring, rest) ** exponent
         return result
-
-    def _in_exponentials(self, value: Factored) -> Factored:
-        return value.map_factors(self.coordinates.coordinates, self.coordinates.transform)
 
     def _restorer(self, values: Sequence[Factored]) -> tuple[KernelTable, _Restorer]:
         """Return how to come back from exponentials, with half angles where nothing else will do."""
@@ -423,10 +423,6 @@ def _multiples(
     return tuple(found)
 
 
-def _terms(value: Factored) -> int:
-    return sum(len(f) - 1 for f, _ in value.factors)
-
-
 def _solve_relations(
     ring: Ring, table: KernelTable, parameters: Sequence[str]
 ) -> tuple[tuple[str, Factored], ...]:
@@ -485,11 +481,13 @@ def _solve_in_turn(
             index = ring.index[name]
             if any(n == name for n, _ in solved) or degree_in(polynomial, index) != 1:
                 continue
-            zero = _at_zero(ring, polynomial, index)
+            terms = {tuple(map(int, m)): int(c) for m, c in polynomial.terms() if not m[index]}
+            zero = ring.context.from_dict(terms)
             slope = (polynomial - zero) / ring.context.gen(index)
             if not zero.is_zero():
                 formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
-                if all(_stays_finite(ring, earlier, name, formula) for _, earlier in solved):
+                divisors = [f for _, earlier in solved for f, e in earlier.factors if e < 0]
+                if not any(_substitute(ring, name, formula, f).is_zero for f in divisors):
                     rank = 2 if name == LAPLACE else int(name != preferred)
                     found.append((rank, len(zero) + len(slope), len(zero), name, formula))
         if found:
@@ -520,16 +518,6 @@ def _solved_for(value: Factored, solved: Sequence[tuple[str, Factored]]) -> Fact
     for name, formula in solved:
         value = value.map_factors(value.ring, partial(_substitute, value.ring, name, formula))
     return value
-
-
-def _stays_finite(ring: Ring, value: Factored, name: str, formula: Factored) -> bool:
-    """Tell whether a rational function has no denominator that a substitution makes zero."""
-    return not any(_substitute(ring, name, formula, f).is_zero for f, e in value.factors if e < 0)
-
-
-def _at_zero(ring: Ring, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
-    terms = {tuple(map(int, m)): int(c) for m, c in polynomial.terms() if not m[index]}
-    return ring.context.from_dict(terms)
 
 
 def _relations(ring: Ring, dispersion: Dispersion) -> list[tuple[Sequence[str], Factored]]:

@@ -117,7 +117,9 @@ class KernelValues:
         found: dict[str, Value] = {}
         for number, law in self._laws:
             centred = self._centred(law, values)
-            roots = characteristic_roots(coefficients[law], centred, even=_is_even(law))
+            # Where waves of both directions are alike, roots come in pairs x, -x.
+            even = law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
+            roots = characteristic_roots(coefficients[law], centred, even=even)
             if roots is None:
                 return {}
             found.update({_root_name(number, i): root for i, root in enumerate(roots)})
@@ -258,11 +260,6 @@ def _kernel(kernel: Kernel, argument: Value) -> Value:
     return acb_series([value, slope() * argument[1]], PAIR)
 
 
-def _is_even(law: Dispersion) -> bool:
-    """Tell whether waves of both directions are alike: roots come in pairs x, -x."""
-    return law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
-
-
 def _root_name(dispersion: int, i: int) -> str:
     return f"x_{i}[{dispersion}]"
 
@@ -278,7 +275,7 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
     terms = min((x.prec for x in given if isinstance(x, acb_series)), default=1)
     if terms == PAIR and (found := _by_homogeneity(coefficients, length)) is not None:
         return found
-    *rows, reach = (_parts(x, terms) for x in given)
+    *rows, reach = ([x[k] for k in range(terms)] if isinstance(x, acb_series) else [x] for x in given)
     block = acb_mat(n * terms, n * terms)
     for k in range(terms):
         known = range(max(0, k + 1 - len(reach)), k + 1)
@@ -292,10 +289,6 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
     grown = block.exp()
     last = [[grown[i, n * k + n - 1] for k in range(terms)] for i in range(n)]
     return tuple(x[0] if terms == 1 else acb_series(x, terms) for x in last)
-
-
-def _parts(value: Value, terms: int) -> list[acb]:
-    return [value[k] for k in range(terms)] if isinstance(value, acb_series) else [value]
 
 
 def _by_homogeneity(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...] | None:

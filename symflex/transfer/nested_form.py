@@ -27,13 +27,11 @@ from flint import acb, acb_series, arb, ctx
 from symflex.algebra import LAPLACE, uncollected
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
-from symflex.expressions import Name, names
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
 from symflex.transfer.balls import (
     DOUBLE_BITS,
     FIRST_BITS,
     LAST_BITS,
-    at_centre,
     ball,
     double_value,
     enclosure,
@@ -45,7 +43,12 @@ from symflex.transfer.balls import (
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.direct_solve import NotFollowedError, Point, SingularPointError
-from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
+from symflex.transfer.transfer_function import (
+    TransferFunction,
+    name_quantity,
+    parameters_named,
+    unit_of_quotient,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -96,7 +99,7 @@ class CutModel:
         """Return how to enclose every parameter at the current precision."""
         declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
         # A function does not depend on a parameter without value, though its network may.
-        return {p.name: _one for p in self.model.parameters} | {
+        return {p.name: lambda: arb(1) for p in self.model.parameters} | {
             name: enclosure(value) for name, value in (declared | dict(values)).items()
         }
 
@@ -201,11 +204,7 @@ class NestedTransferFunction:
     @cached_property
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
-        used = set(self.generators)
-        for constant in self.constants:
-            if constant.generator in used:
-                used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
-        return tuple(p for p in self.model.parameters if p.name in used)
+        return parameters_named(self.model, self.constants, self.generators)
 
     @cached_property
     def probes(self) -> Probes:
@@ -429,7 +428,9 @@ class EnclosedNested:
         with ctx.workprec(self.bits):
             spend()
             sides = _values(self.source, {**self.constants, LAPLACE: expansion(s)}, ball)
-            (num, above), (den, below) = ((at_centre(x), _slope(x)) for x in map(_complex, sides))
+            (num, above), (den, below) = (
+                (x[0], x[1]) if isinstance(x, acb_series) else (x, acb(0)) for x in map(_complex, sides)
+            )
             return num / den, above / num - below / den
 
 
@@ -473,14 +474,6 @@ def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
     orders = [order for _, order in waves.generators]
     plain = fundamental_functions(coefficients, length) if any(n >= 0 for n in orders) else ()
     return tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
-
-
-def _slope(value: Value) -> acb:
-    return value[1] if isinstance(value, acb_series) else acb(0)
-
-
-def _one() -> arb:
-    return arb(1)
 
 
 AnyBoundFunction = BoundTransferFunction | BoundNested

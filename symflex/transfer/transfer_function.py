@@ -15,12 +15,11 @@ from symflex.expressions import Name, names
 from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence, Set
+    from collections.abc import Callable, Iterable, Sequence, Set
 
     from flint import acb, fmpz_mpoly
 
     from symflex.algebra import Factored, Radicals, Ring
-    from symflex.algebra.modal_sum import ModalSums
     from symflex.equations import ConstantFunction
     from symflex.equations.elimination import Closure
     from symflex.model import Input, Model, ModelParameter, Output
@@ -218,7 +217,7 @@ class TransferFunction:
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
         if self._large is not None:
-            return self._parameters_named(self._opened_names(self._large.generators))
+            return parameters_named(self.model, self.constants, self._opened_names(self._large.generators))
         return self.parameters_in([f for f, _ in self.all_factors])
 
     @property
@@ -227,20 +226,13 @@ class TransferFunction:
         return (*self.ratio.factors, *(f for v in self.kernels.values for f in v.factors))
 
     @cached_property
-    def modal_sums(self) -> ModalSums:
-        """The polynomials of the ring in fundamental functions as sums of exponentials."""
-        from symflex.algebra.modal_sum import ModalSums  # only with beams
-
-        return ModalSums(self.ratio.ring, self.kernels)
-
-    @cached_property
     def hidden_parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
         return self.parameters_in([h.polynomial for h in self.hidden])
 
     def parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
         """Return the parameters that polynomials over the function's ring hold."""
-        return self._parameters_named(self.ring.used_in(polynomials))
+        return parameters_named(self.model, self.constants, self.ring.used_in(polynomials))
 
     def _opened_names(self, found: frozenset[str]) -> set[str]:
         """Return names with those in definitions among them, and in definitions of these."""
@@ -249,12 +241,6 @@ class TransferFunction:
             if name in used:
                 used |= value.ring.used_in(f for f, _ in value.factors)
         return used
-
-    def _parameters_named(self, used: Set[str]) -> tuple[ModelParameter, ...]:
-        for constant in self.constants:
-            if constant.generator in used:
-                used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
-        return tuple(p for p in self.model.parameters if p.name in used)
 
     @cached_property
     def probes(self) -> Probes:
@@ -272,6 +258,16 @@ class TransferFunction:
         if self._large is not None and self._large.order is not None:
             return self._large.order
         return degree(self.ratio.numerator()), degree(self.ratio.denominator())
+
+
+def parameters_named(
+    model: Model, constants: Iterable[ConstantFunction], used: Set[str]
+) -> tuple[ModelParameter, ...]:
+    """Return the parameters among some names, and those in the functions of constants that are among them."""
+    for constant in constants:
+        if constant.generator in used:
+            used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
+    return tuple(p for p in model.parameters if p.name in used)
 
 
 def degree(value: Factored) -> int:

@@ -17,7 +17,6 @@ from functools import cached_property, partial
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
@@ -33,8 +32,6 @@ from symflex.transfer.balls import at_centre, ball, evaluated, raised, series_te
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from numpy.typing import NDArray
 
     from symflex.algebra import Dispersion
     from symflex.algebra.fundamental_matrix import PowerExpansion
@@ -324,12 +321,6 @@ class BoundLaw(PartedLaw):
                 return RationalPart(place, polynomial(above), tuple(below), rates(part))
 
             return [parted(place, t) for place, own in self.summands.items() for t in own]
-
-    def doubles_along(self, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """Return what every part has of x, in order, at places in any array."""
-        found = [self.along(acb(place)) for place in x.reshape(-1).tolist()]
-        parts = ([float(self.value(t.along, along).real.mid()) for along in found] for t in self.every)
-        return [np.reshape(part, x.shape) for part in parts]
 
     def shifted(self, place: Place, coefficients: Sequence[arb], terms: int) -> arb_poly:
         """Return an entry's power series about the start, or anywhere where no power of the way is apart."""

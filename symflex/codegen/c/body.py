@@ -448,7 +448,11 @@ class Body:
     def printer(self) -> CPrinter:
         """Prints expressions of these variables."""
         in_lanes = self.s in (LANE, AXIS_LANE)
-        return CPrinter(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
+
+        def held(term: Term) -> Term:
+            return self.hold("t_1" if term.varies else "c_1", term)
+
+        return CPrinter(self._parameter, self.known, self.s, self._array, held, in_lanes)
 
     def term(self, node: tree.CodeNode) -> Term:
         """Return an expression of these variables."""
@@ -495,9 +499,6 @@ class Body:
             if name in self.used
         ]
         return lines or [f"{STEP}(void)p;"]
-
-    def _hold(self, term: Term) -> Term:
-        return self.hold("t_1" if term.varies else "c_1", term)
 
     def _parameter(self, name: str) -> str:
         self.used.add(name)

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from symflex.equations import ConstantFunction
     from symflex.equations.line_network import LineNetwork
     from symflex.model import Model
-    from symflex.transfer import ClosedForm, NestedTransferFunction, TransferFunction
+    from symflex.transfer import NestedTransferFunction, TransferFunction
 
 
 TERM_LIMIT = 20_000
@@ -86,26 +86,16 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
     forms: list[str] = []
     if tf.is_distributed:
         return ()
-    if tf.closed is not None and not tf.is_zero and _closes_polynomially(tf):
-        closed = tf.closed
+    if (closed := tf.closed) is not None and not tf.is_zero:
+        used = [value for name, value in tf.definitions if name in closed.generators]
+        # The closed form would divide away the poles of a definition at run time.
+        has_poles = any(value.is_zero or value.denominator().depends_on(LAPLACE) for value in used)
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
-        if sum(terms) <= TERM_LIMIT:
+        if not has_poles and sum(terms) <= TERM_LIMIT:
             forms += ["closed", "closed in s", "nested"]
     if tf.length <= TERM_LIMIT:
         forms.append("factors")
     return tuple(forms)
-
-
-def _closes_polynomially(tf: TransferFunction) -> bool:
-    """Tell whether no definition in use has poles, which the closed form would divide away at run time."""
-    used = _used_definitions(tf)
-    return not any(value.is_zero or value.denominator().depends_on(LAPLACE) for _, value in used)
-
-
-def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
-    if tf.closed is None:
-        return
-    yield from ((name, value) for name, value in tf.definitions if name in tf.closed.generators)
 
 
 @dataclass
@@ -237,7 +227,8 @@ def _maker(tf: TransferFunction, form: str) -> Callable[[Generators], tuple[int,
     """Return what makes the value of a form, and the highest power of s in it, for either branch."""
     if form == "factors":
         return _factors
-    closed = _closed_form(tf)
+    closed = tf.closed
+    assert closed is not None  # a form that is available
     ring, polynomials = closed.closure.ring, (closed.num, closed.den)
     if form == "nested":
         return lambda g: _quotient(g, [g.polynomial(ring, p) for p in polynomials])
@@ -248,13 +239,6 @@ def _maker(tf: TransferFunction, form: str) -> Callable[[Generators], tuple[int,
 def _quotient(generators: Generators, parts: Sequence[tuple[int, int]]) -> tuple[int, int]:
     above, below = parts
     return generators.balance(above, below), max(above[1], below[1])
-
-
-def _closed_form(tf: TransferFunction) -> ClosedForm:
-    if tf.closed is None:
-        message = f"{tf.name} has no closed form"
-        raise ValueError(message)
-    return tf.closed
 
 
 def _factors(generators: Generators) -> tuple[int, int]:

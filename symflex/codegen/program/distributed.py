@@ -131,13 +131,9 @@ class Pieces:
             message = f"a program for {self.tf.name} would have more than {TERM_LIMIT} terms"
             raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
         if use not in self._programs:
-            self._programs[use] = self._made(use)
+            is_followed = any(law.matrix for law in self.tf.kernels.dispersions)
+            self._programs[use] = build_varying(self.tf) if is_followed else self._maker(use).program()
         return self._programs[use]
-
-    def _made(self, use: SeriesUse) -> Piecewise:
-        if any(law.matrix for law in self.tf.kernels.dispersions):
-            return build_varying(self.tf)
-        return self._maker(use).program()
 
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.

@@ -326,7 +326,7 @@ class RealAxis:
             return [((pairs, term[1]), ONE)]
         # A cosine is half the sum of conjugate exponentials, a sine -j/2 times their difference.
         half = times((Fraction(1, 2), Fraction(0)), _power(TURN, -term[1]))
-        parts = [(1, half), (-1, _conjugate(half))] if any(b for _, b in pairs) else [(1, ONE)]
+        parts = [(1, half), (-1, (half[0], -half[1]))] if any(b for _, b in pairs) else [(1, ONE)]
         return [
             item
             for sign, number in parts
@@ -344,10 +344,6 @@ def _oscillation(
     sign = 1 if first > 0 else -1
     same = tuple((a, sign * b) for a, b in pairs)
     return [((same, 0), number), ((same, 1), times(number, (Fraction(0), Fraction(sign))))]
-
-
-def _conjugate(value: Gaussian) -> Gaussian:
-    return value[0], -value[1]
 
 
 def _power(base: Gaussian, exponent: int) -> Gaussian:

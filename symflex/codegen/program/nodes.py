@@ -176,16 +176,11 @@ class LargerRoot(CodeNode):
     Where m is small beside the root of p, the formula's value keeps digits that its derivative loses.
     """
 
-    OPERANDS: ClassVar = ("formula", "middle", "product")
+    OPERANDS: ClassVar = ("spelled", "middle", "product")
 
-    formula: CodeNode  # the expression above, for languages without derivatives
+    spelled: CodeNode  # the expression above, for languages without derivatives
     middle: CodeNode  # m
     product: CodeNode  # p
-
-    @property
-    def spelled(self) -> CodeNode:
-        """The root in sums and products."""
-        return self.formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -494,7 +489,7 @@ class Piecewise:
     def size(self) -> int:
         """The number of operations of ``near`` that depend on s: what an array pays for, per element."""
         roots = [*(a.value for a in self.near.assignments), *self.near.values]
-        return sum(_operations(root) for root in roots)
+        return sum(max(len(node.children) - 1, 0) for root in roots for node in root.walk())
 
 
 def lumped(
@@ -506,7 +501,3 @@ def lumped(
         return Piecewise(parameters, nothing, (), (0,), (CodePiece(near),))
     tests = (Condition(Laplace(), limit, ONE),)
     return Piecewise(parameters, nothing, tests, (0, 1), (CodePiece(far), CodePiece(near)))
-
-
-def _operations(root: CodeNode) -> int:
-    return sum(max(len(node.children) - 1, 0) for node in root.walk())

@@ -304,7 +304,9 @@ class Site:
                 shared.append(forge.power(self._decay(i, j), left))
                 continue
             # exp((-left + j b) q) from exp((-1 + j) q/2) and exp((-1 - j) q/2), or from those of q.
-            step = 1 if self._is_even(i, j, scales) else 2
+            # No half angles are needed where all exponents that are left are even combinations.
+            is_even = all((scales[i, j] - a + b) % 2 == 0 for a, b in self.exponents.get((i, j), ()))
+            step = 1 if is_even else 2
             up, down = self._spirals(i, j, step)
             common = (left - abs(b)) * step // 2
             shared.append(forge.power(forge.multiply([up, down]), common))
@@ -319,10 +321,6 @@ class Site:
             return forge.multiply([forge.add([first, second]), product])
         difference = forge.add([first, forge.negate(second)])
         return forge.multiply([forge.complex_number(*MINUS_J), difference, product])
-
-    def _is_even(self, i: int, j: int, scales: Scales) -> bool:
-        """Tell whether all exponents that are left are even combinations: no half angles are needed then."""
-        return all((scales[i, j] - a + b) % 2 == 0 for a, b in self.exponents.get((i, j), ()))
 
     def _decay(self, i: int, j: int, step: Fraction = Fraction(1)) -> int:
         forge = self.forge

@@ -111,7 +111,7 @@ def _start(statement: Statement) -> int:
 def _value_span(source: Source, text: str, statement: Statement) -> Span:
     """Return the place of the value, without white space and comment."""
     after = (statement.start if statement.equals is None else statement.equals) + 1
-    written = _without_comment(text[after : statement.end])
+    written = _STRING_OR_COMMENT.sub(lambda match: match[1] or "", text[after : statement.end])
     start = after + len(written) - len(written.lstrip())
     return Span(source, start, start + len(written.strip()))
 
@@ -184,10 +184,6 @@ def _bad_value(source: Source, text: str, statement: Statement, message: str, of
         said, hint = _bad_scalar(found)
         return Diagnostic("SF101", said, whole, hint)
     return _bad_collection(source, text, whole, message, place)
-
-
-def _without_comment(text: str) -> str:
-    return _STRING_OR_COMMENT.sub(lambda match: match[1] or "", text)
 
 
 def _escape(text: str, statement: Statement, message: str, offset: int) -> tuple[int, int] | None:

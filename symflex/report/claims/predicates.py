@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from symflex.report.claims.claim import Models, Predicate
     from symflex.report.document import Run
-    from symflex.report.facts import ColocationFact, DataFact, LoopFacts, RootFact, TransferFacts
+    from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
 
 
 def modes_at(
@@ -182,7 +182,8 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
     found = functions(models, of)
     for stem, function in found:
         right = [f"{z.re:.4g}" for z in function.zeros if z.is_in_right_half_plane]
-        listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else _listed(function.zeros)
+        zeros = ", ".join(f"{z.re:.4g}{z.im:+.4g}j" for z in function.zeros)
+        listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else zeros
         lines += ["\n", f"In {stem}, {function.tf} has zeros at {listed} rad/s."]
         lines += _bracket(function) if function.bracket else ()
     is_true = all(f.has_mirrored_real_zeros for _, f in found)
@@ -346,10 +347,6 @@ def functions(models: Models, of: tuple[str, ...]) -> list[tuple[str, TransferFa
 def _two(models: Models, of: tuple[str, ...]) -> tuple[TransferFacts, TransferFacts]:
     (_, one), (_, other) = functions(models, of)[:2]
     return one, other
-
-
-def _listed(zeros: tuple[RootFact, ...]) -> str:
-    return ", ".join(f"{z.re:.4g}{z.im:+.4g}j" for z in zeros)
 
 
 def _unexamined(reason: str) -> Finding:

@@ -31,13 +31,10 @@ from symflex.report.sections.formulas import ratio
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from flint import arb
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.loops import DynamicColocation, StabilityMap
-    from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
@@ -107,7 +104,8 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
         entries = one_of_each_pair(roots)
         if entries:
             shown_columns = columns_for(PAGE_COLUMNS, roots)
-            rows = tuple(_row(entry, shown_columns) for entry in entries[:LONGEST])
+            cells = (entry.cells(shown_columns, DIGITS, "±") for entry in entries[:LONGEST])
+            rows = tuple(tuple((exponents(cell),) for cell in row) for row in cells)
             heads = columns(*((column.head, "number") for column in shown_columns))
             count = sum(r.multiplicity for r in roots)
             cut = f" ({LONGEST} of {len(entries)} lines)" if len(entries) > LONGEST else ""
@@ -146,10 +144,6 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
             lines = (line.replace("+-", "±").replace("*", "·") for line in paragraph)
             found.append(tuple(x for line in lines for x in (line, "\n"))[:-1])
     return found
-
-
-def _row(entry: PrintedRoot, shown: Sequence[RootColumn]) -> tuple[Cell, ...]:
-    return tuple((exponents(cell),) for cell in entry.cells(shown, DIGITS, "±"))
 
 
 LOOP_HEADS: Final = columns(
