@@ -391,6 +391,22 @@ def test_sums_are_printed_as_a_person_writes_them(fact):
     assert shaped(parameters, output) == expected
 
 
+def test_dampers_beside_a_spring_are_collected_in_powers_of_s():
+    # A body on a mount whose second damper is a gain: (b + K)*s + k is the stiffness between both.
+    text = """symflex = 1
+parameters = { m = {}, b = {}, k = {}, K = {} }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "w"], k = "k" }
+elements.damper = { type = "damper", between = ["x", "w"], b = "b" }
+elements.gain = { type = "force_source", at = "x", f = "-K*s*(x - w)" }
+inputs.w = { displacement = "w" }
+outputs.X = "x"
+"""
+    assert printed(tf_of(text, "X", "w")) == ("(b + K)*s + k", "m*s^2 + (b + K)*s + k")
+    closed = text + 'definitions.Z = "b*s + k"\n'
+    assert printed(tf_of(closed, "X", "w")) == ("K*s + Z", "m*s^2 + K*s + Z")
+
+
 DELAYS = """[blocks]
 A = { type = "delay", T = "T_1" }
 B = { type = "delay", T = "T_2" }
