@@ -438,7 +438,8 @@ class DimensionSystem:
             if mixed:
                 return Measure(open=True)
             return replace(measures[0][1], cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
-        first_term, first = next(((t, m) for t, m in closed if not m.literal), closed[0])
+        # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
+        first_term, first = min(closed, key=lambda each: (each[1].literal, bool(each[1].unknowns)))
         for term, measure in closed:
             if term is first_term:
                 continue
