@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
 from symflex.expressions import Expression, Name, Product, Sum, names, power, product_of, sum_of
-from symflex.print.forms.arrange import Arranger, length
+from symflex.print.forms.arrange import Arranger, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -37,15 +37,18 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
         return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):
         return PrintedForm("definitions", *_from_closure(tf, tf.closed))
-    num, den = _rewritten(tf)
+
+    def tidied(part: Expression) -> Expression:
+        return _tidied(part, tf.base.index)
+
+    num, den = (rebuilt(e, tidied) for e in _rewritten(tf))
     if tf.closed is not None:
-        closed_num, closed_den = _from_closure(tf, tf.closed)
+        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, tf.closed))
         # A rational factor may stand differently in the two: take both parts from one of them then.
         if _same_parts(tf, tf.closed):
-            num, den = min(closed_num, num, key=length), min(closed_den, den, key=length)
-        elif length(closed_num, closed_den) <= length(num, den):
+            num, den = min(closed_num, num, key=reading), min(closed_den, den, key=reading)
+        elif reading(closed_num) + reading(closed_den) <= reading(num) + reading(den):
             num, den = closed_num, closed_den
-    num, den = (rebuilt(e, lambda part: _tidied(part, tf.base.index)) for e in (num, den))
     return PrintedForm("definitions", num, den)
 
 
