@@ -175,3 +175,17 @@ equations = ["m*s*v + v/d + k*x = F", "v = s*x"]
 """
     with pytest.raises(SpecError, match=r"terms of a sum disagree: 'N' and '1/s'"):
         symflex.loads(text)
+
+
+def test_units_are_inferred_beside_a_written_number():
+    # Of 2*m*Omega*s*y the 2 is a pure number, as nothing in the model says otherwise.
+    model = symflex.loads("""
+    symflex = 1
+    parameters = { m = "2 ug", k = "0.8 N/m", Omega = "5 rad/s" }
+    inputs.F = { unit = "N" }
+    outputs.Y = "y"
+    [equations]
+    unknowns = ["x", "y"]
+    equations = ["m*s^2*x + k*x - 2*m*Omega*s*y = F", "m*s^2*y + k*y + 2*m*Omega*s*x = 0"]
+    """)
+    assert model.transfer_function("Y", "F").unit == "m/N"
