@@ -389,7 +389,7 @@ SHAPES = {
     "a loop of typed decimals begins with s^2": (
         "", "(0.2*s + 2)*u/((s^2 + 0.6*s + 4) + (0.2*s + 2))", "(0.2*s + 2)/(s^2 + 0.8*s + 6)"),
     "two terms with a minus of three": (
-        "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b + c - a)*s + 1)"),
+        "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b - a + c)*s + 1)"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
                  "1/((J + m*(a + b)^2)*s^2 + 1)"),
 }  # fmt: skip
