@@ -166,9 +166,9 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if is_member:
         length = end - begin
     start = begin + (end - begin - length) / 2
-    strokes = (
-        _casing(cell, length) if cell.is_boxed else strokes_of(part, length, is_reversed=cell.is_reversed)
-    )
+    # The shaft of a planetary gear is on the side of one end; both others reach its ring.
+    is_reversed = len(cell.right) == 1 if part.type_name == "planetary_gear" else cell.is_reversed
+    strokes = _casing(cell, length) if cell.is_boxed else strokes_of(part, length, is_reversed=is_reversed)
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
     if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):

@@ -163,6 +163,8 @@ class DimensionSystem:
             scope.along, Measure(unit_of("m").dimension)
         )  # of x, by what varies along it
         self._coordinate: Measure | None = None
+        # What terms with a written number tell, if no such number in the model has a unit.
+        self._guesses: list[Measure] = []
         self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
 
@@ -245,6 +247,9 @@ class DimensionSystem:
 
     def finish(self) -> Mapping[str, CycleReading]:
         """Return how every parameter given in cycles is read; contradictions become problems."""
+        before = dict(self._solved)
+        if not all(self._learn(self._reduce(ratio)) for ratio in self._guesses):
+            self._solved = before
         angular = {name: uses[0] for name, uses in self._uses.items()}
         for name, uses in self._uses.items():
             other = next((u for u in uses if u.angular != uses[0].angular), None)
@@ -437,14 +442,18 @@ class DimensionSystem:
             if mixed:
                 return Measure(open=True)
             return replace(measures[0][1], cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
-        first_term, first = next(((t, m) for t, m in closed if not m.literal), closed[0])
+        # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
+        first_term, first = min(closed, key=lambda each: (each[1].literal, bool(each[1].unknowns)))
         for term, measure in closed:
             if term is first_term:
                 continue
             if (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns):
                 continue
             loose = measure.literal or first.literal
-            if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
+            ratio = measure.times(first.power(-1))
+            if loose:
+                self._guesses.append(ratio)
+            elif not self._learn(self._reduce(ratio)):
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
                 message = f"terms of a sum disagree: '{there}' and '{here}'"
                 self._note(
@@ -484,11 +493,11 @@ class DimensionSystem:
                     unknowns[other] = unknowns.get(other, Fraction(0)) + weight * exponent
         return replace(measure, dimension=dimension, unknowns=tuple((v, e) for v, e in unknowns.items() if e))
 
-    def _learn(self, measure: Measure, *, only_check: bool = False) -> bool:
+    def _learn(self, measure: Measure) -> bool:
         """Take ``measure = dimensionless`` as an equation; False when it contradicts what is known."""
         if not measure.unknowns:
             return measure.dimension == DIMENSIONLESS
-        if only_check or measure.is_extreme:
+        if measure.is_extreme:
             return True
         (variable, exponent), *rest = measure.unknowns
         others = tuple((v, -e / exponent) for v, e in rest)

@@ -328,6 +328,12 @@ def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> Nod
             f"{what}: '{text.value[:80]}' is not a node",
             text.span,
             (name_hint(node) or "").partition(", which")[0]
+            or ("the ground is 'ground'" if node == "0" else "")
+            or (
+                f"a name begins with a letter: write 'n{node}'"
+                if node[:1].isdigit() and node.isalnum()
+                else ""
+            )
             or "a node is a name, or name.x, name.y or name.theta of a planar node",
         )
         return None

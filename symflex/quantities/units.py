@@ -233,9 +233,13 @@ _INSTEAD: Final[dict[str, str]] = {
         "cycle": "cycles cyc",
         "g_n": "g_0 g0 gn",
         "%": "percent",
+        "cm^3": "cc ccm",
+        "L/min": "lpm",
+        "mPa*s": "cP",
     }.items()
     for written in many.split()
 } | {
+    "gpm": "write it in L/min: a US gallon is 3.785411784 L",
     "lbs": "did you mean 'lb' (mass) or 'lbf' (force)?",
     "pi": "write pi before the unit, as in '2*pi rad/s'",
     "\u03c0": "write pi before the unit, as in '2*pi rad/s'",
@@ -312,8 +316,12 @@ def unit_hint(symbol: str) -> str | None:
     >>> unit_hint("KN"), unit_hint("kgmm")
     ("did you mean 'kN'?", "did you mean 'kg*mm'?")
     """
-    if symbol in _INSTEAD:
-        return _INSTEAD[symbol]
+    for written in (symbol, symbol.lower()):
+        if written in _INSTEAD and (written == symbol or len(symbol) > 2):  # noqa: PLR2004
+            return _INSTEAD[written]
+    small = "k" + symbol[1:]
+    if symbol[0] == "K" and (unit_named(small) or run_together(small)):
+        return f"did you mean '{small}'?"
     known = _usual_symbols()
     # Of mPa and MPa, 'MPA' is nearer to the one with more letters as written.
     same = [name for name in known if name.lower() == symbol.lower()]

@@ -64,7 +64,10 @@ if TYPE_CHECKING:
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
 
-LOSSY_TAPER = ("a loss factor is", "divide it into uniform members")
+LOSSY_TAPER = (
+    "a loss factor is",
+    "give a loss time, eta in seconds, in its place; or divide it into uniform members, which take eta_s",
+)
 """What is not available of members that taper, and what to do."""
 NAMES_SHOWN = 40
 """Names of parameters without value that one message lists."""

@@ -144,7 +144,7 @@ class PartedLaw:
                 divisor = divisor / piece
             else:
                 message = "a coefficient over what holds s and x together is not available yet"
-                hint = "let losses be the same all along x"
+                hint = "let the loss time be the same all along x, or divide the member where it changes"
                 raise ModelError(Diagnostic("SF910", message, None, hint))
         for power, coefficient in by_powers(ring, mixed.expand()).items():
             yield Summand(power, divisor, along * Factored.polynomial(ring, coefficient))

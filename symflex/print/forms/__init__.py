@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.print.forms.arrange import Arranged, Arranger, length
+from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.notation import reachable
@@ -264,10 +264,10 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     return found if tf.length <= LARGE else found[:1]
 
 
-def _length(form: PrintedForm) -> int:
+def _length(form: PrintedForm) -> float:
     """Return the length of all but the model's definitions, which may stay closed."""
     parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
-    return length(*parts)
+    return sum(map(reading, parts))
 
 
 __all__ = [

@@ -23,6 +23,8 @@ from symflex.expressions import (
     Product,
     Sum,
     format_expression,
+    names,
+    nodes,
     number,
     power,
     product_of,
@@ -159,7 +161,7 @@ class Arranger:
             content = polynomial.term_content()
             rest = self.collected(polynomial / content, nested=True)
             tried.insert(1, product_of([self._flat(content), rest]))
-        return min(tried, key=length)
+        return min(tried, key=reading)
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times sums of functions.
@@ -229,7 +231,8 @@ class Arranger:
         if self._most_shared(terms) is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
             return self._sum(terms)
         parts = sorted(self._parts(terms), key=lambda p: p[0])
-        return sum_of(_share_sums([part for _, part in parts]))
+        nested = sum_of(_share_sums([part for _, part in parts]))
+        return min(nested, self._sum(terms), key=reading) if len(terms) <= SHORT else nested
 
     def _parts(self, terms: dict[tuple[int, ...], int]) -> list[tuple[tuple[int, ...], Expression]]:
         """Return the groups of a sum with their places in print."""
@@ -368,6 +371,10 @@ def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int
 
 SMALL = 400
 """Number of terms up to which every arrangement of a sum is tried."""
+SHORT = 4
+"""Number of terms up to which a nested sum is compared with the plain one."""
+NESTED = 1.3
+"""How many times as long as a nested polynomial one by powers of s may be."""
 READABLE = 4
 """Depth of parentheses that reads easily."""
 
@@ -497,6 +504,26 @@ def _cost(expression: Expression) -> int:
 def length(*expressions: Expression) -> int:
     """Return how many characters expressions take."""
     return sum(len(format_expression(e)) for e in expressions)
+
+
+def reading(expression: Expression) -> float:
+    """Return the length of an expression, and more if it is nested as ``s*(a*s + b) + c``.
+
+    So is ``omega*(2*zeta*s + omega) + s^2``.
+    """
+    is_nested = any(
+        isinstance(term, Product)
+        and any(Name(LAPLACE) in inner and {*inner} & {*term.factors} for inner in map(_inside, term.factors))
+        for total in nodes(expression)
+        if isinstance(total, Sum)
+        for term in total.terms
+    )
+    return length(expression) * (NESTED if is_nested else 1)
+
+
+def _inside(factor: Expression) -> tuple[Expression, ...]:
+    """Return the names within a sum."""
+    return names(factor) if isinstance(factor, Sum) else ()
 
 
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:

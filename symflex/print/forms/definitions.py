@@ -6,15 +6,17 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
-from symflex.expressions import Expression, Name, Product, Sum, product_of, sum_of
-from symflex.print.forms.arrange import Arranger, length
+from symflex.expressions import Expression, Name, Product, Sum, names, power, product_of, sum_of
+from symflex.print.forms.arrange import Arranger, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.shapes import of_powers, powers_of, rebuilt
+from symflex.print.forms.shapes import S, of_powers, powers_of, rebuilt
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from flint import fmpz_mpoly
 
     from symflex.equations.elimination import Closure
@@ -35,22 +37,27 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
         return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):
         return PrintedForm("definitions", *_from_closure(tf, tf.closed))
-    num, den = _rewritten(tf)
+
+    def tidied(part: Expression) -> Expression:
+        return _tidied(part, tf.base.index)
+
+    num, den = (rebuilt(e, tidied) for e in _rewritten(tf))
     if tf.closed is not None:
-        closed_num, closed_den = _from_closure(tf, tf.closed)
+        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, tf.closed))
         # A rational factor may stand differently in the two: take both parts from one of them then.
         if _same_parts(tf, tf.closed):
-            num, den = min(closed_num, num, key=length), min(closed_den, den, key=length)
-        elif length(closed_num, closed_den) <= length(num, den):
+            num, den = min(closed_num, num, key=reading), min(closed_den, den, key=reading)
+        elif reading(closed_num) + reading(closed_den) <= reading(num) + reading(den):
             num, den = closed_num, closed_den
-    return PrintedForm("definitions", rebuilt(num, _with_factor), rebuilt(den, _with_factor))
+    return PrintedForm("definitions", num, den)
 
 
-def _with_factor(part: Expression) -> Expression:
-    """Return a sum with what all its terms share in front: ``R*(C*s + 1)`` for ``R*C*s + R``.
+def _tidied(part: Expression, order: Mapping[str, int]) -> Expression:
+    """Return a sum by powers of s, with what all its terms share in front: ``R*(C*s + 1)``.
 
     In a product, what is no sum stands before the sums.
     """
+    part = _by_powers(part, order) if isinstance(part, Sum) else part
     if isinstance(part, Product):
         places = [n for n, f in enumerate(part.factors) if isinstance(f, Sum)] or [0]
         between = part.factors[places[0] : places[-1]]
@@ -71,6 +78,35 @@ def _with_factor(part: Expression) -> Expression:
         of_powers(x, {b: n - shared.get(b, 0) for b, n in p.items() if n != shared.get(b)}) for x, p in terms
     )
     return product_of([of_powers(Fraction(1), shared), sum_of(rest)])
+
+
+def _by_powers(total: Sum, order: Mapping[str, int]) -> Expression:
+    """Return ``M*s^2 + (b + K)*s + k`` for ``b*s + k + s*(M*s + K)``, by falling powers of s."""
+    parts: dict[int, list[Expression]] = {}
+    others = list[Expression]()
+    for term in total.terms:
+        opened = [term]
+        if (
+            isinstance(term, Product)
+            and isinstance(term.factors[1], Sum)
+            and {*names(term.factors[0])} == {S}
+        ):
+            opened = [product_of([term.factors[0], t, *term.factors[2:]]) for t in term.factors[1].terms]
+        split = [powers_of(t) for t in opened]
+        if any(S in names(base) and base != S for _, powers in split for base in powers):
+            others.append(term)
+            continue
+        for front, powers in split:
+            coefficient = of_powers(front, {b: n for b, n in powers.items() if b != S})
+            parts.setdefault(powers.get(S, 0), []).append(coefficient)
+    if (others or not any(parts)) and all(len(each) == 1 for n, each in parts.items() if n):
+        return total
+    by_powers = []
+    for n in sorted(parts, reverse=True):
+        if n:
+            parts[n].sort(key=lambda e: [order.get(name.name, 0) for name in names(e)])
+        by_powers.append(product_of([_tidied(sum_of(parts[n]), order), power(S, n)]))
+    return sum_of([*by_powers, *others])
 
 
 def _is_large(tf: TransferFunction) -> bool:

@@ -179,7 +179,8 @@ class _Signs:
         below, whole = 2 * sum(isinstance(t, Negative) for t in terms), Sum(tuple(terms))
         has_number = any(isinstance(t, Number) for t in (*terms, *turned))
         has_s = S in names(rebuilt(whole, lambda part: number(1) if isinstance(part, Call) else part))
-        may_turn = below > len(terms) if has_s else below == len(terms) and (self.turns or has_number)
+        may_turn = below > len(terms) and (has_s or not has_number)
+        may_turn |= not has_s and below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0
         is_negative = sign < 0 if sign else below == 2 * len(terms)
         return negative(sum_of(_led(_gathered(turned)))) if is_negative else sum_of(_led(_gathered(terms)))
@@ -452,14 +453,16 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
 
 
 def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
-    """Return the number by which a sum is divided to have most of the numbers that are wanted."""
+    """Return the number that divides a sum so that it has the numbers wanted, or ``s^n`` in front."""
     fronts = [abs(powers_of(t)[0]) for t in total.terms]
+    is_monic = powers_of(total.terms[0])[1].keys() == {S}
     tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
 
-    def rank(divisor: Fraction) -> tuple[int, bool, int]:
+    def rank(divisor: Fraction) -> tuple[bool, bool, int, bool, int]:
         divided = [f / divisor for f in fronts]
-        is_whole = [x.denominator == 1 for x in divided]
-        return sum(x in wanted for x in divided), is_whole[0], sum(is_whole)
+        is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
+        as_usual = is_monic and divided[0] == 1
+        return all(is_wanted), as_usual, sum(is_wanted), is_whole[0], sum(is_whole)
 
     return max(tried, key=rank)
 

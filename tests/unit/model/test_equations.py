@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symflex
-from symflex.errors import ModelError
+from symflex.errors import ModelError, SpecError
 
 S = 0.7 + 3.1j
 
@@ -161,3 +161,31 @@ def test_what_equations_leave_free_cancels_and_stays_a_hidden_mode():
     found = model.transfer_function("X", "F").bind().pole_zero_map()
     assert [float(p.re) for p in found.poles] == [-1]
     assert [float(h.root.re) for h in found.hidden] == [2]
+
+
+def test_terms_that_disagree_are_shown_in_full_units():
+    # Beside m*s*v and v/d alone, whose unknown v has no unit yet, neither would be a force.
+    text = """symflex = 1
+parameters = { m = "2 kg", k = "400 N/m", d = "0.1 m" }
+inputs.F = { unit = "N" }
+outputs.V = "v"
+[equations]
+unknowns = ["v", "x"]
+equations = ["m*s*v + v/d + k*x = F", "v = s*x"]
+"""
+    with pytest.raises(SpecError, match=r"terms of a sum disagree: 'N' and '1/s'"):
+        symflex.loads(text)
+
+
+def test_units_are_inferred_beside_a_written_number():
+    # Of 2*m*Omega*s*y the 2 is a pure number, as nothing in the model says otherwise.
+    model = symflex.loads("""
+    symflex = 1
+    parameters = { m = "2 ug", k = "0.8 N/m", Omega = "5 rad/s" }
+    inputs.F = { unit = "N" }
+    outputs.Y = "y"
+    [equations]
+    unknowns = ["x", "y"]
+    equations = ["m*s^2*x + k*x - 2*m*Omega*s*y = F", "m*s^2*y + k*y + 2*m*Omega*s*x = 0"]
+    """)
+    assert model.transfer_function("Y", "F").unit == "m/N"

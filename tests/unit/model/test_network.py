@@ -79,6 +79,19 @@ def test_elements_nodes_outputs_and_inputs_may_share_a_name():
     assert pipeline.bind(tf)(1 + 0j) == 1
 
 
+def test_nodes_that_are_numbers_are_told_how_to_be_named():
+    found = {}
+    for node in ("0", "1"):
+        with pytest.raises(SpecError) as error:
+            pipeline.loads(f"""symflex = 1
+elements.R = {{ type = "resistor", between = ["a", "{node}"], R = 1 }}
+inputs.V = {{ voltage = "a" }}
+outputs.I = "V.i"
+""")
+        found[node] = error.value.diagnostics[0].hint
+    assert found == {"0": "the ground is 'ground'", "1": "a name begins with a letter: write 'n1'"}
+
+
 def test_a_name_that_can_be_read_two_ways_is_refused():
     text = f'{HEADER}[parameters]\nx = 1\n[elements]\nM = {{ type = "mass", at = "x", m = 1 }}\n'
     assert set(codes(text + MOVING)) == {"SF211"}

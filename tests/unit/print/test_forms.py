@@ -262,7 +262,7 @@ V = { voltage = "v" }
 W = "s*p"
 """
     found = printed(tf_of(text, "W", "V"), "definitions")
-    assert found == ("K_m*sqrt(R)", "J*s*(L*s + R) + K_m^2*R")
+    assert found == ("K_m*sqrt(R)", "J*L*s^2 + R*J*s + K_m^2*R")
 
 
 def test_an_undamped_pair_has_no_term_in_s():
@@ -380,6 +380,16 @@ SHAPES = {
     "what a gain multiplies follows the plant": (
         "K = {}", "K*(s^2 + 2*s + 4)*u/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))",
         "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
+    "a resonance given in hertz, by powers of s": (
+        "zeta = 0.1, f = '5 Hz'", "u/(s^2 + 2*zeta*f*s + f^2)", "1/(s^2 + 4*pi*zeta*f*s + 4*pi^2*f^2)"),
+    # Sallen & Key 1955, with unity gain.
+    "a filter of second order, by powers of s": (
+        "R_1 = {}, R_2 = {}, C_1 = {}, C_2 = {}", "u/(C_2*s*(R_1*(R_2*C_1*s + 1) + R_2) + 1)",
+        "1/(R_1*R_2*C_1*C_2*s^2 + C_2*(R_1 + R_2)*s + 1)"),
+    "a loop of typed decimals begins with s^2": (
+        "", "(0.2*s + 2)*u/((s^2 + 0.6*s + 4) + (0.2*s + 2))", "(0.2*s + 2)/(s^2 + 0.8*s + 6)"),
+    "two terms with a minus of three": (
+        "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b - a + c)*s + 1)"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
                  "1/((J + m*(a + b)^2)*s^2 + 1)"),
 }  # fmt: skip
@@ -389,6 +399,22 @@ SHAPES = {
 def test_sums_are_printed_as_a_person_writes_them(fact):
     parameters, output, expected = SHAPES[fact]
     assert shaped(parameters, output) == expected
+
+
+def test_dampers_beside_a_spring_are_collected_in_powers_of_s():
+    # A body on a mount whose second damper is a gain: (b + K)*s + k is the stiffness between both.
+    text = """symflex = 1
+parameters = { m = {}, b = {}, k = {}, K = {} }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "w"], k = "k" }
+elements.damper = { type = "damper", between = ["x", "w"], b = "b" }
+elements.gain = { type = "force_source", at = "x", f = "-K*s*(x - w)" }
+inputs.w = { displacement = "w" }
+outputs.X = "x"
+"""
+    assert printed(tf_of(text, "X", "w")) == ("(b + K)*s + k", "m*s^2 + (b + K)*s + k")
+    closed = text + 'definitions.Z = "b*s + k"\n'
+    assert printed(tf_of(closed, "X", "w")) == ("K*s + Z", "m*s^2 + K*s + Z")
 
 
 DELAYS = """[blocks]

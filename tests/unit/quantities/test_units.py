@@ -212,6 +212,10 @@ def test_an_unknown_unit_brings_a_hint():
         ("inches", "in"),
         ("degrees", "deg"),
         ("micron", "um"),
+        ("Kgm2", "kgm2"),
+        ("KNm", "kNm"),
+        ("Volt", "V"),
+        ("cP", "mPa*s"),
     ]:
         assert unit_hint(written) == f"did you mean '{meant}'?", written
 
