@@ -469,7 +469,7 @@ class FitOptions:
         "--tf",
         multiple=True,
         metavar="OUT/IN",
-        help="Transfer function of --base; one for each response.",
+        help="Transfer function of --base; one for each response.  Without --base: responses to fit.",
     )
     modes: int | None = option(
         None, "--modes", least=1, most=50, help="Number of resonances.  [default: chosen by --criterion]"

@@ -31,9 +31,19 @@ if TYPE_CHECKING:
 def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
     """Fit resonances to measured responses, which share their poles; see :func:`.fitting.fit_resonances`.
 
-    SF902 for a name the base does not have, or more or fewer of them than responses.
+    Raises
+    ------
+    UsageError
+        SF902 for a name the base does not have, or more or fewer of them than responses; without a base, for
+        a name that no response has.
     """
     if given.base is None:
+        names = [response.name for response in measured]
+        for tf in given.tfs:
+            if names.count(tf) != 1:
+                message = f"no response, or more than one, is called '{tf[:64]}'"
+                raise UsageError(Diagnostic("SF902", message, None, f"responses: {', '.join(names)}"))
+        measured = [response for response in measured if not given.tfs or response.name in given.tfs]
         return fit_resonances(measured, None, given)
     bases = _bases(len(measured), given.base, given)
     return fit_resonances(measured, bases, replace(given, slope=None))

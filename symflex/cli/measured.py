@@ -47,8 +47,6 @@ def fit(given: FitOptions) -> int:
     from symflex.data.measurement import prepared
     from symflex.files.write import write_atomically
 
-    if given.tfs and given.base is None:
-        raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
     if given.base is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
     if given.loop and not given.output:
@@ -64,21 +62,13 @@ def fit(given: FitOptions) -> int:
         Specification(str(given.base), tuple(map(str, given.allow_outside)), {}).load()
     read = _read(given)
     every = prepared(read, given.band, given.averages, given.window)
-    measured = every
     if given.driving:
-        measured = tuple(response for response in every if response.name == given.driving)
-        if len(measured) != 1:
-            hint = "responses: " + ", ".join(response.name for response in every)
-            raise UsageError(
-                Diagnostic(
-                    "SF902", f"no response, or more than one, is called '{given.driving[:64]}'", None, hint
-                )
-            )
         if given.base is not None:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
+        given = replace(given, tfs=(given.driving,))
     budget = entered_budget()
     with ProgressBar() as bar, budget.told(bar).entered():
-        found = fitted(measured, given)
+        found = fitted(every, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
         hint = "leave out --strict to print it anyway"

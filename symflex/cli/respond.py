@@ -49,14 +49,17 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         response_text,
         time_response,
     )
-    from symflex.data.measurement.input_signal import read_signal
+    from symflex.data.measurement.input_signal import ENDINGS, read_signal
     from symflex.transfer import BoundNested
 
     _check_place(given)
     if given.shaped is None and (given.joint or given.modes != 1):
         raise UsageError(Diagnostic("SF902", "--modes and --joint need --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
-    signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
+    place = Path(given.to)
+    signal = read_signal(place) if place.suffix.lower() in ENDINGS else None
+    for guess in signal.guesses if signal else ():
+        note(f"{place}: {guess}")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)

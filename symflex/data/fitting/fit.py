@@ -62,6 +62,8 @@ DROWNED_DB = 6.0
 """Misfit of a fit without poles from which noise is as large as the response."""
 OVERDAMPED = 2.0
 """Damping ratio of a pair of zeros that had better be called two real ones."""
+FLAT = 0.25
+"""Damping ratio of a pair of zeros from which no sharp trough shows where it lies."""
 LEAST_DAMPING = 0.05
 """Damping ratios of zeros below this are not held against their own error."""
 DEFAULTS = FitOptions()
@@ -426,6 +428,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     found = fit.resonances
     errors = fit.standard_errors()
     low, high = fit.problem.band
+    is_exact = fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE
     warnings = _said_of_lines(fit)
     for i in range(found.count):
         if fit.modes[i] and not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
@@ -446,6 +449,11 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 warnings.append(
                     f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
                     "zeros, which stand for behaviour that a gain, a power of s and resonances cannot have"
+                )
+            elif abs(found.zeta_z[r, i]) > FLAT and not is_exact:
+                warnings.append(
+                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g} and no sharp "
+                    "trough: modes outside the band may move it by more than its standard error"
                 )
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
@@ -479,7 +487,6 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
             "the model lacks something that the data show" + advice
         )
-    is_exact = fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE
     if fit.refined.correlation > SMOOTH and not is_exact:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
         warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")

@@ -30,6 +30,10 @@ LEAST_OFF = 0.1
 """Deviation of the logarithm below which a line cannot hide a resonance and is left to the fit."""
 NARROW = 0.1
 """Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
+MOST_DIGITS = 6
+"""Of numbers that count as rounded."""
+EXACT, SMALLEST = 1e-9, 1e-13
+"""Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
 FIRST_SHARE = 4
 """Part of the lines of a thinner grid, its inverse, that is spread evenly."""
 CAP = 0.05
@@ -115,6 +119,26 @@ def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> W
         heappush(intervals, interval(low, middle))
         heappush(intervals, interval(middle, high))
     return np.array(sorted(chosen), np.int64)
+
+
+def written_step(numbers: Real) -> Real:
+    """Return how far apart numbers are that a file's few digits can tell, at each; 0 where it has many.
+
+    Examples
+    --------
+    >>> written_step(np.array([9.985, 10.23, 104.6])).tolist(), written_step(np.array([np.pi, 2.0])).tolist()
+    ([0.001, 0.01, 0.1], [0.0, 0.0])
+    """
+    size = np.abs(numbers)
+    found: Real = np.zeros(size.size)
+    decade = np.floor(np.log10(np.maximum(size, SMALLEST)) + EXACT) + 1
+    for place in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
+        for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS):
+            step = 10 ** (place - digits)
+            if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + SMALLEST):
+                found = np.maximum(found, step)
+                break
+    return found
 
 
 def single_lines(omega: Real, resonances: Resonances) -> Whole:

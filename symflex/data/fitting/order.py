@@ -454,17 +454,24 @@ def _better_of(
 def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Candidate:
     """Return the fit without the pairs of zeros that lie outside the band and explain nothing.
 
-    A pair far above the band is left out; one far below is a power of s, where that may be chosen.
+    A pair far above the band is left out; one far below is a power of s, where that may be chosen, and so are
+    two real zeros of which one lies below and one above.
     """
     low, high = problem.band
     for r in range(len(problem.lines)):
         for i in reversed(range(best.refined.resonances.count)):
             now = best.refined.resonances
-            place = abs(now.omega_z[r, i])
-            if not np.isfinite(place) or low <= place <= high:
+            place, twice = abs(now.omega_z[r, i]), 2 * now.zeta_z[r, i]
+            is_apart = place < low * abs(twice) and abs(twice) * place > high  # two real ones
+            if not np.isfinite(place) or (low <= place <= high and not is_apart):
                 continue
             omega_z, gain, slope = now.omega_z.copy(), now.gain.copy(), now.slope.copy()
-            if place < low:
+            if is_apart:
+                slope[r] += 1
+                gain[r] *= twice / place
+                if slope[r] not in problem.slopes:
+                    continue
+            elif place < low:
                 slope[r] += 2
                 gain[r] *= np.sign(omega_z[r, i]) / place**2
                 if slope[r] not in problem.slopes:

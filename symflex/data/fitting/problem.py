@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.data.fitting.lines import telling_lines
+from symflex.data.fitting.lines import telling_lines, written_step
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
 from symflex.data.fitting.starts import generous_fit
@@ -42,6 +42,7 @@ PATIENCE = 2
 """Numbers of pairs tried after the best one."""
 FEWEST = 5
 """Lines from which the noise is guessed at all."""
+DECIBEL, DEGREE = np.log(10) / 20, np.pi / 180
 LARGEST = 20.0
 """Power of an error, over what is expected of it, beyond which it counts as no more than this."""
 
@@ -312,7 +313,7 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
         deviation = line.deviation
         if deviation is None or line.measured.coherence is None:
             power = np.abs(model - line.measured.values) ** 2 / 2
-            variance = _variance(power, line.omega, np.abs(model)) / freedom
+            variance = _variance(power, line.omega, np.abs(model), _rounding(line, model)) / freedom
             size = np.abs(line.measured.values)
             deviation = np.maximum(np.sqrt(variance) / size, LEAST)
         lines.append(replace(line, deviation=deviation))
@@ -323,11 +324,35 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
     )
 
 
-def _variance(power: Real, omega: Real, size: Real) -> Real:
-    """Return the smooth expectation of the power of each part on every line."""
+def _rounding(line: FittedLines, model: Complex) -> Real:
+    """Return the variance of each part that rounded frequencies, and rounded values, have at most.
+
+    Frequencies may be rounded in Hz or in rad/s, values in any of the ways in which files write them.
+    """
+    omega, values = line.omega, line.measured.values
+    size, turn = np.abs(values), np.angle(values)
+    written = (
+        (1.0, values.real), (1.0, values.imag), (1.0, size), (size * DECIBEL, np.log(size) / DECIBEL),
+        (size, turn), (size * DEGREE, turn / DEGREE),
+    )  # fmt: skip
+    rows = [np.sum([(scale * written_step(numbers)) ** 2 for scale, numbers in written], axis=0)]
+    if line.every.measured.spacing_hz is None:
+        steps = np.hypot(written_step(omega), 2 * np.pi * written_step(omega / (2 * np.pi)))
+        rows.append(np.abs(np.gradient(model, omega) * steps) ** 2)
+    return np.stack([row for row in rows if row.any()] or [np.zeros(0)]) / 24  # of two parts, a twelfth
+
+
+def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -> Real:
+    """Return the smooth expectation of the power of each part on every line.
+
+    Each row of ``known`` is a part of it, of which at most the whole is there.
+    """
     x = omega / np.exp(np.mean(np.log(omega)))
     shapes = np.stack([size**2, *(x ** float(p) for p in POWERS)])
     shapes = shapes / np.mean(shapes, axis=1, keepdims=True)
+    most = np.full(shapes.shape[0], np.inf)
+    if known is not None and known.size:
+        shapes, most = np.concatenate((shapes, known)), np.append(most, np.ones(known.shape[0]))
     # The square of a variance has to be a number, of exact data too.
     floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny ** 0.4)
     power = np.maximum(power, floor)
@@ -337,4 +362,5 @@ def _variance(power: Real, omega: Real, size: Real) -> Real:
         # Gaussian errors reach this once in a billion lines; what is larger is no noise.
         bounded = np.minimum(power, LARGEST * expected)
         shares = shares * np.sqrt((shapes @ (bounded / expected**2)) / (shapes @ (1 / expected)))
+        shares = np.minimum(shares, most)
     return np.asarray(shares @ shapes, np.float64)

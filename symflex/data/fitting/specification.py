@@ -119,7 +119,10 @@ def _written(
         if fit.problem.free.gain:
             parts.append(names.parameter("c_fit"))
             doc = f"gain, {_said_error(errors.gain[r])}"
-            parameters[parts[-1]] = {"value": _exact(found.gain[r]), "assume": "real", "doc": doc}
+            value: object = _exact(found.gain[r])
+            if not base.path and (unit := fit.measured[r].unit) not in ("", "1"):
+                value = f"{found.gain[r]:.{DIGITS}g} ({unit})" + (f"*s^({base.slope})" if base.slope else "")
+            parameters[parts[-1]] = {"value": value, "assume": "real", "doc": doc}
         for own, more, factors in (_pairs(fit, r, errors, names), _beside(fit, r, errors, names)):
             parameters |= own
             blocks |= more
@@ -134,7 +137,7 @@ def _written(
         sections |= {"inputs": {source_name: {}}, "outputs": expressions}
     else:
         sections |= _loop(loop, source_name, expressions, {*used, *parameters, *blocks})
-        unit = fit.bases[0].unit
+        unit = fit.bases[0].unit if fit.bases[0].path else fit.measured[0].unit
         doc = f"gain of the loop from {outputs[0]}: symflex stability --gain {loop} tells which are stable"
         parameters[loop] = {"value": f"1 1/({unit})" if unit not in ("", "1") else 1, "doc": doc}
     if copied is not None:

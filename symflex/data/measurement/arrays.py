@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -61,44 +61,46 @@ _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherenc
 
 
 def read_npz(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from a numpy archive; nothing in it is unpickled.
-
-    SF601 no such archive; otherwise as :func:`responses_of`; SF607 too large.
-    """
-    try:
-        arrays = read_archive(data, MAX_BYTES, MAX_RESPONSES)
-    except ValueError as error:
-        raise _unreadable(name, "a numpy archive (.npz)", error) from None
-    except OverflowError:
-        raise _too_large(name) from None
-    return responses_of(arrays, name, stem, asked)
+    """Read responses from a numpy archive; as :func:`arrays_in` and :func:`responses_of`."""
+    return responses_of(arrays_in(name, data, ".npz"), name, stem, asked)
 
 
 def read_npy(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from one array, a matrix of columns; SF601 where it is none."""
-    try:
-        array = read_array(data)
-    except ValueError as error:
-        raise _unreadable(name, "a numpy array (.npy)", error) from None
-    return responses_of({"array": array}, name, stem, asked)
+    """Read responses from one array, a matrix of columns; as :func:`read_npz`."""
+    return responses_of(arrays_in(name, data, ".npy"), name, stem, asked)
 
 
 def read_mat(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from a MATLAB file of version 4 to 7.
+    """Read responses from a MATLAB file of version 4 to 7; as :func:`read_npz`."""
+    return responses_of(arrays_in(name, data, ".mat"), name, stem, asked)
 
-    SF601 no such file, version 7.3, or a file of objects alone; otherwise as :func:`responses_of`; SF607 too
-    large.
+
+_FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
+    ".npz": ("a numpy archive (.npz)", lambda data: read_archive(data, MAX_BYTES, MAX_RESPONSES)),
+    ".npy": ("a numpy array (.npy)", lambda data: {"array": read_array(data)}),
+    ".mat": ("a MATLAB file (.mat)", lambda data: read_variables(data, MAX_BYTES)),
+}
+"""What files of arrays are, and how they are read, by the end of their names."""
+
+
+def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
+    """Return the arrays of a .npz, .npy or .mat file; nothing in it is unpickled.
+
+    SF601 no such file, a MATLAB file of version 7.3, or one of objects alone; SF607 too large.
     """
+    kind, read = _FILES[suffix]
     try:
-        arrays = read_variables(data, MAX_BYTES)
+        arrays = read(data)
     except NewerFileError:
         message = f"'{name}' is a MATLAB file of version 7.3"
         hint = "in MATLAB: load('FILE.mat'), then save('FILE.mat', '-v7')"
         raise DataError(Diagnostic("SF601", message, None, hint)) from None
     except (ValueError, zlib.error) as error:
-        raise _unreadable(name, "a MATLAB file (.mat)", error) from None
+        raise _unreadable(name, kind, error) from None
     except OverflowError:
         raise _too_large(name) from None
+    if suffix != ".mat":
+        return arrays
     objects = {k: a.item() for k, a in arrays.items() if a.dtype.kind == "O" and a.size}
     plain = {k: a for k, a in arrays.items() if a.dtype.kind != "O" and not k.startswith("__") and k}
     objects = {k: o for k, o in objects.items() if isinstance(o, ClassName) and k}
@@ -112,7 +114,7 @@ def read_mat(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Measur
             f"(w in rad/s, unless {variable}.FrequencyUnit says Hz: then call it f)"
         )
         raise DataError(Diagnostic("SF601", message, None, hint))
-    return responses_of(plain, name, stem, asked)
+    return plain
 
 
 def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
@@ -137,7 +139,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     arrays = _with_axes(arrays)
     if "=" in asked:
         arrays = _renamed(arrays, asked, name)
-    matrix = _matrix_of(arrays)
+    matrix = matrix_of(arrays)
     if matrix is not None and "=" not in asked:
         return _from_matrix(*matrix, name, stem, asked)
     if asked and "=" not in asked:
@@ -269,7 +271,7 @@ def _responses(
     return found
 
 
-def _matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
+def matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
     """Return the matrix that is all a file holds, its first column going up; rows are turned to columns."""
     large = [(k, a) for k, a in arrays.items() if a.size > 2 and a.dtype.kind in "fciu"]  # noqa: PLR2004
     if len(large) != 1 or large[0][1].ndim != 2:  # noqa: PLR2004

@@ -37,8 +37,8 @@ _WORDS: Final = {
     "real": "re real realteil réel réelle reale zre zreal z' zs' inphase",
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
-    "modulus module modulo módulo level spl |h| |z| z zmod impedance betrag verstärkung pegel logmag linmag "
-    "db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
+    "modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag verstärkung pegel logmag "
+    "linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
@@ -530,7 +530,7 @@ def _groups(
         guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
         found = [(best.meaning.label, {"power": best})]
     sizes = [c for c in rest if c.meaning.kind == "magnitude"]
-    if not found and is_asked and len(sizes) == 1:
+    if not found and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO):
         found = [("", {"magnitude": sizes[0]})]
     return found
 
@@ -780,7 +780,9 @@ def ask(columns: Sequence[DataColumn]) -> str:
     """Return the hint with the option that says what columns are, the likelier reading first."""
     is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
     places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [int(is_indexed)]
+    lines = columns[places[0]].numbers
     rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]
+    rest = [i for i in rest if not np.array_equal(columns[i].numbers, lines)]
     rest = rest[1:] if is_indexed and len(rest) > 2 and rest[0] == 0 else rest  # noqa: PLR2004
     if len(rest) == 1:
         return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"

@@ -37,7 +37,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.text_table import COMMENTS, SIGNS, NumberBlock, TextTable, bare, cut
+from symflex.data.measurement.text_table import COMMENTS, SIGNS, NumberBlock, TextTable, bare, cut, number
 from symflex.errors import DataError, Diagnostic, Source, Span
 
 _COMMENT_FIELD = re.compile(r"\W*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
@@ -47,6 +47,8 @@ _IMPLIED: Final = {
     ".zma": ("f,mag,phase_deg", "Hz, Ohm, degrees"),
 }
 """Columns of files without a header, by the end of their names (loudspeaker programs)."""
+MOST_TURNED: Final = 12
+"""Lines of a table that are columns."""
 NEAR: Final = 60
 """Lines above the numbers among which the names of columns are looked for."""
 
@@ -58,6 +60,11 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
     table = TextTable.of(name, data)
+    if (turned := _turned(table)) is not None:
+        said = ("each line is taken as a column",)
+        return tuple(
+            replace(one, guesses=said + one.guesses) for one in read_columns(name, turned, stem, asked)
+        )
     fields = _comment_fields(table.source)
     blocks = table.blocks()
     if not blocks:
@@ -94,6 +101,22 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
 
         responses.append(checked_response(response, name, span_of))
     return tuple(responses)
+
+
+def _turned(table: TextTable) -> bytes | None:
+    """Return the text with columns of a table whose lines are a name and many numbers; None if it is none."""
+    lines = [line for line in table.lines if line.strip()][: MOST_TURNED + 1]
+    rows = [cut(line, table.delimiter) for line in lines]
+    if (
+        not 1 < len(rows) <= MOST_TURNED
+        or len({len(row) for row in rows}) > 1
+        or len(rows[0]) < 2 * len(rows)
+    ):
+        return None
+    if any((number(c, table.decimal) is None) == (i > 0) for row in rows for i, c in enumerate(row)):
+        return None
+    delimiter = "\t" if table.delimiter == " " else table.delimiter
+    return "".join(delimiter.join(column) + "\n" for column in zip(*rows, strict=True)).encode()
 
 
 def _responses(
@@ -190,9 +213,11 @@ def _columns(
         )
     elif not is_comment:
         guesses.append(f"the numbers begin in line {block.lines[0] + 1}")
-    title = _title(table, above)
-    if width == 2 and title and not meanings[1].kind:  # noqa: PLR2004
-        meanings[1] = title
+    title = _title(table, [i for i in above if i != line])
+    # Analysers write two parts of all that they trace, the second one empty where there is only one.
+    is_single = width > 2 and not any(n.any() for n, _ in numbers[2:])  # noqa: PLR2004
+    if title and ((width == 2 and not meanings[1].kind) or is_single):  # noqa: PLR2004
+        meanings[1:] = [title, *(ColumnMeaning() for _ in numbers[2:])]
     unit = next((m[1] for i in above if (m := _AXIS_UNIT.search(table.lines[i][:200]))), "")
     if unit and not meanings[0].kind:
         meanings[0] = replace(meanings[0], unit=unit)
@@ -255,6 +280,7 @@ def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool =
     text = table.lines[line].strip()
     if text.startswith(COMMENTS) or (text.count('"') == 2 and text[0] == text[-1] == '"'):  # noqa: PLR2004
         text = text.strip('"').lstrip(SIGNS)
+    text = re.sub(r"^C\s\s+", "", text)  # a comment of Fortran
     ways = [cut(text, table.delimiter)]
     if table.delimiter in " " or table.delimiter not in text:
         joined = re.sub(r"(?<!\s)\s+(?=[\[(])", "\0", text)

@@ -1,11 +1,12 @@
-"""A measured or planned input over time, as text in two columns.
+"""A measured or planned input over time, as instruments and programs save it.
 
-    time_s,force              0      0
-    0,0                       0.001  0.12
-    0.001,0.12
+    time_s,force              Time (ms);CH1 (V)        0      0
+    0,0                       0,0;0,00                 0.001  0.12
+    0.001,0.12                1,0;0,12
 
-The first column is the time in seconds, or in the unit its header names (``time_ms``, ``t [us]``), the second
-the value; further columns are not read. A header may be left out.
+A line above the numbers names the time, in the unit that its name or the line below says, and the value is
+the column beside it; without such a line, the first column is the time in seconds. Arrays are called t or
+time, and as they like. What else a file holds is not read, and said.
 """
 
 from __future__ import annotations
@@ -15,23 +16,46 @@ import re
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
-from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES
-from symflex.data.measurement.text_table import TextTable
-from symflex.errors import DataError, Diagnostic, Span
+import numpy as np
+
+from symflex.data.measurement.arrays import Array, Arrays, arrays_in, matrix_of
+from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES, listed_names
+from symflex.data.measurement.text_table import SIGNS, TextTable, cut
+from symflex.errors import DataError, Diagnostic
 from symflex.model.spec.read import read_file
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
 MAX_BYTES: Final = 50_000_000
-SECONDS: Final = {"": Fraction(1), "s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6)}
-_TIME = re.compile(r"(?:t|time)(?:[ _]*[\[(]?(?P<unit>s|ms|us|µs)[\])]?)?", re.I)
+ARRAYS: Final = (".npz", ".npy", ".mat")
+ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)
+"""Ends of the names of files that are inputs."""
+_UNITS: Final = {
+    Fraction(1): "s sec secs second seconds sekunde sekunden",
+    Fraction(1, 10**3): "ms msec millisecond milliseconds",
+    Fraction(1, 10**6): "us usec \u00b5s \u03bcs microsecond microseconds",
+    Fraction(1, 10**9): "ns nanosecond nanoseconds",
+}
+SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in words.split()}
+_UNIT: Final = "|".join(SECONDS)
+_TIME = re.compile(
+    r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
+    r"(?:t|tout|time|times|timestamp|zeit|temps|tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
+    rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT})[\])]?)?|x_value|"
+    rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
+    re.I,
+)
+_AXIS = re.compile(r"x|x[- _]?axis", re.I)
+"""Names of a column that the unit below shows to be the time."""
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400
 """Of a decimal: far beyond what doubles hold."""
+MOST_DIGITS: Final = 10**15
+"""Denominator of a time beyond which its last digits are those of a binary number."""
+EVEN: Final = 1e-6
+"""Share of their distance by which times of an array may be off even ones."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +64,7 @@ class InputSignal:
 
     times: tuple[Fraction, ...]  # increasing [s]
     values: tuple[Fraction, ...]  # as many
+    guesses: tuple[str, ...] = ()  # what the file does not say, or holds besides
 
 
 def read_signal(path: str | Path) -> InputSignal:
@@ -56,20 +81,28 @@ def read_signal(path: str | Path) -> InputSignal:
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
-    return _signal(TextTable.of(name, data))
+    suffix = Path(name).suffix.lower()
+    return _of_arrays(name, arrays_in(name, data, suffix)) if suffix in ARRAYS else _signal(name, data)
 
 
-def _signal(table: TextTable) -> InputSignal:
-    name = table.source.name
-    lines = [
+def _signal(name: str, data: bytes) -> InputSignal:
+    table = TextTable.of(name, data)
+    written = [
         i for i, line in enumerate(table.lines) if line.strip() and not line.strip().startswith(COMMENTS)
     ]
-    if len(lines) > MAX_LINES + 1:
+    first = next((i for i in written if _is_row(table, i)), None)
+    if first is None:
+        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
+    lines = [i for i in written if i >= first]
+    if len(lines) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    unit, width = Fraction(1), len(table.cells(lines[0])) if lines else 0
-    if lines and _decimal(table.cells(lines[0])[0].text) is None:
-        unit = _unit_of(table.cells(lines[0]), table.line(lines[0]))
-        lines = lines[1:]
+    names, at, unit = _named_time(table, first)
+    if not names and written[0] < first:
+        above = table.line(written[written.index(first) - 1])
+        raise DataError(Diagnostic("SF602", "the first column is not the time", above, HINT))
+    width = max(len(table.cells(first)), len(names))
+    others = [f"'{word[:30]}'" for i, word in enumerate(names) if word and not at <= i <= at + 1]
+    guesses = list(table.guesses) + ([f"not used: {', '.join(others[:6])}"] if others else [])
     times: list[Fraction] = []
     values: list[Fraction] = []
     problems: list[Diagnostic] = []
@@ -77,15 +110,15 @@ def _signal(table: TextTable) -> InputSignal:
         if len(problems) >= MAX_ERRORS:
             break
         cells, line = table.cells(index), table.line(index)
-        if len(cells) < 2:  # noqa: PLR2004 (time and value)
+        if len(cells) < at + 2:
             problems.append(Diagnostic("SF602", "a line has a time and no value", line, HINT))
             continue
-        if len(cells) > width:
+        if len(cells) > width and any(cell.text for cell in cells[width:]):
             said = f"a line has {len(cells)} columns, and the first has {width}"
             problems.append(Diagnostic("SF602", said, line, "a decimal comma, or a line that was cut off?"))
             continue
-        numbers = [_decimal(cell.text) for cell in cells[:2]]
-        for cell, number in zip(cells, numbers, strict=False):
+        numbers = [_decimal(cell.text, table.decimal) for cell in cells[at : at + 2]]
+        for cell, number in zip(cells[at:], numbers, strict=False):
             if number is None:
                 said = f"'{cell.text[:40]}' is not a finite number" if cell.text else "a number is missing"
                 problems.append(Diagnostic("SF603", said, cell if cell.text else line))
@@ -93,25 +126,85 @@ def _signal(table: TextTable) -> InputSignal:
             continue
         time = numbers[0] * unit
         if times and time <= times[-1]:
-            problems.append(Diagnostic("SF604", "times do not increase", cells[0]))
+            problems.append(Diagnostic("SF604", "times do not increase", cells[at]))
         times.append(time)
         values.append(numbers[1])
     if problems:
         raise DataError(*problems)
     if len(times) < 2:  # noqa: PLR2004 (a line has two ends)
         raise DataError(Diagnostic("SF605", f"'{name}' holds fewer than two samples", None, HINT))
-    return InputSignal(tuple(times), tuple(values))
+    if max(time.denominator for time in times) > MOST_DIGITS:  # binary numbers written to the end
+        times = _decimal_times(np.array([float(time) for time in times]))
+    return InputSignal(tuple(times), tuple(values), tuple(guesses))
 
 
-def _unit_of(cells: list[Span], line: Span) -> Fraction:
-    match = _TIME.fullmatch(cells[0].text.strip("\"' "))
-    if match is None or len(cells) < 2:  # noqa: PLR2004
-        raise DataError(Diagnostic("SF602", "the first column is not the time", line, HINT))
-    return SECONDS[(match["unit"] or "").lower().replace("µ", "u")]
+def _is_row(table: TextTable, index: int) -> bool:
+    cells = cut(table.lines[index], table.delimiter)
+    return len(cells) > 1 and _decimal(cells[0], table.decimal) is not None
 
 
-def _decimal(text: str) -> Fraction | None:
+def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction]:
+    """Return the names of columns above the first row, where the time is among them, and its unit [s]."""
+    below: list[str] = []
+    for line in reversed(table.lines[:first]):
+        text = line.strip().lstrip(SIGNS) if line.strip().startswith(COMMENTS) else line
+        ways = cut(text, table.delimiter), re.split(r"\t|\s{2,}|(?<=[\])])\s+", text.strip())
+        for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
+            units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
+            for i, name in enumerate(names[:-1]):
+                match = _TIME.fullmatch(name.strip("\"' "))
+                if match or (units[i] and _AXIS.fullmatch(name.strip())):
+                    said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
+                    return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1))
+        below = cut(text, table.delimiter) if text.strip() else below
+    return [], 0, Fraction(1)
+
+
+def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
+    """Return the input of arrays: a matrix of two columns, or the time and the only other one as long."""
+    guesses: list[str] = []
+    matrix = matrix_of(arrays)
+    if matrix is not None:
+        times, values = matrix[1][:, 0], matrix[1][:, 1]
+        if matrix[1].shape[1] > 2:  # noqa: PLR2004
+            guesses.append(f"of '{matrix[0]}' only the first two columns are used")
+        guesses.append(f"the first column of '{matrix[0]}' is the time in seconds")
+        factor = Fraction(1)
+    else:
+        plain = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.size > 1}
+        named = ((k, m) for k in plain if (m := _TIME.fullmatch(k.rpartition(".")[2])))
+        key, match = next(named, ("", None))
+        fitting = [k for k, a in plain.items() if k != key and key and a.size == plain[key].size]
+        if match is None or len(fitting) != 1:
+            message = f"'{name}': an input is one array called t or time, and one other as long"
+            held = f"it has {listed_names(list(arrays)) or 'none'}"
+            raise DataError(Diagnostic("SF602", message, None, held))
+        times, values = plain[key].ravel(), plain[fitting[0]].ravel()
+        factor = SECONDS[(match["unit"] or match["alone"] or "s").lower()]
+    for array, what in ((times, "time"), (values, "value")):
+        if not np.isfinite(array).all():
+            place = int(np.argmin(np.isfinite(array))) + 1
+            raise DataError(Diagnostic("SF603", f"'{name}': {what} {place} is not a finite number"))
+    if np.any(np.diff(times) <= 0):
+        raise DataError(Diagnostic("SF604", f"'{name}': times do not increase"))
+    exact = [Fraction(value) for value in np.asarray(values.real, float).tolist()]
+    return InputSignal(tuple(t * factor for t in _decimal_times(times)), tuple(exact), tuple(guesses))
+
+
+def _decimal_times(times: Array) -> list[Fraction]:
+    """Return the times that an array means: even ones as multiples of one decimal, others in ten digits."""
+    numbers = np.asarray(times.real, float)
+    step = float(f"{(numbers[-1] - numbers[0]) / (numbers.size - 1):.10g}")
+    places = np.round(numbers / step)
+    if np.all(np.abs(numbers - places * step) <= EVEN * step):
+        return [Fraction(str(step)) * int(place) for place in places.tolist()]
+    return [Fraction(f"{number:.10g}") for number in numbers.tolist()]
+
+
+def _decimal(text: str, decimal: str = ".") -> Fraction | None:
     """Return the number a decimal means; None for any other text, and for what no double could hold."""
+    text = text.strip("\"' ")
+    text = text.replace(",", ".") if decimal == "," and "." not in text else text
     try:
         number = Decimal(text) if "_" not in text else None
     except InvalidOperation:

@@ -60,6 +60,21 @@ def test_without_a_base_gain_and_power_of_s_are_found():
     assert fit.resonances.zeta_z[0, 0] == pytest.approx(0.03)
 
 
+def test_rounded_frequencies_and_levels_are_not_taken_for_poles():
+    def written(numbers):
+        return np.array([float(f"{x:.4g}") for x in numbers])
+
+    lines = np.geomspace(10.0, 1e3, 161)
+    data = 10 * System(np.array([100.0]), np.array([0.02]), np.array([250.0]), np.array([0.01]))(lines)
+    level, turn = written(20 * np.log10(np.abs(data))), written(np.degrees(np.angle(data)))
+    rounded = MeasuredResponse("y/u", written(lines), 10 ** (level / 20) * np.exp(1j * np.radians(turn)))
+    fit = fit_resonances([rounded])
+    errors = fit.standard_errors()
+    assert not fit.poor and max(score.order for score in fit.scores) < 6
+    assert abs(fit.resonances.omega_p[0] / (2 * np.pi) - 100) < 3 * errors.omega_p[0] / (2 * np.pi) < 0.01
+    assert abs(fit.resonances.zeta_p[0] - 0.02) < 3 * errors.zeta_p[0] < 1e-4
+
+
 def test_a_lag_of_the_sensor_is_found():
     data = MeasuredResponse("y/u", FREQUENCY, ONE(FREQUENCY) / (1 + 2j * np.pi * FREQUENCY * 2e-4))
     fit = fit_resonances([data], UNIT, FitOptions(modes=1, is_lag_free=True))

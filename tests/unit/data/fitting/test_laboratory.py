@@ -81,12 +81,14 @@ def test_of_many_data_sets_nearly_all_are_right_or_poor(count, modes_given):
 
 
 @pytest.mark.slow
-def test_a_real_pole_far_below_the_band_is_a_power_of_s():
-    # Set 101 of the study: with s^3 and a pole at 1e-7 rad/s the function is the same, its gain is not.
-    case = wild(1, 101)
+@pytest.mark.parametrize(("number", "slope"), [(101, 2), (445, 1)])
+def test_real_poles_and_zeros_far_below_the_band_are_powers_of_s(number, slope):
+    # Set 101 of the study: with s^3 and a pole at 1e-7 rad/s the function is the same, its gain is not. Set
+    # 445: without s, and a pair of zeros at 0.01 and at 4000 Hz.
+    case = wild(1, number)
     fit = fit_resonances([MeasuredResponse("y/u", case.frequency_hz, case.values)])
     off, _ = judged(case, fit)
-    assert fit.bases[0].slope == case.slope == 2
+    assert fit.bases[0].slope == case.slope == slope
     assert off.max() < 3
 
 

@@ -433,6 +433,16 @@ def wild_files():
     yield Saved(
         "two_channels.csv", ("freq,vin,vout,phase_deg\n" + rows(F, 0 * F + 1.5, 1.5 * SIZE, DEG)).encode()
     )
+    lines = [",".join([name, *(f"{x:.9e}" for x in row)]) for name, row in (("f", F), ("re", RE), ("im", IM))]
+    yield Saved("in_rows.csv", "\n".join(lines).encode())
+    written = rows(F, RE, IM, sep="   ").replace("E", "D")
+    yield Saved("fortran_c.dat", ("C     RUN 3\nC     FREQ(HZ)   REAL   IMAG\n" + written).encode())
+    traces = (
+        f'"TRACE: {name}"\n"FORMAT: {kind}"\n"Frequency"\t"Data Trace Real"\t"Data Trace Imag"\n'
+        + rows(F, values, 0 * F, sep="\t")
+        for name, kind, values in (("A", "|Z|", SIZE), ("B", "Theta", DEG))
+    )
+    yield Saved("two_traces.txt", ('"4294A REV1.11"\n\n' + "\n".join(traces)).encode())
     yield Saved(
         "levels.csv",
         ("f (Hz),Input (dBV),Output (dBV),Phase (deg)\n" + rows(F, 0 * F - 6, DB - 6, DEG)).encode(),

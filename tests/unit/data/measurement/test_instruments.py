@@ -59,6 +59,7 @@ GUESSES = {
     "through.s2p": "S21 is the response",
     "radians.mat": "read in rad/s, in which its ends are round numbers",
     "two_channels.csv": "the magnitude is 'vout' over 'vin'",
+    "in_rows.csv": "each line is taken as a column",
     "in_and_out.txt": "the response is 'V(out)' over 'V(in)'",
     "lock_in_xy.csv": "columns 'x', 'y' not used",
     "cells_with_units.csv": "'Magnitude' has no unit and is read in dB",
@@ -227,3 +228,10 @@ def test_universal_files_name_node_direction_and_unit(tmp_path):
     path.write_text("    -1\n    15\n         1         0         0         0  0. 0. 0.\n    -1\n")
     with pytest.raises(DataError, match=r"it holds datasets 15 \(nodes\)"):
         read_measurement(path)
+
+
+def test_a_magnitude_of_two_channels_alone_is_their_ratio(tmp_path):
+    (tmp_path / "a.csv").write_text("freq,vin,vout\n" + rows(F, 0 * F + 2, 2 * abs(H)), encoding="utf-8")
+    (found,) = read_measurement(tmp_path / "a.csv")
+    assert abs(found.values) == pytest.approx(abs(H), rel=1e-6)
+    assert any("minimum-phase" in guess for guess in found.guesses)
