@@ -69,6 +69,7 @@ class Radicals:
     squares: Mapping[int, Factored] = field(default_factory=dict)
     images: Mapping[int, Factored] = field(default_factory=dict)  # what roots are that depend on others
     radicands: Mapping[int, Factored] = field(default_factory=dict)  # of all roots, as they are written
+    positive: frozenset[int] = frozenset()  # positions of generators that are
     _points: dict[int, Point | None] = field(default_factory=dict, repr=False)
 
     @staticmethod
@@ -77,17 +78,20 @@ class Radicals:
         plain = {
             i: a for i, a in radicands.items() if not any(a.depends_on(ring.names[j]) for j in radicands)
         }
-        known = frozenset(positive)
-
-        def root_of(value: Factored) -> Factored | None:
-            """Return the root of a rational function in terms of the others, ``None`` when it is none."""
-            return _independent(ring, {**plain, NEW: value}, known).images.get(NEW)
-
-        found = _independent(ring, plain, known)
+        found = replace(_independent(ring, plain, frozenset(positive)), radicands=plain)
         for i, radicand in radicands.items():
             if i not in plain:
-                found = found.with_nested(i, found.reduced(radicand), root_of)
+                found = found.with_nested(i, found.reduced(radicand))
         return replace(found, radicands=radicands)
+
+    def root(self, value: Factored) -> Factored | None:
+        """Return the root of a rational function in terms of the others, ``None`` when it is none."""
+        plain = {i: a for i, a in self.radicands.items() if not any(self._is_rooted(f) for f, _ in a.factors)}
+        return _independent(self.ring, {**plain, NEW: value}, self.positive).images.get(NEW)
+
+    def either_root(self, value: Factored) -> Factored | None:
+        """Return one of the two square roots, whatever the signs of generators are, as :meth:`root`."""
+        return replace(self, positive=frozenset(range(len(self.ring.names)))).root(value)
 
     @property
     def free(self) -> frozenset[int]:
@@ -97,11 +101,9 @@ class Radicals:
     def __bool__(self) -> bool:
         return bool(self.radicands)
 
-    def with_nested(
-        self, position: int, square: Factored, root_of: Callable[[Factored], Factored | None]
-    ) -> Radicals:
+    def with_nested(self, position: int, square: Factored) -> Radicals:
         """Return the same with one more root, whose radicand holds earlier ones."""
-        image = self._root_of_nested(square, root_of)
+        image = self._root_of_nested(square)
         if image is not None:
             return replace(self, images={**self.images, position: image}, _points={})
         for seed in range(SQUARES_SEEN):
@@ -113,20 +115,18 @@ class Radicals:
                 return replace(self, squares={**self.squares, position: square}, _points={})
         return self
 
-    def _root_of_nested(
-        self, value: Factored, root_of: Callable[[Factored], Factored | None]
-    ) -> Factored | None:
+    def _root_of_nested(self, value: Factored) -> Factored | None:
         """Return the root of a sum with roots in it as far as it is one of two kinds, ``None`` otherwise.
 
         ``sqrt(2 - sqrt(2))`` is ``sqrt(2)/sqrt(2 + sqrt(2))``; ``sqrt(3 + 2*sqrt(2))`` is ``1 + sqrt(2)``.
         """
         used = {i for f, _ in value.factors for i in self.squares if degree_in(f, i)}
         if not used:
-            return root_of(value)
+            return self.root(value)
         for i, square in self.squares.items():
             if any(self._is_rooted(f) for f, _ in square.factors):
                 product = self._multiplied(value * square)
-                if not any(self._is_rooted(f) for f, _ in product.factors) and (root := root_of(product)):
+                if not any(self._is_rooted(f) for f, _ in product.factors) and (root := self.root(product)):
                     return root / Factored.generator(self.ring, self.ring.names[i])
         if len(used) > 1:
             return None
@@ -135,10 +135,10 @@ class Radicals:
         parts = by_powers(self.ring, value.numerator().expand(), i)
         zero = self.ring.constant(0)
         even, odd = (Factored.polynomial(self.ring, parts.get(n, zero)) / value.denominator() for n in (0, 1))
-        half = root_of(even * even - odd * odd * self.squares[i])
+        half = self.root(even * even - odd * odd * self.squares[i])
         if half is None or any(self._is_rooted(f) for f, _ in half.factors):
             return None
-        larger, smaller = root_of((even + half) / 2), root_of((even - half) / 2)
+        larger, smaller = self.root((even + half) / 2), self.root((even - half) / 2)
         if larger is None or smaller is None:
             return None
         sums = (larger + smaller, larger - smaller)
@@ -591,7 +591,7 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
         for j in sorted(parts):
             root = root * Factored.generator(ring, ring.names[j])
         images[i] = root
-    return Radicals(ring, squares, images)
+    return Radicals(ring, squares, images, positive=positive)
 
 
 def _simplicity(radicand: Factored, base: _Base) -> tuple[int, tuple[int, int], int]:

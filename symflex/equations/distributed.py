@@ -11,8 +11,8 @@ from fractions import Fraction
 from math import factorial, pi, prod
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Dispersion, Factored
-from symflex.algebra.propagators import propagate
+from symflex.algebra import Dispersion, Factored, Radicals
+from symflex.algebra.propagators import WAVENUMBER_NAMES, propagate
 from symflex.algebra.ring import terms_of
 from symflex.budget import spend
 from symflex.equations.against_text import at_random, compare, error_of, number_of
@@ -275,11 +275,13 @@ class _Demands:
         self,
         along: AlongX | None,
         settled: Callable[[Factored], Factored] | None,
+        root: Callable[[Factored], Factored | None],
         *,
         is_followed: bool,
     ) -> None:
         self.along = along
         self.settled = settled  # of components(), None where wavenumbers get no names
+        self.root = root  # one of a square's two, None where it has none
         self.is_followed = is_followed
         self.keys: dict[tuple[str, ...], int] = {}
         self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
@@ -307,7 +309,8 @@ class _Demands:
                 continue
             dispersion = Dispersion(name, law.kind, law.coefficients, law.shift, meets=part.meets)  # type: ignore[arg-type]
             key = (law.kind, *law.key, *map(text, part.meets))
-            parts.append((part, self._number(key, dispersion)))
+            number, scale = self._multiple(key, dispersion) or (self._number(key, dispersion), None)
+            parts.append((replace(part, scale=scale), number))
         return Medium(system, tuple(parts))
 
     def _varying(
@@ -353,9 +356,33 @@ class _Demands:
 
     def need(self, medium: Medium, length: Factored) -> None:
         """Note a length a medium is needed at."""
-        for _, number in medium.parts:
+        for part, number in medium.parts:
             if number != POLYNOMIAL:
-                self.demands[number][1].append(length)
+                self.demands[number][1].append(part.scaled(length))
+
+    def _multiple(self, key: tuple[str, ...], law: Dispersion) -> tuple[int, Factored] | None:
+        """Return the number of a law, and the factor by which the wavenumbers of another exceed its own.
+
+        So layers that a wave crosses in equal times have equal kernels.
+        """
+        n = law.order
+        if key in self.keys or self.settled is None or law.kind not in WAVENUMBER_NAMES:
+            return None
+        c = [self.settled(x) for x in law.characteristic]
+        for number, (known, _) in enumerate(self.demands):
+            if known.kind != law.kind or any(not x.is_zero for x in (law.shift, known.shift)):
+                continue
+            of = [self.settled(x) for x in known.characteristic]
+            ratio = c[0] / of[0]
+            if law.meets or known.meets or ratio.depends_on("s"):
+                continue
+            root = self.root(ratio)
+            scale = root if root is None or law.kind == "wave" else self.root(root)
+            if scale is not None and all(
+                (a - b * scale ** (n - k)).is_zero for k, (a, b) in enumerate(zip(c, of, strict=True))
+            ):
+                return number, scale
+        return None
 
     def _number(self, key: tuple[str, ...], dispersion: Dispersion) -> int:
         if key not in self.keys:
@@ -384,7 +411,8 @@ def survey(
     moving = None if functions is None else AlongX(evaluator.along_x(), functions)
     is_nameless = is_nameless or is_cut
     settled = None if is_nameless or evaluator.ring.is_sparse else evaluator.settled
-    demands = _Demands(moving, settled, is_followed=is_followed)
+    radicals = evaluator.radicals or Radicals(evaluator.ring)
+    demands = _Demands(moving, settled, radicals.either_root, is_followed=is_followed)
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []
     solutions: dict[str, FieldSolution] = {}
@@ -552,7 +580,11 @@ def _fundamental(
     """Return ``h, ..., h^(n-1)`` of a part at a length."""
     n = len(part.coefficients)
     if number != POLYNOMIAL:
-        return propagation.fundamental(number, length, part.multiplicity)
+        found = propagation.fundamental(number, part.scaled(length), part.multiplicity)
+        if part.scale is None:
+            return found
+        scale = propagation.embed(part.scale)
+        return tuple(h * scale ** (k + 1 - n) for k, h in enumerate(found))
     x = propagation.embed(length)
     return tuple(_monomial(x, n - 1 - k) for k in range(n))
 

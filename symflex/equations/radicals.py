@@ -32,8 +32,10 @@ def radicals_of(
         roots = [c for c in roots if not varies_along_x(c)]
     roots = [c for c in roots if format_expression(c) in ring.index]
     units = [ring.index[p.name] for p in parameters if p.is_imaginary and p.name in ring.index]
+    known = {p.name for p in parameters if p.assume != "real"} | {"pi"}
+    positive = frozenset(i for n, i in ring.index.items() if n in known or n.startswith("exp("))
     if not (roots or units) or ring.is_sparse:
-        return Radicals(ring)
+        return Radicals(ring, positive=positive)
 
     def named(name: str) -> Factored:
         return Factored.generator(ring, name) if value is None or name == "pi" else value(name)
@@ -51,7 +53,4 @@ def radicals_of(
             radicands[ring.index[format_expression(c)]] = fold(
                 c.argument, number=lambda n: Factored.number(ring, n), name=named, power=raised, call=called
             )
-    signed = {p.name for p in parameters if p.assume == "real"}
-    known = {p.name for p in parameters if p.name not in signed} | {"pi"}
-    positive = {i for n, i in ring.index.items() if n in known or n.startswith("exp(")}
     return Radicals.of(ring, radicands, positive)

@@ -332,6 +332,11 @@ class Component:
     multiplicity: int = 1  # of every exponent
     is_share: bool = False  # whether it is what a factor of a characteristic polynomial adds
     meets: tuple[Factored, ...] = ()  # of a share, see :class:`symflex.algebra.Dispersion`
+    scale: Factored | None = None  # its exponents over those of the law whose functions are taken, if not 1
+
+    def scaled(self, length: Factored) -> Factored:
+        """Return the length at which functions of that law are taken."""
+        return length if self.scale is None else length * self.scale
 
 
 def varies(system: FieldSystem, along: Collection[str]) -> bool:

@@ -149,6 +149,7 @@ class BoundTransferFunction:
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
+    fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()  # constants that waves without inertia came down to
     # The function with all parameters, where numbers stood for some of them from the start.
     symbolic: TransferFunction | None = None
 
@@ -190,7 +191,7 @@ class BoundTransferFunction:
     def constants(self) -> tuple[tuple[str, Callable[[], arb]], ...]:
         """Per generator after s, how to enclose it at the current precision."""
         values: dict[str, Callable[[], arb]] = {name: enclosure(value) for name, value in self.values}
-        known: dict[str, Callable[[], arb]] = {**values, "pi": arb.pi}
+        known: dict[str, Callable[[], arb]] = {**values, **dict(self.fixed), "pi": arb.pi}
         for constant in self.source.constants:
             if constant.generator not in self.along:
                 known[constant.generator] = later(constant.expression, values)

@@ -198,7 +198,8 @@ class _CramerQuotients:
         )
         parameters = [*in_order_of_use(self._equations.model), *kept]
         ring = self._expansion.ring
-        return KernelReduction(ring, table.embedded(opened), parameters, propagation.coordinates)
+        table = table.embedded(opened)
+        return KernelReduction(ring, table, parameters, propagation.coordinates, self._radicals)
 
     def finish(self, name: str, source: str) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""

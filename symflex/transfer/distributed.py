@@ -26,6 +26,7 @@ from symflex.algebra import (
     Dispersion,
     Factored,
     KernelTable,
+    Radicals,
     Ring,
     degree_in,
     irreducible_factors,
@@ -77,8 +78,10 @@ class KernelReduction:
         table: KernelTable,
         parameters: Sequence[str],
         coordinates: Sequence[Sequence[Sequence[int]]] = (),
+        radicals: Radicals | None = None,
     ) -> None:
         self.ring = ring
+        self._radicals = radicals or Radicals(ring)
         self._multiples = _multiples(table, coordinates)
         self.table = table
         self.normal = NormalForm(ring, table)
@@ -133,19 +136,38 @@ class KernelReduction:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
             return ReducedQuotient(one * 0, one, self._modes(modes), self.table)
         before = _solved_for(cancelled, self.solved)
-        above, below, before = (
-            v.map_factors(self.coordinates.coordinates, self.coordinates.transform)
-            for v in (above, below, before)
-        )
-        quotient, shared = self._lowest(above, below, before)
+        above, below, before = (self._in_exponentials(v) for v in (above, below, before))
+        matched = self._without_reflections(num, den, cancelled)
+        quotient, shared = matched or self._lowest(above, below, before)
         table, back = self._restorer([quotient, shared])
-        quotient, shared = back(quotient), back(shared)
+        quotient, shared = self._radicals.reduced(back(quotient)) if matched else back(quotient), back(shared)
         ratio = _split_contents(self._shortest(quotient), self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)
         num, den = self._entire(ratio, table)
         return ReducedQuotient(num, den, modes, table)
+
+    def _without_reflections(
+        self, num: Factored, den: Factored, cancelled: Factored
+    ) -> tuple[Factored, Factored] | None:
+        """Return :meth:`_lowest` where that leaves no kernel once wavenumbers are rational in s, else None.
+
+        So a line that ends in its own impedance ``sqrt(L/C)`` is a resistor.
+        """
+        images: list[tuple[str, Factored]] = []
+        for law in self.table.dispersions:
+            root = self._radicals.either_root(-law.characteristic[0]) if law.kind == "wave" else None
+            if root is None:
+                return None
+            images.append((law.wavenumbers[0], root))
+        values = (self._radicals.reduced(_solved_for(v, images)) for v in (num, den, cancelled))
+        above, below, before = map(self._in_exponentials, values)
+        if below.is_zero:
+            return None
+        quotient, shared = self._lowest(above, below, before)
+        free = len(self.ring.names) - len(self._kernels)
+        return None if any(any(f.degrees()[free:]) for f, _ in quotient.factors) else (quotient, shared)
 
     def _lowest(self, above: Factored, below: Factored, before: Factored) -> tuple[Factored, Factored]:
         """Return a quotient with common factors cancelled, and these times what was cancelled before."""

@@ -9,22 +9,25 @@ are exact.
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
+from functools import partial
 from math import prod
 from typing import TYPE_CHECKING
 
-from flint import acb
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in, square_free_factors
 from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
+from symflex.algebra.ring import by_powers
 from symflex.errors import Diagnostic, ModelError
-from symflex.roots.precision import precision
-from symflex.roots.root import FLOAT_BITS
 from symflex.transfer.balls import at_centre
 from symflex.transfer.transfer_function import HiddenFactor
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import Kernel
@@ -55,7 +58,7 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     """
     gone = [kernel for kernel in bound.kernels.kernels if kernel.length.is_zero]
     if not gone:
-        return bound
+        return _without_inertia(bound)
     ring = bound.ratio.ring
     images = [ring.context.gen(i) for i in range(len(ring.names))]
     for kernel in gone:
@@ -87,6 +90,53 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     ratio = (num / den).map_factors(small, lambda f: Factored.polynomial(small, moved(f)))
     known = tuple(HiddenFactor(moved(h.polynomial), h.multiplicity) for h in hidden)
     return replace(bound, ratio=ratio, hidden=known, kernels=NO_KERNELS, parts=None)
+
+
+def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
+    """Return the function as a rational one where no kernel depends on s: of members without mass."""
+    ring, laws = bound.ratio.ring, bound.kernels.dispersions
+    if not laws or any(law.matrix or c.depends_on(LAPLACE) for law in laws for c in law.coefficients):
+        return bound
+    kernels = frozenset(bound.kernels.generators)
+    plain = tuple(name for name in ring.names if name not in kernels)
+    hidden = [Factored(ring, Fraction(1), ((h.polynomial, h.multiplicity),)) for h in bound.hidden]
+    most = sum(1 + degree_in(f, 0) for v in (bound.ratio, *hidden) for f, _ in v.factors) + 1
+    small = Ring((*plain, *(f"c[{i}]" for i in range(most))))
+    moved = [small.generator(n) if n in small.index else small.constant(0) for n in ring.names]
+    numbers: list[Factored] = []
+
+    def number(value: Factored) -> Factored:
+        numbers.append(value)
+        return Factored.generator(small, f"c[{len(numbers) - 1}]")
+
+    def lumped(value: Factored) -> Factored:
+        front, image = Factored.number(ring, 1), Factored.number(small, value.unit)
+        for f, e in value.factors:
+            if ring.used_in([f]).isdisjoint(kernels):
+                image = image * Factored.polynomial(small, f.compose(*moved, ctx=small.context)) ** e
+                continue
+            parts = {n: Factored.polynomial(ring, c) for n, c in by_powers(ring, f, 0).items()}
+            lead = parts.pop(degree := max(parts))
+            own = (number(c / lead) * Factored.generator(small, LAPLACE) ** n for n, c in parts.items())
+            front, image = (
+                front * lead**e,
+                image * sum(own, Factored.generator(small, LAPLACE) ** degree) ** e,
+            )
+        return image if front.is_one else image * number(front)
+
+    def evaluated(value: Factored) -> arb:
+        evaluator = bound.kernel_values()
+        return at_centre(evaluator.value(value, evaluator.at(acb(1)))).real
+
+    ratio, *known = map(lumped, (bound.ratio, *hidden))
+    return replace(
+        bound,
+        ratio=ratio,
+        hidden=tuple(HiddenFactor(f, e) for v in known for f, e in v.factors if degree_in(f, 0)),
+        kernels=NO_KERNELS,
+        parts=None,
+        fixed=tuple((f"c[{i}]", partial(evaluated, value)) for i, value in enumerate(numbers)),
+    )
 
 
 def _value(kernel: Kernel) -> int:
@@ -175,45 +225,52 @@ def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factore
         kernels = [k for k in table.kernels if value.depends_on(k.generator)]
         names = {name for law in table.dispersions for name in law.wavenumbers if value.depends_on(name)}
         names |= {k.wavenumber for k in kernels}
-        image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None if names else value
+        image = _of_one_wave(bound, factor, sorted(names)) if names else value
         if image is None:
             return part
         result = result * image**exponent
     return result
 
 
-def _of_one_wave(bound: BoundTransferFunction, factor: fmpz_mpoly, wavenumber: str) -> Factored | None:
+def _of_one_wave(bound: BoundTransferFunction, factor: fmpz_mpoly, names: Sequence[str]) -> Factored | None:
     """Return what a factor is a multiple of, by an exponential and a number, where one of these is left."""
     ring, table = bound.ratio.ring, bound.kernels
     s = Factored.polynomial(ring, ring.context.gen(0))
-    law = next(law for law in table.dispersions if law.wavenumbers == (wavenumber,))
-    square = -law.characteristic[0]
+    laws = {name: law for law in table.dispersions for name in law.wavenumbers if name in names}
+    square = -laws[names[0]].characteristic[0]
+    # All wavenumbers are numbers times the first.
+    scales = {name: bound.radicals.either_root(-law.characteristic[0] / square) for name, law in laws.items()}
+    known = {name: scale for name, scale in scales.items() if scale is not None}
     arguments = arguments_of(table)
     terms = None if arguments is None else exponential_sum(ring, table, arguments, factor)
-    if terms is None or (square / s**2).depends_on(LAPLACE):
+    if terms is None or arguments is None or len(known) < len(names):
         return None
-    left = []
-    for amplitude in terms.terms.values():
-        even = odd = s * 0
+    root = bound.radicals.either_root(square)
+    if root is None and (square / s**2).depends_on(LAPLACE):
+        return None
+    sums: dict[str, tuple[Factored, Factored]] = {}
+    for exponent, amplitude in terms.terms.items():
+        place = s * 0
+        for i, a, _ in exponent:
+            place = place + arguments[i].length * known[arguments[i].wavenumber] * a
+        even, odd = sums.get(str(place), (s * 0, s * 0))
         for monomial, (number, _) in amplitude.items():  # of cosh and sinh all numbers are real
             powers = {ring.names[i]: e for i, e in monomial}
-            whole, rest = divmod(powers.pop(wavenumber, 0), 2)
-            term = prod((Factored.generator(ring, n) ** e for n, e in powers.items()), start=square**whole)
-            even, odd = (even, odd + term * number) if rest else (even + term * number, odd)
-        # The wavenumber is s times a number: even + odd gamma is zero, or like s to a power, or not told.
-        norm = bound.radicals.reduced(even**2 - odd**2 * square)
-        gamma = Factored.generator(ring, wavenumber)
-        if norm.is_zero and _differs(bound, even - odd * gamma):
+            waves = {name: powers.pop(name, 0) for name in names}
+            whole, rest = divmod(sum(waves.values()), 2)
+            term = prod((known[n] ** e for n, e in waves.items()), start=square**whole * number)
+            term = prod((Factored.generator(ring, n) ** e for n, e in powers.items()), start=term)
+            even, odd = (even, odd + term) if rest else (even + term, odd)
+        sums[str(place)] = even, odd
+    left: list[Factored] = []
+    for even, odd in sums.values():
+        if root is not None:
+            total = bound.radicals.reduced(even + odd * root)
+            left += [] if total.is_zero else [total]
             continue
+        # The wavenumber is s times a number: even + odd gamma is like s to a power, or not told.
+        norm = bound.radicals.reduced(even**2 - odd**2 * square)
         left.append(odd * s if even.is_zero else even)
-        if (norm / left[-1] ** 2).depends_on(LAPLACE):
+        if norm.is_zero or (norm / left[-1] ** 2).depends_on(LAPLACE):
             return None
     return left[0] if len(left) == 1 else None
-
-
-def _differs(bound: BoundTransferFunction, value: Factored) -> bool:
-    """Tell whether a value is not zero at s = 1, on the branch on which wavenumbers are positive there."""
-    with precision(FLOAT_BITS):
-        evaluator = bound.kernel_values()
-        values = evaluator.at(acb(1))
-        return not at_centre(evaluator.value(value, values)).contains(0)

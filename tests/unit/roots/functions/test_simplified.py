@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import cos, exp, sin, sqrt, tanh
 
 import pytest
 
-from symflex import pipeline
+from symflex import loads, pipeline
+from symflex.analysis.time_response import SampleTimes, time_response
 
 HEAD = """
 symflex = 1
@@ -73,3 +74,73 @@ def test_a_string_that_absorbs_every_wave_delays_alone():
     elements.dash = { type = "damper", between = ["right", "ground"], b = "b" }
     """
     assert not poles(text)
+
+
+LAYERS = """
+symflex = 1
+inputs.F = { force = "x" }
+outputs.V = "s*x"
+[parameters]
+E = "210 GPa"
+A = "3 cm^2"
+rho = "7850 kg/m^3"
+l = "0.7 m"
+E_2 = "840 GPa"
+A_2 = "1.5 cm^2"
+[elements]
+bar = { type = "rod", between = ["x", "y"], E = "E", A = "A", rho = "rho", l = "l" }
+layer = { type = "rod", between = ["y", "z"], E = "E_2", A = "A_2", rho = "rho", l = "l" }
+end = { type = "damper", between = ["z", "ground"], b = "A*sqrt(E*rho)" }
+"""
+
+
+def test_layers_of_equal_impedance_are_a_damper_by_symbols_and_by_values():
+    # sqrt(4 E rho) A/2 = sqrt(E rho) A
+    assert poles(LAYERS) == []
+    by_symbols = LAYERS.replace('"E_2"', '"4*E"').replace('"A_2"', '"A/2"')
+    bound = loads(by_symbols).transfer_function("V", "F").bind().bound
+    assert not bound.source.is_distributed
+    assert bound(1j) == pytest.approx(1 / IMPEDANCE)
+
+
+def test_a_line_without_distortion_that_ends_in_its_impedance_is_a_resistor():
+    # Heaviside: sqrt((L s + R)/(C s + G)) = sqrt(L/C) where R C = L G
+    model = loads("""
+    symflex = 1
+    parameters = { L = "0.5 H/m", C = "2 F/m", R = "0.3 Ohm/m", l = "1 m" }
+    definitions = { G = "R*C/L", Z = "sqrt(L/C)" }
+    inputs.U = { unit = "V" }
+    outputs = { I = "i(0)", V = "v(l)" }
+    [fields.line]
+    unknowns = ["v", "i"]
+    domain = ["0", "l"]
+    equations = ["v' = -(L*s + R)*i", "i' = -(C*s + G)*v"]
+    conditions = ["v(0) = U", "v(l) = Z*i(l)"]
+    """)
+    current, voltage = (model.transfer_function(name, "U").bind().bound for name in "IV")
+    assert not current.source.is_distributed
+    assert current(3 + 4j) == pytest.approx(2)
+    assert pipeline.roots(voltage).all_poles == ()
+
+
+def test_a_beam_without_mass_is_a_spring():
+    # EI w'''' = N w'': w(l)/F = (l - tanh(g l)/g)/N, g = sqrt(N/EI); so 2 s^2 + s + k has these roots.
+    text = """
+    symflex = 1
+    parameters = { EI = "3 N*m^2", N = "5 N", l = "1.2 m", m = "2 kg", b = "1 N*s/m" }
+    inputs.F = { force = "x" }
+    outputs.X = "x"
+    [elements]
+    arm = { type = "beam", between = ["ground", "x"], EI = "EI", rhoA = "0 kg/m", l = "l", N = "N" }
+    tip = { type = "mass", at = "x", m = "m" }
+    dash = { type = "damper", between = ["x", "ground"], b = "b" }
+    """
+    g = sqrt(5 / 3)
+    stiffness = 5 / (1.2 - tanh(1.2 * g) / g)
+    turn = sqrt(stiffness / 2 - 1 / 16)
+    assert poles(text) == [pytest.approx((-0.25, -turn)), pytest.approx((-0.25, turn))]
+    bound = loads(text).transfer_function("X", "F").bind().bound
+    found = time_response(bound, "step", SampleTimes.of([0.7]))
+    decay = exp(-0.7 / 4) * (cos(0.7 * turn) + sin(0.7 * turn) / 4 / turn)
+    assert found.certified
+    assert found.values[0] == pytest.approx((1 - decay) / stiffness, rel=1e-11)
