@@ -17,7 +17,7 @@ from fractions import Fraction
 from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored
+from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import by_powers
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
@@ -60,6 +60,7 @@ EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, 
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
 """Where a formula with another line is tried first, and its digits: there roots have one reading."""
+LINE_EXPONENTS = tuple(Fraction(n, 4) for n in (2, 1, 4, 8, -2, 12, 16, -1, -4))
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 
@@ -225,7 +226,7 @@ def _other_exponent(wanted: _Wanted) -> Iterator[Correction]:
         except (UnreadError, GrowError):
             continue
         if field.equal(power, wanted.value):
-            new = base if exponent == 1 else number(1) if exponent == 0 else Power(base, _rational(exponent))
+            new = number(1) if exponent == 0 else _raised(base, exponent)
             yield wanted.replaced_by(new)
 
 
@@ -380,6 +381,8 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
 def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield slips in a line: what is turned over or exchanged, another name, a sign, a factor."""
     for i, (name, line) in enumerate(reading.formula.lines):
+        if line == Name(LAPLACE):  # another name for s, and no slip
+            continue
         earlier = (other for other, _ in reading.formula.lines[:i])
         others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
         for new in _slips(line, others):
@@ -396,9 +399,15 @@ def _slips(line: Expression, others: Sequence[Name]) -> Iterator[Expression]:
         yield substitute(line, {one.name: other, other.name: one})
     yield from (_replaced(line, n, other) for n in named for other in others if other != n)
     for part in nodes(line):
+        if isinstance(part, Power):
+            yield from (_replaced(line, part, _raised(part.base, n)) for n in LINE_EXPONENTS)
         for term in part.terms if isinstance(part, Sum) else ():
             yield _replaced(line, part, sum_of([negative(t) if t is term else t for t in part.children]))
     yield from (new for other in others for new in (product_of([other, line]), quotient(line, other)))
+
+
+def _raised(base: Expression, exponent: Fraction) -> Expression:
+    return base if exponent == 1 else Power(base, _rational(exponent))
 
 
 def _other_powers(part: Expression) -> Iterator[Expression]:
@@ -417,13 +426,22 @@ def _other_powers(part: Expression) -> Iterator[Expression]:
 
 
 def _other_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
-    """Yield two lines exchanged, a line times a number, its square or root."""
-    own = [(i, *line) for i, line in enumerate(reading.formula.lines)]
+    """Yield two lines exchanged, a line times a number, its square or root, a square or 1 left out."""
+    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if line[1] != Name(LAPLACE)]
     for (i, one, first), (j, other, second) in combinations(own, 2):
         yield from _with_lines(reading, numbers, {i: (one, first, second), j: (other, second, first)})
     for i, name, line in own:
         for new in (*(_times(f, line) for f in FACTORS), Call("sqrt", line), Power(line, number(2))):
             yield from _with_lines(reading, numbers, {i: (name, line, new)})
+        for part in nodes(line):
+            if isinstance(part, Name):
+                squared = _replaced(line, part, Power(part, number(2)))
+                yield from _with_lines(reading, numbers, {i: (name, line, squared)})
+            factors = part.factors if isinstance(part, Product) else (part,)
+            for begin, end in combinations(range(len(factors) + 1), 2):
+                more = sum_of([number(1), product_of(factors[begin:end])])
+                new = _replaced(line, part, product_of([*factors[:begin], more, *factors[end:]]))
+                yield from _with_lines(reading, numbers, {i: (name, line, new)})
 
 
 def _with_lines(

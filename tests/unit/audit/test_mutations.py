@@ -177,3 +177,44 @@ def test_a_printed_sum_of_unlike_units_is_named():
     assert judged(LINES).verdict == "equal"
     (sentence,) = judged(LINES, EXPR.replace("w_1^2", "w_1")).units
     assert sentence == "the terms of s^2 + w_1 disagree: s^2 in '1/s^2', w_1 in '1/s'"
+
+
+LOOP = """
+symflex = 1
+parameters = { m = "2 kg", k = "800 N/m", b = "4 N*s/m", K = "30 N/m", T = "20 ms" }
+signals = { u = "K*(1 + T*s)*(r - x)" }
+inputs = { r = { unit = "m" } }
+outputs = { X = "x" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+damper = { type = "damper", between = ["x", "ground"], b = "b" }
+drive = { type = "force_source", at = "x", f = "u" }
+"""
+LINE_SLIPS = {
+    "the exponent of a quotient": (
+        "C/(m*(s^2 + w^2) + b*s + C)",
+        {"C": "K*(1 + T*s)", "w": "(k/m)^(1/4)"},
+        "line w: (k/m)^(1/4), (k/m)^(1/2)",
+    ),
+    "one left out": (
+        "C/(m*s^2 + b*s + k + C)",
+        {"C": "K*T*s"},
+        "line C: K*T*s, K*(1 + T*s)",
+    ),
+    "another name for s is right": (
+        "C/(m*q + b*p + k + C)",
+        {"p": "s", "q": "s", "C": "K*(1 + T*s)"},
+        "denominator: q, q^2",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LINE_SLIPS)
+def test_a_slip_is_blamed_on_the_line_that_has_it(name):
+    expr, lines, expected = LINE_SLIPS[name]
+    where = ", ".join(f'{line} = "{value}"' for line, value in lines.items())
+    model = pipeline.loads(f'{LOOP}[published."X/r"]\nexpr = "{expr}"\nwhere = {{ {where} }}\n')
+    (change,) = audit(model)[0].changes
+    printed, derived = format_expression(change.printed), format_expression(change.derived)
+    assert f"{change.place}: {printed}, {derived}" == expected
