@@ -70,6 +70,7 @@ def locate(
     budget: Budget | None = None,
     *,
     with_zeros: bool = True,
+    judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
@@ -78,7 +79,8 @@ def locate(
     many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
     its work where no budget is given. Of one in nested form, a network of beams, roots are counted
     without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
-    poles that coincide with one stay among the others.
+    poles that coincide with one stay among the others. ``judged`` is another map of the same function, whose
+    poles in the right half plane need not be counted again.
     """
     if isinstance(bound, BoundNested):
         # Figures, responses and tables of one function ask for the same roots.
@@ -94,7 +96,8 @@ def locate(
         where = default_region(bound) if is_open and bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)
+        used = budget or entered_budget()
+        return locate_distributed(bound, region, digits, used, with_zeros=with_zeros, judged=judged)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
@@ -212,6 +215,7 @@ def locate_distributed(
     budget: Budget,
     *,
     with_zeros: bool = True,
+    judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
@@ -246,10 +250,10 @@ def locate_distributed(
     try:
         if code is not None:
             raise BudgetError(Diagnostic(code, reason or ""))
-        verdict, right, hidden = searched.judged(reason)
+        verdict, right, hidden = searched.judged(reason, judged)
     except BudgetError as error:
         with Budget().entered():
-            verdict, right, hidden = searched.judged(error.diagnostics[0].message, is_over=True)
+            verdict, right, hidden = searched.judged(error.diagnostics[0].message, judged, is_over=True)
     known = [h.root for h in searched.hidden]
     beyond = in_order(right_beyond(right, [*chosen[0], *known]))
     hidden = in_order(right_beyond(hidden, known))
@@ -407,12 +411,12 @@ class _Searched:
         return self.sides[:2] if len(self.sides) > 1 else []
 
     def judged(
-        self, unproved: str | None, *, is_over: bool = False
+        self, unproved: str | None, before: PoleZeroMap | None = None, *, is_over: bool = False
     ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
         """Return whether the model is stable, and its poles and hidden modes in the right half plane.
 
-        ``unproved`` is what could not be proved of the region. Where the budget ``is_over``, nothing more is
-        searched.
+        ``unproved`` is what could not be proved of the region; ``before`` is a map of another region. Where
+        the budget ``is_over``, nothing more is searched.
         """
         bound = self.bound
         product = Factored(
@@ -422,6 +426,8 @@ class _Searched:
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
         proof, rests = _passivity_of(bound)
+        if before is not None and before.certificate.certified and not proof:
+            return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
         limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
