@@ -503,15 +503,17 @@ def _room(slope: int) -> float:
     return max(BEYOND_LAST_POLE, 10 ** min(1, 3 / max(1, abs(slope))))
 
 
-def roots_if_found(bound: AnyBoundFunction, band: Band | None = None) -> PoleZeroMap:
+def roots_if_found(
+    bound: AnyBoundFunction, band: Band | None = None, judged: PoleZeroMap | None = None
+) -> PoleZeroMap:
     """Return the poles and zeros, or as many as can be had: a response needs none.
 
     The certificate says why where roots may be missing. Without a band all are sought, of a distributed
-    system those of :func:`symflex.roots.default_region`.
+    system those of :func:`symflex.roots.default_region`. ``judged`` is another map of the same function.
     """
     region = band if bound.is_distributed else None
     try:
-        return locate(bound, region)
+        return locate(bound, region, judged=judged)
     except SymflexError as error:
         problem = error.diagnostics[0]
         if problem.code not in WITHOUT_ROOTS:

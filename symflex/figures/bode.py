@@ -71,11 +71,12 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
     plane, or may lie there, the legend says so.
     """
-    # The default roots of distributed systems serve for nothing but a band.
+    # The default roots of distributed systems serve for nothing but a band and the poles right of the axis.
     given = canvas.band_of(bounds[0].source.model)
-    low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
+    judged = [None if given else roots_if_found(bound) for bound in bounds]
+    low, high = given or default_band(*filter(None, judged))
     band = Band(Fraction(low), Fraction(high))
-    maps = [roots_if_found(bound, band) for bound in bounds]
+    maps = [roots_if_found(bound, band, known) for bound, known in zip(bounds, judged, strict=True)]
     responses = [
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)

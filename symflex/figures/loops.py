@@ -396,13 +396,14 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
 
 def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
-    band = canvas.band_of(bound.source.model)
+    band, judged = canvas.band_of(bound.source.model), None
     if band is None:
-        low, high = default_band(roots_if_found(bound))
+        judged = roots_if_found(bound)
+        low, high = default_band(judged)
         low, high = low / WIDENED, high * WIDENED
     else:
         low, high = band
-    found = roots_if_found(bound, Band(Fraction(low), Fraction(high)))
+    found = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and not bound.is_distributed:

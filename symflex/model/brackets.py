@@ -70,8 +70,9 @@ def named_brackets(
 ) -> tuple[tuple[Equation, ...], tuple[str, ...]]:
     """Return equations in which what a bracket differentiates is an unknown of its own, and all unknowns.
 
-    Its equation comes after the others. Brackets are opened where that would add to the order in x. No
-    coefficient is differentiated then: ``(E*I*w'')'' = p`` becomes ``M'' = p`` and ``E*I*w'' = M``.
+    Its equation comes after the others. Brackets are opened where that would add to the order in x, or leave
+    an unknown without a derivative. No coefficient is differentiated then: ``(E*I*w'')'' = p`` becomes
+    ``M'' = p`` and ``E*I*w'' = M``.
 
     Examples
     --------
@@ -102,14 +103,14 @@ def _with(equations: Sequence[Equation], old: Expression, new: Expression) -> li
     return [Equation(*(replace_node(side, old, new) for side in e.children), span=e.span) for e in equations]
 
 
-def _order(equations: Sequence[Equation], unknowns: Sequence[str]) -> int:
-    """Return the order in x of a system."""
+def _order(equations: Sequence[Equation], unknowns: Sequence[str]) -> tuple[int, int]:
+    """Return the order in x of a system, and how many unknowns have no derivative."""
     opener = _Opener(frozenset(unknowns), has_coordinate=True, is_condition=False)
     highest = dict.fromkeys(unknowns, 0)
     for node in (n for e in equations for side in e.children for n in nodes(opener.opened(side))):
         if isinstance(node, Derivative) and node.name in highest:
             highest[node.name] = max(highest[node.name], node.order)
-    return sum(highest.values())
+    return sum(highest.values()), list(highest.values()).count(0)
 
 
 @dataclass(frozen=True)

@@ -290,7 +290,8 @@ def _references(
     match kept:
         case (a, b) if (a.node, a.component) == (b.node, b.component):
             message = f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'"
-            reader.note("SF218", message, found.value.span)
+            hint = 'give one end a node of its own; { type = "fixed", at = NODE } holds it'
+            reader.note("SF218", message, found.value.span, hint if a.is_ground else None)
             return None
     return kept
 

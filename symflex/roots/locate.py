@@ -64,7 +64,12 @@ if TYPE_CHECKING:
 
 
 def locate(
-    bound: AnyBoundFunction, region: Region | None = None, digits: int = 30, *, with_zeros: bool = True
+    bound: AnyBoundFunction,
+    region: Region | None = None,
+    digits: int = 30,
+    *,
+    with_zeros: bool = True,
+    judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
@@ -73,7 +78,8 @@ def locate(
     many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
     its work where no time is. Of one in nested form, a network of beams, roots are counted
     without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
-    poles that coincide with one stay among the others.
+    poles that coincide with one stay among the others. ``judged`` is another map of the same function, whose
+    poles in the right half plane need not be counted again.
     """
     if isinstance(bound, BoundNested):
         # Figures, responses and tables of one function ask for the same roots.
@@ -88,7 +94,7 @@ def locate(
         where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, with_zeros=with_zeros)
+        return locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
@@ -204,7 +210,12 @@ def _region_of(bound: AnyBoundFunction, region: Region | None) -> tuple[Region, 
 
 
 def locate_distributed(
-    bound: BoundTransferFunction, region: Region | None, digits: int, *, with_zeros: bool = True
+    bound: BoundTransferFunction,
+    region: Region | None,
+    digits: int,
+    *,
+    with_zeros: bool = True,
+    judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
@@ -238,10 +249,10 @@ def locate_distributed(
     try:
         if code is not None:
             raise BudgetError(Diagnostic(code, reason or ""))
-        verdict, right, hidden = searched.judged(reason)
+        verdict, right, hidden = searched.judged(reason, judged)
     except BudgetError as error:
         with Budget().entered():
-            verdict, right, hidden = searched.judged(error.diagnostics[0].message, is_over=True)
+            verdict, right, hidden = searched.judged(error.diagnostics[0].message, judged, is_over=True)
     known = [h.root for h in searched.hidden]
     beyond = in_order(right_beyond(right, [*chosen[0], *known]))
     hidden = in_order(right_beyond(hidden, known))
@@ -381,12 +392,12 @@ class _Searched:
         return self.sides[:2] if len(self.sides) > 1 else []
 
     def judged(
-        self, unproved: str | None, *, is_over: bool = False
+        self, unproved: str | None, before: PoleZeroMap | None = None, *, is_over: bool = False
     ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
         """Return whether the model is stable, and its poles and hidden modes in the right half plane.
 
-        ``unproved`` is what could not be proved of the region. Where the budget ``is_over``, nothing more is
-        searched.
+        ``unproved`` is what could not be proved of the region; ``before`` is a map of another region. Where
+        the budget ``is_over``, nothing more is searched.
         """
         bound = self.bound
         product = cancelled(bound)
@@ -394,6 +405,8 @@ class _Searched:
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
         proof, rests = _passivity_of(bound)
+        if before is not None and before.certificate.certified and not proof:
+            return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
         limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []

@@ -270,10 +270,10 @@ def _continued(
         foretold.append((before + np.median((now - before).real), FACTOR))
     best = min((_assigned(before, *place, now) for place in foretold), key=lambda found: found[:2])
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
-        if abs(now[column] - before[row]) > FAR and not is_clear:
+        met = _is_real(before[row]) != _is_real(now[column])
+        if abs(now[column] - before[row]) > FAR and (met or not is_clear):
             continue
         names[column] = old[row]
-        met = _is_real(before[row]) != _is_real(now[column])
         links[column] = NameOrigin.REAL_AXIS if met else NameOrigin.CLEAR if is_clear else NameOrigin.DOUBTFUL
     left = np.nonzero(names < 0)[0]
     sleeping = np.array([k for k in range(len(last)) if k not in set(old.tolist()) and not np.isnan(last[k])])

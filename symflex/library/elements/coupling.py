@@ -310,6 +310,7 @@ class Piezo(Element):
         ParameterPort("k", "N/m", "a stiffness", "0"),
     )
     through = ("f", "i")
+    passive = Passivity(of_any_sign=("alpha",))
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the force and the current, and their rows."""

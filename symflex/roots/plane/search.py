@@ -53,6 +53,8 @@ FEW = 8
 """Modes from which on a search goes on in smaller rings."""
 UNCHECKED = 12
 """Octaves searched along the axes between two counts."""
+BARREN = 4 * pi
+"""Growth of the largest kernel argument without a root on the axes, after which roots are counted."""
 FADED = 100.0
 """Width in ln of a ring where kernels do not vary faster further out, and roots are few."""
 HIGHEST = 300.0
@@ -130,7 +132,8 @@ class RootSearch:
         """
         if self.reached == -inf:
             self.reached = self.smallest()
-        checked = self.reached
+        checked = fruitful = self.reached
+        reach = self._winding.reach
         while self.reached < radius or self._modes() < modes:
             if self.reached > HIGHEST:
                 self.reached = inf
@@ -140,14 +143,16 @@ class RootSearch:
                 entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             high = self.reached + (RING if known < FEW else RING / 4)
             try:
-                self.roots.extend(self.on_axes(self.reached, high))
+                found = self.on_axes(self.reached, high)
             except RootOnPathError:
                 return False
+            self.roots.extend(found)
             self.reached = high
-            if high - checked > UNCHECKED * RING:
+            fruitful = high if found else fruitful
+            if high - checked > UNCHECKED * RING or reach(high) - reach(fruitful) > BARREN:
                 if not is_complete():
                     return False
-                checked = high
+                checked = fruitful = high
         return is_complete()
 
     def on_axes(self, low: float, high: float) -> list[Root]:

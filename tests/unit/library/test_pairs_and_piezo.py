@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 import symflex
+from symflex import pipeline
 from symflex.errors import SpecError
+from symflex.model.signs import is_passive
 
 S = 0.3 + 4j
 TWO = """symflex = 1
@@ -143,6 +145,14 @@ def test_a_transducer_turns_no_energy_into_heat():
     # Maxwell's relation of the enthalpy H(x, v): charge per force, shorted, is extension per voltage.
     shorted = piezo(FORCE).replace("[inputs]", 'wire = { type = "fixed", at = "v" }\n[inputs]')
     assert value(shorted, "I/u") / S == pytest.approx(value(piezo(VOLTAGE), "X/u"))
+
+
+def test_a_transducer_supplies_no_energy_unless_its_stiffness_is_negative():
+    # Of power v i + f s (x_a - x_b), what alpha adds cancels: C v^2/2 + k (x_a - x_b)^2/2 is stored.
+    for alpha in ("alpha", "-alpha"):
+        text = piezo(VOLTAGE).replace('alpha = "alpha"', f'alpha = "{alpha}"')
+        assert is_passive(pipeline.loads(text)), alpha
+    assert not is_passive(pipeline.loads(piezo(VOLTAGE, 'C = "C", k = "k - 2*k"')))
 
 
 def test_a_transducer_needs_neither_capacitance_nor_stiffness():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy
 
+import symflex
 from symflex.errors import Source, SpecError, Text
 from symflex.errors.diagnostic import Span
 from symflex.expressions import format_expression, parse_equation
@@ -80,6 +81,26 @@ def test_a_bracket_with_the_highest_derivative_becomes_an_unknown():
         "(a*x*w'')'' - (b*w' + b*x*w'') = s^2*w",
         "a*x*w'' = (a*x*w'')",
     ]
+
+
+PLATE = """symflex = 1
+title = "A clamped circular plate that bends symmetrically"
+parameters = { D = "1 N*m", m = "1 kg/m^2", a = "1 m" }
+inputs.p = { unit = "Pa" }
+outputs.centre = "w(0)"
+[fields.plate]
+unknowns = ["w", "phi", "M", "q"]
+domain = ["0", "a"]
+equations = ["w' = phi", "(x*phi)' = x*M/D", "x*M' = q", "q' = -m*s^2*x*w + x*p"]
+conditions = ["w(a) = 0", "phi(a) = 0"]
+"""
+
+
+def test_a_bracket_that_holds_no_derivative_is_opened():
+    # Leissa 1969, Vibration of Plates: the lowest natural frequency is 10.2158 sqrt(D/m)/a^2.
+    centre = symflex.loads(PLATE).transfer_function("centre", "p").bind()
+    below, above = (centre(omega * 1j).real for omega in (10.2157, 10.2159))
+    assert below > 0 > above
 
 
 def test_a_parameter_called_x_is_no_coordinate():

@@ -9,7 +9,7 @@ import pytest
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
-from symflex.roots import Modes
+from symflex.roots import Band, Modes
 from symflex.roots.functions.simplified import _value, without_lengths_of_zero
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, bound
@@ -147,3 +147,16 @@ def test_what_cancels_stays_hidden_where_one_or_all_lengths_are_zero():
     assert hidden == source.ratio.ring.context.gen(0) - 3
     # The delay that is none is 1.
     assert source.ratio.ring.context.gen(0) + 3 in [factor for factor, _ in source.den.factors]
+
+
+def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):
+    # exp(-s)/(s + 1) with gain 5: one pair right of the axis, at 2.03 to 2.5 rad/s.
+    loop = of("y", signals='blocks.D = { type = "delay", T = 1 }\nsignals.y = "5*D*(u - y)/(s + 1)"\n')
+    band = Band(1, 2)
+    fresh, lowest = locate(loop, band), locate(loop, Modes(2))
+    monkeypatch.setattr("symflex.roots.locate.search_right", None)
+    found = locate(loop, band, judged=lowest)
+    assert found.verdict == fresh.verdict
+    assert found.verdict.found == 2
+    assert places(found.unstable) == places(fresh.unstable) != []
+    assert places(found.poles) == places(fresh.poles)

@@ -47,6 +47,14 @@ def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
     assert names.link[1].tolist()[1] == NameOrigin.APPEARS
 
 
+def test_a_pair_far_from_the_real_axis_is_not_taken_for_a_real_root():
+    # A taut cable with a damper near its end: the lowest root is a lightly damped pair, or a real root.
+    s = np.array([[-0.0102 + 1.0034j], [-0.966]])
+    names = follow(s, NO_FAMILY, ONE_STEP)
+    assert names.mode[1].tolist() == [1]
+    assert names.link[1].tolist() == [NameOrigin.APPEARS]
+
+
 def test_modes_that_swap_places_within_one_step():
     sweep = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:30:lin:4"})
     assert np.allclose(sweep["im"][:, 0], np.sqrt(np.linspace(1, 30, 4)))

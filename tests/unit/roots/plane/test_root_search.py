@@ -189,6 +189,15 @@ def test_a_scan_says_whether_these_are_all():
         assert search(even).scan(1, log(9), lambda complete=complete: complete) is complete
 
 
+def test_a_scan_along_axes_without_roots_ends_soon():
+    # The roots of s^4 + 64 are +-2 +- 2j: none lies on an axis.
+    one = search(lambda s: [(s**4 + 64, 1)])
+    asked = []
+    assert one.scan(1, -inf, lambda: bool(asked.append(one.reached))) is False
+    assert len(asked) == 1
+    assert log(8) < asked[0] < log(100)
+
+
 HOLE = Cell(log(2) - 0.05, log(2) + 0.3, 1.8, 2.3)
 """About -1 + 2j, at ln 2.236 and 2.03 rad."""
 
