@@ -177,14 +177,28 @@ class InputShaper:
 def input_shaper(
     bound: AnyBoundFunction, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
 ) -> InputShaper:
-    """Return a shaper for so many of the lowest modes that oscillate, whose poles are proved.
+    """Return a shaper for the lowest modes that oscillate.
 
-    ``kind`` is ``zv``, ``zvd`` or ``ei``; ``digits`` are of poles, times and amplitudes. A ``joint`` one is
-    for all modes together, of kind ``zv`` or ``zvd``: with several modes it is shorter than the convolution
-    of one for each, which is taken where none is found.
+    Parameters
+    ----------
+    bound : BoundTransferFunction or BoundNested
+        Whose poles they are; proved.
+    modes : int
+        How many of them, by natural frequency.
+    kind : str
+        ``zv``, ``zvd`` or ``ei``.
+    digits : int
+        Of poles, times and amplitudes.
+    joint : bool
+        One for all modes together, of kind ``zv`` or ``zvd``: with several modes it is shorter than the
+        convolution of one for each, which is taken where none is found.
 
-    SF902 for an unknown kind, or more modes than there are; SF814 where a mode cannot be told from another,
-    or is damped too much for the kind.
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown kind, or more modes than there are.
+    ModelError
+        SF814 where a mode cannot be told from another, or is damped too much for the kind.
 
     Examples
     --------

@@ -135,10 +135,22 @@ class _Continuous:
 def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
     r"""Return a transfer function as it is seen, or is to be computed, at samples.
 
-    It is rational, but for dead times outside of loops. SF902 for a dead time of too many samples, or with
-    another method than ``zoh`` of no whole number, and for a pole that ``tustin`` takes to infinity; SF235
-    for beams, and for delays in loops; SF236 for a function that grows with s; SF810 where poles cannot be
-    told apart.
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Rational, but for dead times outside of loops.
+    sampling : Sampling
+        How often, and by which method.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a dead time of too many samples, or with another method than ``zoh`` of no whole number,
+        and for a pole that ``tustin`` takes to infinity.
+    ModelError
+        SF235 for beams, and for delays in loops; SF236 for a function that grows with s.
+    UncertifiedError
+        SF810 where poles cannot be told apart.
 
     Examples
     --------

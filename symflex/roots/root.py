@@ -53,6 +53,19 @@ class RootDecimals:
 class Root:
     """A root s [rad/s], proved to lie in the box ``re`` x ``im``.
 
+    Parameters
+    ----------
+    re, im : arb
+        Enclosures [rad/s]; exactly zero where that is proved.
+    multiplicity : int
+        Exact when ``certified``; otherwise the number of roots the box holds, counted with multiplicity.
+    on_imaginary_axis, is_real : bool
+        Proved to have real (imaginary) part exactly zero; a root at 0 is both.
+    certified : bool
+        False when the box is proved to hold ``multiplicity`` roots that could not be told apart.
+    on_boundary : bool
+        On the boundary of the region searched, or too close to it to be decided.
+
     Examples
     --------
     >>> root = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
@@ -60,16 +73,13 @@ class Root:
     (0.6, RootDecimals(re='-3.0000', im='4.0000', radius='0'))
     """
 
-    # re and im: enclosures [rad/s]; exactly zero where that is proved.
     re: arb
     im: arb
-    # Exact when ``certified``; otherwise the number of roots the box holds, counted with multiplicity.
     multiplicity: int
-    # Proved to have a real, or an imaginary part that is exactly zero; a root at 0 is both.
     on_imaginary_axis: bool
     is_real: bool
-    certified: bool = True  # False: the box holds ``multiplicity`` roots that could not be told apart
-    on_boundary: bool = False  # of the region searched, or too close to it to be decided
+    certified: bool = True
+    on_boundary: bool = False
 
     @property
     def is_zero(self) -> bool:
@@ -124,8 +134,17 @@ class Root:
     def decimal(self, digits: int) -> RootDecimals:
         """Print the root with at most ``digits`` significant digits in each component.
 
-        Fewer digits appear where the enclosure does not certify them all; at least 1 is asked for. ``radius``
-        bounds the rounding of the print and the enclosure together.
+        Fewer digits appear where the enclosure does not certify them all.
+
+        Parameters
+        ----------
+        digits : int
+            Significant digits, at least 1.
+
+        Returns
+        -------
+        RootDecimals
+            ``radius`` bounds the rounding of the print and the enclosure together.
         """
         return decimals(self.re, self.im, digits)
 

@@ -275,6 +275,9 @@ class KernelReduction:
                 result = result * Factored.polynomial(self.ring, rest) ** exponent
         return result
 
+    def _in_exponentials(self, value: Factored) -> Factored:
+        return value.map_factors(self.coordinates.coordinates, self.coordinates.transform)
+
     def _restorer(self, values: Sequence[Factored]) -> tuple[KernelTable, _Restorer]:
         """Return how to come back from exponentials, with half angles where nothing else will do."""
         plain = _Restorer(self.coordinates, self.coordinates, ())

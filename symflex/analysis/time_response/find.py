@@ -89,8 +89,14 @@ def time_response(
     Every value is enclosed, by default to ``digits`` digits of the largest one. With a ``shaper`` the input
     is convolved by its impulses first: the response is a sum of late ones.
 
-    SF902 for an unknown input, or a shaper with fewer digits; SF813 for large networks with delays; SF810
-    when poles cannot be told apart, or modes do not say what the response is.
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown input, or a shaper with fewer digits.
+    ModelError
+        SF813 for large networks with delays.
+    UncertifiedError
+        SF810 when poles cannot be told apart, or modes do not say what the response is.
 
     Examples
     --------

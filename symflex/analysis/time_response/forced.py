@@ -59,8 +59,12 @@ def forced_response(
     Before the first sample the input is 0, between two a straight line, after the last one it keeps its
     value; a ``shaper`` convolves it with its impulses.
 
-    SF811 for times that do not increase, or have no common measure coarse enough; SF810 where the transfer
-    function differentiates its input: the response would have impulses.
+    Raises
+    ------
+    UsageError
+        SF811 for times that do not increase, or have no common measure coarse enough.
+    UncertifiedError
+        SF810 where the transfer function differentiates its input: the response would have impulses.
 
     Examples
     --------
