@@ -34,12 +34,12 @@ from symflex.expressions import (
     Call,
     Equation,
     Expression,
-    Name,
     Negative,
     Number,
     Sum,
     format_expression,
     names,
+    names_among,
     substitute,
 )
 from symflex.library.elements import (
@@ -456,8 +456,7 @@ class _Assembly:
         """The delay blocks, and the blocks made of them."""
         found = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
         for block in self._ordered_blocks():
-            used = {n.name for _, e in block.values for n in names(e) if isinstance(n, Name)}
-            if used & found:
+            if any(names_among(e, found) for _, e in block.values):
                 found.add(block.name)
         return found
 
@@ -470,7 +469,7 @@ class _Assembly:
         expressions = {d.name: [d.expression] for d in self.model.definitions}
         expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}
         graph = {
-            name: [n.name for e in found for n in names(e) if isinstance(n, Name) and n.name in expressions]
+            name: [n for e in found for n in names_among(e, expressions)]
             for name, found in expressions.items()
         }
         try:

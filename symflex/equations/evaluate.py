@@ -38,6 +38,7 @@ from symflex.expressions import (
     Sum,
     format_expression,
     names,
+    names_among,
     substitute,
 )
 from symflex.library.elements import LinearForm, Variable
@@ -286,10 +287,10 @@ class Opener:
 
         Raises ModelError: SF103 when the opened argument would be unreasonably large.
         """
-        used = set(self._used(call))
+        used = set(names_among(call, self.definitions))
         for name in reversed(tuple(self.definitions)):
             if name in used and name not in self._opened:
-                used.update(self._used(self.definitions[name]))
+                used.update(names_among(self.definitions[name], self.definitions))
         for name, expression in self.definitions.items():
             if name in used and name not in self._opened:
                 self._opened[name] = self._substituted(expression, call)
@@ -299,12 +300,9 @@ class Opener:
             raise TypeError(message)
         return opened
 
-    def _used(self, expression: Expression) -> list[str]:
-        return [n.name for n in names(expression) if isinstance(n, Name) and n.name in self.definitions]
-
     def _substituted(self, expression: Expression, call: Call) -> Expression:
         parts, depth = extent(expression)
-        inner = [extent(self._opened[name]) for name in self._used(expression)]
+        inner = [extent(self._opened[name]) for name in names_among(expression, self.definitions)]
         parts += sum(count for count, _ in inner)
         depth += max((levels for _, levels in inner), default=0)
         if parts > OPENED_PARTS or depth > OPENED_DEPTH:

@@ -143,7 +143,9 @@ def _places(use: PlacedElement) -> set[str]:
 def _acted_on(model: Model, source: Input) -> set[str]:
     """Return the nodes an input acts on, directly or through signals, and the points of fields."""
     found = {r.node for r in source.nodes if not r.is_ground}
-    mentioned = _depending(model, source.name)
+    mentioned = {source.name}
+    for _ in model.signals:
+        mentioned |= {x.name for x in model.signals if _named(x.expression) & mentioned}
     for use in model.elements:
         if any(_named(e) & mentioned for _, e in use.values):
             found |= _places(use)
@@ -169,14 +171,6 @@ def _shown(model: Model, output: Output) -> set[str]:
                 pending.append(signals[name])
         for field in model.fields:
             found |= _points(expression, field.unknowns)
-    return found
-
-
-def _depending(model: Model, name: str) -> set[str]:
-    """Return a name and the signals that depend on it."""
-    found = {name}
-    for _ in model.signals:
-        found |= {x.name for x in model.signals if _named(x.expression) & found}
     return found
 
 

@@ -21,7 +21,9 @@ from symflex.expressions import (
     Sum,
     format_expression,
     names,
+    names_among,
     negative,
+    nodes,
     product_of,
     quotient,
     substitute,
@@ -44,7 +46,7 @@ def opened(model: Model) -> Model:
     sizes: dict[str, int] = {}
     for definition in model.definitions:
         known[definition.name] = _opened(definition.expression, known, sizes)
-        sizes[definition.name] = _parts(known[definition.name])
+        sizes[definition.name] = len(nodes(known[definition.name]))
 
     def put_in(given: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
         return tuple((name, _opened(e, known, sizes)) for name, e in given)
@@ -84,21 +86,12 @@ def with_filters_apart(model: Model) -> Model:
 
 
 def _opened(expression: Expression, known: Mapping[str, Expression], sizes: Mapping[str, int]) -> Expression:
-    used = [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
+    used = names_among(expression, known)
     if sum(sizes[name] for name in used) > PARTS_LIMIT:
         message = f"an expression would have more than {PARTS_LIMIT} parts with its definitions opened"
         hint = "make a signal of what is used often, which is not opened"
         raise BudgetError(Diagnostic("SF501", message, expression.span, hint))
     return substitute(expression, known) if used else expression
-
-
-def _parts(expression: Expression) -> int:
-    count, pending = 0, [expression]
-    while pending:
-        node = pending.pop()
-        count += 1
-        pending.extend(node.children)
-    return count
 
 
 class _Splitter:
@@ -188,4 +181,4 @@ def _denominators(expression: Expression) -> set[str]:
 
 
 def _holds_s(expression: Expression) -> bool:
-    return any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+    return bool(names_among(expression, (LAPLACE,)))

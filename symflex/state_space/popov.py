@@ -21,7 +21,7 @@ The field in which the rows are solved is that of quotients of polynomials free 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 Key = tuple[int, int]
 """A column and a power of s. Unknowns come first, then inputs."""
+
+Position = TypeVar("Position", Key, int)
 
 Row = dict[Key, "FieldElement"]
 """A sum of ``coefficient * s^power * column``, without coefficients that are zero."""
@@ -174,8 +176,8 @@ def add(target: Row, source: Row, factor: FieldElement) -> None:
         add_term(target, key, value * factor)
 
 
-def add_term(target: Row, key: Key, value: FieldElement) -> None:
-    """Add one term to a row in place."""
+def add_term(target: dict[Position, FieldElement], key: Position, value: FieldElement) -> None:
+    """Add one term to a row, or to an entry of a vector, in place."""
     total = target[key] + value if key in target else value
     if total.is_zero:
         target.pop(key, None)
@@ -280,12 +282,7 @@ def combined(left: Vector, right: Vector, factor: FieldElement | None = None) ->
     """Return ``left + factor*right``, or ``left + right``, without entries that are zero."""
     result = dict(left)
     for position, value in right.items():
-        addend = value if factor is None else value * factor
-        total = result[position] + addend if position in result else addend
-        if total.is_zero:
-            result.pop(position, None)
-        else:
-            result[position] = total
+        add_term(result, position, value if factor is None else value * factor)
     return result
 
 

@@ -322,17 +322,12 @@ def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] =
     if given.of in ("poles", "zeros"):
         region = region_of(RootsOptions(modes=given.modes, band=None if given.modes else given.band))
     elif given.of == "response" and not len(frequencies):
-        frequencies = _logarithmic(model, given)
+        band = model.analysis.band if given.band is None else band_ends(given.band, above_zero=True)
+        if band is None:
+            hint = "give one with --band LO HI"
+            raise UsageError(Diagnostic("SF902", "the specification has no [analysis] band", None, hint))
+        frequencies = logarithmic(*band, given.count or FREQUENCIES)
     return sweep_task(model, pair, design, given.of, region, frequencies, given.gain or ""), design
-
-
-def _logarithmic(model: Model, given: SweepOptions) -> list[float]:
-    """Return frequencies [Hz] that are equally spaced in their logarithm."""
-    band = model.analysis.band if given.band is None else band_ends(given.band, above_zero=True)
-    if band is None:
-        hint = "give one with --band LO HI"
-        raise UsageError(Diagnostic("SF902", "the specification has no [analysis] band", None, hint))
-    return logarithmic(*band, given.count or FREQUENCIES)
 
 
 def sweep_task(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symflex.errors.optional import installed
+from symflex.model.fields import counted
 from symflex.print.text import Passage, passages_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
@@ -322,17 +323,6 @@ def _stability(sweep: Sweep, points: str) -> list[str]:
     )
 
 
-def counted(count: int, what: str) -> str:
-    """Return how many there are of what, in words.
-
-    Examples
-    --------
-    >>> counted(1, "point"), counted(2, "point")
-    ('1 point', '2 points')
-    """
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"
-
-
 def _doubts(sweep: Sweep) -> list[str]:
     """Return where roots, or the names of modes, are not told apart."""
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
@@ -386,15 +376,10 @@ def _margins(sweep: Sweep) -> list[str]:
     lines = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {points}"]
     if _words(sweep):
         lines = _stability(sweep, points)
-    for name, unit in (
-        ("gain_margin_up", ""),
-        ("gain_margin_down", ""),
-        ("phase_margin", " deg"),
-        ("crossover", " Hz"),
-    ):
+    for name, unit, _ in _margin_names()[: len(MARGINS)]:
         values = sweep[name][np.isfinite(sweep[name])]
         if values.size:
-            lines.append(f"{INDENT}{name.replace('_', ' ')}: {_span(values)}{unit}")
+            lines.append(f"{INDENT}{name.replace('_', ' ')}: {_span(values)} {unit}".rstrip())
     return lines
 
 
@@ -445,7 +430,7 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         ]
     elif sweep.of == "margins":
         document["stable"] = int(np.sum(sweep["stable"] == 1))
-        for name in ("gain_margin_up", "gain_margin_down", "phase_margin", "crossover"):
+        for name in MARGINS:
             document[name] = _ends(sweep[name])
     return document
 
