@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.expressions import Name, names
+from symflex.expressions import names_among
 from symflex.model.scope import COORDINATE, scope_of
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def varies_along_x(expression: Expression) -> bool:
     >>> varies_along_x(Product((Name("A_0"), Name("x")))), varies_along_x(Name("A_0"))
     (True, False)
     """
-    return any(isinstance(n, Name) and n.name == COORDINATE for n in names(expression))
+    return bool(names_among(expression, (COORDINATE,)))
 
 
 def is_tapered(model: Model) -> bool:

@@ -89,8 +89,6 @@ def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
 
 def _frequency(reader: Reader, value: Value) -> Fraction | None:
     """Return a frequency in Hz; a bare number is in Hz, rad/s is converted with pi to 30 digits."""
-    if isinstance(value, NumberValue):
-        return value.value
     quantity = _quantity(reader, value, "a frequency", "Hz")
     if quantity is None:
         return None
@@ -194,10 +192,12 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
     return DrawingHints(tuple(found), tuple(symbols), has_rollers)
 
 
-def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) -> None:
+def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) -> bool:
+    """Tell whether a text is a name of something there is, and note where it is not."""
     if text.value not in known:
         hint = nearest(text.value, known) or f"{what}s: " + (", ".join(known[:LISTED_NAMES]) or "none")
         reader.note("SF210", f"there is no {what} '{text.value[:64]}'", text.span, hint)
+    return text.value in known
 
 
 def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction | None:
@@ -209,17 +209,11 @@ def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction 
         hint = "kinds with an end in time: " + ", ".join(IN_TIME)
         reader.note("SF207", f"{what} is of kind '{kind}', which has no 'until'", entry.key_span, hint)
         return None
-    value = entry.value
-    if isinstance(value, NumberValue):
-        number = value.value
-    else:
-        quantity = _quantity(reader, value, "a time", "s")
-        if quantity is None:
-            return None
-        number = in_limits(quantity)
-    if number > 0:
+    quantity = _quantity(reader, entry.value, "a time", "s")
+    number = None if quantity is None else in_limits(quantity)
+    if number is None or number > 0:
         return number
-    reader.note("SF227", "the end time must be after t = 0", value.span, 'as in "0.5 s"')
+    reader.note("SF227", "the end time must be after t = 0", entry.value.span, 'as in "0.5 s"')
     return None
 
 
@@ -242,30 +236,20 @@ def _has_data(
 
 def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model) -> str:
     """Return the parameter that is the gain of the loop a figure shows, empty when it shows none."""
-    entry = table.get("gain")
-    if entry is None:
-        return ""
-    text = reader.string(entry, f"gain of {what}")
+    text = reader.text(table, "gain", what)
     if text is None:
         return ""
     if kind not in OF_A_LOOP:
         hint = "kinds with a gain: " + ", ".join(OF_A_LOOP)
         reader.note("SF207", f"{what} is of kind '{kind}', which has no gain", text.span, hint)
-    names = [p.name for p in model.parameters]
-    if text.value not in names:
-        hint = nearest(text.value, names) or "parameters: " + ", ".join(names[:LISTED_NAMES])
-        reader.note("SF210", f"there is no parameter '{text.value[:64]}'", text.span, hint)
-        return ""
-    return text.value
+    is_known = _check_among(reader, text, [p.name for p in model.parameters], "parameter")
+    return text.value if is_known else ""
 
 
 def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
     kinds = "kinds: " + ", ".join(FIGURE_KINDS)
-    found = table.get("kind")
-    if found is None:
-        reader.note("SF214", f"{what} has no 'kind'", entry.key_span, kinds)
-        return ""
-    text = reader.string(found, f"kind of {what}")
+    found = reader.needed(table, "kind", entry, f"{what} has no 'kind'", kinds)
+    text = reader.string(found, f"kind of {what}") if found else None
     if text is not None and text.value not in FIGURE_KINDS:
         hint = nearest(text.value, FIGURE_KINDS) or kinds
         reader.note("SF208", f"unknown kind '{text.value[:60]}' of {what}", text.span, hint)
@@ -283,9 +267,8 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         if table is None or tf is None:
             continue
         reader.keys(table, ("expr", "where", "scale", "source", "doc"), what)
-        expr = table.get("expr")
+        expr = reader.needed(table, "expr", entry, f"{what} has no 'expr'")
         if expr is None:
-            reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
             continue
         expression = reader.expression(expr.value, what, quantities=False)
         where = _where(reader, table, what)

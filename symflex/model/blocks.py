@@ -104,12 +104,9 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
     table = reader.table(entry, what, 'for instance { type = "integrator" }')
     if table is None:
         return None
-    kind = table.get("type")
-    if kind is None:
-        types = ", ".join((*BLOCKS, MODEL_BLOCK))
-        reader.note("SF214", f"{what} has no type", entry.key_span, f"block types: {types}")
-        return None
-    text = reader.string(kind, f"type of {what}")
+    types = ", ".join((*BLOCKS, MODEL_BLOCK))
+    kind = reader.needed(table, "type", entry, f"{what} has no type", f"block types: {types}")
+    text = reader.string(kind, f"type of {what}") if kind else None
     if text is None:
         return None
     if text.value == MODEL_BLOCK:
@@ -117,8 +114,7 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
     block = BLOCKS.get(text.value)
     if block is None:
         hint = hint_of_type(text.value, (*BLOCKS, MODEL_BLOCK), ELEMENTS, "an element, of [elements]")
-        hint = hint or "types: " + ", ".join((*BLOCKS, MODEL_BLOCK))
-        reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint)
+        reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint or f"types: {types}")
         return None
     values = _read_values(reader, entry, table, block)
     return None if values is None else PlacedBlock(entry.key, block, values, span=entry.key_span)
@@ -242,16 +238,9 @@ def _read_model_block(
 ) -> PlacedBlock | None:
     what = f"block '{entry.key}'"
     reader.keys(table, ("type", "spec", "tf", "doc"), what)
-    missing = [key for key in ("spec", "tf") if table.get(key) is None]
-    for key in missing:
-        reader.note("SF214", f"{what} lacks {key}", entry.key_span, 'spec = "file.toml", tf = "OUT/IN"')
-    spec_entry, tf_entry = table.get("spec"), table.get("tf")
-    if spec_entry is None or tf_entry is None:
-        return None
-    path_text, tf_text = (
-        reader.string(spec_entry, f"spec of {what}"),
-        reader.string(tf_entry, f"tf of {what}"),
-    )
+    hint = 'spec = "file.toml", tf = "OUT/IN"'
+    found = [reader.needed(table, key, entry, f"{what} lacks {key}", hint) for key in ("spec", "tf")]
+    path_text, tf_text = (reader.string(each, f"{each.key} of {what}") if each else None for each in found)
     if path_text is None or tf_text is None:
         return None
     submodel = _load(reader, path_text, origin)

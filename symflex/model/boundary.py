@@ -23,6 +23,7 @@ from symflex.expressions import (
     format_expression,
     measured,
     names,
+    names_among,
     substitute,
 )
 from symflex.library.elements import LineElement
@@ -69,14 +70,14 @@ def varying_constants(definitions: Sequence[Definition], blocks: Sequence[Placed
     """Return the names of constants that depend on s; the definitions stand in order of use."""
     varying = {b.name for b in blocks}
     for definition in definitions:
-        if any(isinstance(n, Name) and n.name in {*varying, LAPLACE} for n in names(definition.expression)):
+        if names_among(definition.expression, {*varying, LAPLACE}):
             varying.add(definition.name)
     return frozenset(varying)
 
 
 def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
     """Tell whether an expression of constants depends on s."""
-    return any(isinstance(n, Name) and (n.name == LAPLACE or n.name in varying) for n in names(expression))
+    return bool(names_among(expression, {*varying, LAPLACE}))
 
 
 def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroundings) -> frozenset[str]:

@@ -7,20 +7,20 @@ from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
-from symflex.errors import Diagnostic, SpecError, Text
-from symflex.expressions import FUNCTIONS, names, names_among
+from symflex.errors import Diagnostic, Text
+from symflex.expressions import FUNCTIONS, names, names_among, parse
 from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
-from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, parse_unit, unit_named, unit_of
+from symflex.quantities import Quantity, looks_like_quantity, parse_unit, unit_named, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.spec import KeyValue
+    from symflex.model.spec import KeyValue, Value
 
 SHOWN_CIRCLE = 8
 """Names of a circle of definitions that a message lists."""
@@ -123,17 +123,9 @@ def _unit_text(quantity: Quantity, reading: CycleReading) -> str:
     return f"{text}/{turn}" if turns < 0 and ("/" not in text or turn != "rad") else text
 
 
-def read_label(reader: Reader, table: TableValue, what: str) -> str:
+def read_label(reader: Reader, table: TableValue | None, what: str) -> str:
     """Return the ``latex`` entry of a table when it is harmless."""
-    entry = table.get("latex")
-    text = reader.string(entry, f"latex of {what}") if entry else None
-    if text is None:
-        return ""
-    try:
-        return check_label(text)
-    except SpecError as error:
-        reader.take(error.diagnostics)
-        return ""
+    return reader.read(check_label, reader.text(table, "latex", what)) or ""
 
 
 def with_formulas_defined(
@@ -200,9 +192,8 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
     else:
         quantity, literal = _quantity(reader, entry, what, named)
     assume, unit_text = _assumption(reader, table, what), ""
-    if table is not None and (unit := table.get("unit")):
-        text = reader.string(unit, f"unit of {what}")
-        quantity, unit_text = _with_unit(reader, quantity, text, what)
+    if table is not None and table.get("unit"):
+        quantity, unit_text = _with_unit(reader, quantity, reader.text(table, "unit", what), what)
         literal = literal or quantity is not None
     _check_sign(reader, quantity, assume, entry)
     return DeclaredParameter(
@@ -211,8 +202,8 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         literal,
         unit_text,
         assume,
-        read_label(reader, table, what) if table else "",
-        reader.plain(table, "doc", what) if table else "",
+        read_label(reader, table, what),
+        reader.plain(table, "doc", what),
         entry.key_span,
     )
 
@@ -221,8 +212,6 @@ def _quantity(
     reader: Reader, entry: KeyValue, what: str, named: Collection[str]
 ) -> tuple[Quantity | None, bool]:
     """Return (quantity, whether a unit was written)."""
-    if isinstance(entry.value, NumberValue):
-        return Quantity(entry.value.value, 0, 0, DIMENSIONLESS, 0, ""), False
     own = Reader()
     quantity = own.quantity(entry.value, what)
     also = _formula_hint(entry.value.text, named) if isinstance(entry.value, StringValue) else None
@@ -242,7 +231,7 @@ def _formula_hint(text: Text, named: Collection[str]) -> str | None:
 
 def _formula_names(text: Text) -> set[str]:
     """Return the names in an expression, none where a text is no expression."""
-    expression = Reader().parsed(text)
+    expression = Reader().read(parse, text)
     return set() if expression is None else {n.name for n in names(expression)}
 
 
@@ -252,10 +241,8 @@ def _with_unit(
     """Apply a separate ``unit`` key to a bare number, or keep it for a symbolic parameter."""
     if text is None:
         return quantity, ""
-    try:
-        unit = parse_unit(text)
-    except SpecError as error:
-        reader.take(error.diagnostics)
+    unit = reader.read(parse_unit, text)
+    if unit is None:
         return None, ""
     if quantity is None:
         return None, text.value
@@ -276,10 +263,7 @@ def _with_unit(
 
 
 def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumption:
-    entry = table.get("assume") if table else None
-    if entry is None:
-        return "positive"
-    text = reader.string(entry, f"assume of {what}")
+    text = reader.text(table, "assume", what)
     if text is not None and text.value in ASSUMPTIONS:
         return cast("Assumption", text.value)
     if text is not None:
@@ -318,30 +302,30 @@ def assuming(name: str, assume: Assumption) -> str:
 
 def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:
     """Return the definitions in order, without circular ones."""
-    found: list[Definition] = []
-    for entry in section.entries if section else ():
-        if not reader.name(entry, "a definition", RESERVED):
-            continue
-        what, table = f"definition '{entry.key}'", None
-        value = entry.value
-        if isinstance(value, TableValue):
-            table = value
-            reader.keys(table, ("expr", "latex", "doc"), what)
-            inner = table.get("expr")
-            if inner is None:
-                hint = 'for instance { expr = "m*s^2" }'
-                reader.note("SF214", f"{what} has no 'expr'", entry.key_span, hint)
-                continue
-            value = inner.value
-        if isinstance(value, NumberValue | StringValue):
-            expression = reader.expression(value, what)
-        else:
-            reader.misfit(f"{what} must be an expression", value)
-            expression = None
-        if expression is not None:
-            label = read_label(reader, table, what) if table else ""
-            found.append(Definition(entry.key, expression, label, entry.key_span))
-    return _without_circles(reader, found)
+    return _without_circles(reader, read_entries(section, lambda entry: _read_definition(reader, entry)))
+
+
+def _read_definition(reader: Reader, entry: KeyValue) -> Definition | None:
+    what = f"definition '{entry.key}'"
+    if not reader.name(entry, "a definition", RESERVED):
+        return None
+    value, label = _value_and_label(reader, entry, what, 'for instance { expr = "m*s^2" }')
+    expression = None
+    if isinstance(value, NumberValue | StringValue):
+        expression = reader.expression(value, what)
+    elif value is not None:
+        reader.misfit(f"{what} must be an expression", value)
+    return None if expression is None else Definition(entry.key, expression, label, entry.key_span)
+
+
+def _value_and_label(reader: Reader, entry: KeyValue, what: str, example: str) -> tuple[Value | None, str]:
+    """Return what an entry holds, alone or as ``expr`` beside a label; None where that is missing."""
+    if not isinstance(entry.value, TableValue):
+        return entry.value, ""
+    reader.keys(entry.value, ("expr", "latex", "doc"), what)
+    label = read_label(reader, entry.value, what)
+    inner = reader.needed(entry.value, "expr", entry, f"{what} has no 'expr'", example)
+    return inner.value if inner else None, label
 
 
 def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
@@ -400,15 +384,7 @@ def read_outputs(reader: Reader, section: TableValue | None) -> tuple[Output, ..
 def _read_output(reader: Reader, entry: KeyValue) -> Output | None:
     if not reader.name(entry, "an output"):
         return None
-    what, value, label = f"output '{entry.key}'", entry.value, ""
-    if isinstance(value, TableValue):
-        reader.keys(value, ("expr", "latex", "doc"), what)
-        label = read_label(reader, value, what)
-        inner = value.get("expr")
-        if inner is None:
-            hint = 'for instance { expr = "x_tip" }'
-            reader.note("SF214", f"{what} has no 'expr'", entry.key_span, hint)
-            return None
-        value = inner.value
-    expression = reader.expression(value, what, quantities=False)
+    what = f"output '{entry.key}'"
+    value, label = _value_and_label(reader, entry, what, 'for instance { expr = "x_tip" }')
+    expression = None if value is None else reader.expression(value, what, quantities=False)
     return None if expression is None else Output(entry.key, expression, None, "", label, entry.key_span)

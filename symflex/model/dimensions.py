@@ -41,6 +41,7 @@ from symflex.expressions import (
     is_number,
     measured,
     names,
+    names_among,
     number,
     power,
     product_of,
@@ -529,7 +530,7 @@ class DimensionSystem:
 
 def _gain_hint(expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
     """Say that an integral or a derivative has another unit; a gain makes it fit, also a plain number."""
-    has_s = any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+    has_s = names_among(expression, (LAPLACE,))
     if has_s and any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
         return "'s' and '1/s' have units: multiply by a gain; a plain number, as in '1*(u/s)', fits any unit"
     return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import SpecError, Text
+from symflex.errors import Text
 from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
 from symflex.model.brackets import open_brackets
 from symflex.model.declarations import read_label
@@ -158,10 +158,9 @@ def name_problem(
 
 
 def _domain(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Expression, Expression] | None:
-    what, given = f"domain of field '{entry.key}'", table.get("domain")
+    what, message = f"domain of field '{entry.key}'", f"field '{entry.key}' has no domain"
+    given = reader.needed(table, "domain", entry, message, 'for instance domain = ["0", "l"]')
     if given is None:
-        message = f"field '{entry.key}' has no domain"
-        reader.note("SF214", message, entry.key_span, 'for instance domain = ["0", "l"]')
         return None
     value = given.value
     if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
@@ -192,11 +191,9 @@ def _equations(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equa
 
 
 def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equation, ...] | None:
-    given = table.get("conditions")
+    hint = "give as many as its order in x, or conditions = [] when another field has them"
+    given = reader.needed(table, "conditions", entry, f"field '{entry.key}' has no conditions", hint)
     if given is None:
-        message = f"field '{entry.key}' has no conditions"
-        hint = "give as many as its order in x, or conditions = [] when another field has them"
-        reader.note("SF214", message, entry.key_span, hint)
         return None
     texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")
     who = f"field '{entry.key}' has"
@@ -215,12 +212,8 @@ def _few(
 
 def parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:
     """Return the equations that texts hold; None without texts, or when one cannot be read."""
-    found: list[Equation] = []
-    for text in texts or ():
-        try:
-            found.append(parse_equation(text))
-        except SpecError as error:
-            reader.take(error.diagnostics)
+    read = [reader.read(parse_equation, text) for text in texts or ()]
+    found = [equation for equation in read if equation is not None]
     return tuple(found) if texts is not None and len(found) == len(texts) else None
 
 

@@ -22,7 +22,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     is_number,
-    names,
+    names_among,
 )
 from symflex.model.scope import outside, without_point
 
@@ -170,7 +170,7 @@ class _Degrees:
         if value is None:
             half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
             hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
-            if any(isinstance(n, Name) and n.name == LAPLACE for n in names(power.base)):
+            if names_among(power.base, (LAPLACE,)):
                 hint = "powers of s are integers; diffusion along x gives half powers: see [fields]"
             self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
             return base
@@ -205,7 +205,7 @@ class _Degrees:
             message = f"{call.name} of a quantity that varies in time is not linear"
             self.note("SF222", message, call.span, LINEARISE)
             return "unknown"
-        if any(isinstance(n, Name) and n.name == LAPLACE for n in names(call.argument)):
+        if names_among(call.argument, (LAPLACE,)):
             message = f"{call.name} of an expression in s is not available yet"
             self.note("SF910", message, call.span, DELAY_HINT if call.name == "exp" else FUNCTION_HINT)
         return inner

@@ -7,7 +7,7 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, SpecError, nearest
+from symflex.errors import Diagnostic, nearest
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import (
     CIRCUITS,
@@ -225,11 +225,9 @@ def _spare(table: TableValue, element: Element, choices: Mapping[str, str]) -> M
 
 
 def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element | None:
-    kind = table.get("type")
-    if kind is None:
-        reader.note("SF214", f"element '{entry.key}' has no type", entry.key_span, TYPES_HINT)
-        return None
-    text = reader.string(kind, f"type of element '{entry.key}'")
+    what = f"element '{entry.key}'"
+    kind = reader.needed(table, "type", entry, f"{what} has no type", TYPES_HINT)
+    text = reader.string(kind, f"type of {what}") if kind else None
     if text is None:
         return None
     element = ELEMENTS.get(text.value)
@@ -401,14 +399,9 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
 
 def _unit(reader: Reader, table: TableValue, what: str, kind: str | None) -> str:
     """Return the unit an input declares; transfer functions are per SI unit, so it must be one."""
-    entry = table.get("unit")
-    text = reader.string(entry, f"unit of {what}") if entry else None
-    if text is None:
-        return ""
-    try:
-        unit = parse_unit(text)
-    except SpecError as error:
-        reader.take(error.diagnostics)
+    text = reader.text(table, "unit", what)
+    unit = reader.read(parse_unit, text)
+    if text is None or unit is None:
         return ""
     if kind is not None and unit.dimension != unit_of(INPUT_KINDS[kind].unit).dimension:
         a_kind = f"{'an' if kind.startswith('a') else 'a'} {kind.replace('_', ' ')}"

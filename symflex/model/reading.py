@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
-from symflex.quantities import Quantity, looks_like_quantity, name_hint, parse_quantity
+from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, name_hint, parse_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -134,11 +134,24 @@ class Reader:
         self.misfit(f"{what} must be a string", entry.value)
         return None
 
-    def plain(self, table: TableValue, key: str, what: str) -> str:
+    def text(self, table: TableValue | None, key: str, what: str) -> Text | None:
+        """Return an optional string of a table, None when missing."""
+        entry = table.get(key) if table else None
+        return self.string(entry, f"{key} of {what}") if entry else None
+
+    def plain(self, table: TableValue | None, key: str, what: str) -> str:
         """Return an optional string, empty when missing."""
-        entry = table.get(key)
-        text = self.string(entry, f"{key} of {what}") if entry else None
+        text = self.text(table, key, what)
         return text.value if text else ""
+
+    def needed(
+        self, table: TableValue, key: str, entry: KeyValue, message: str, hint: str | None = None
+    ) -> KeyValue | None:
+        """Return what the table of an entry must hold; the message says that it does not."""
+        found = table.get(key)
+        if found is None:
+            self.note("SF214", message, entry.key_span, hint)
+        return found
 
     def strings(
         self, entry: KeyValue, what: str, kind: str = "a string or an array of strings"
@@ -152,16 +165,18 @@ class Reader:
         self.misfit(f"{what} must be {kind}", value)
         return None
 
-    def parsed(self, text: Text) -> Expression | None:
-        """Return the expression a string holds."""
+    def read(self, make: Callable[[Text], Made], text: Text | None) -> Made | None:
+        """Return what is made of a string, None without one or where it is wrong, which is noted."""
         try:
-            return parse(text)
+            return None if text is None else make(text)
         except SpecError as error:
             self.take(error.diagnostics)
             return None
 
     def quantity(self, value: Value, what: str, hint: str | None = None) -> Quantity | None:
         """Return a number or a quantity; the hint is for one that is malformed and has no better one."""
+        if isinstance(value, NumberValue):
+            return Quantity(value.value, 0, 0, DIMENSIONLESS, 0, "")
         if isinstance(value, StringValue):
             try:
                 return parse_quantity(value.text)
@@ -187,7 +202,7 @@ class Reader:
                 return None
             if found.unit:
                 return QuantityLiteral(found, span=value.text.span)
-        return self.parsed(value.text)
+        return self.read(parse, value.text)
 
 
 def signed_number(value: Fraction, span: Span | None = None) -> Expression:

@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError, nearest
+from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest
 from symflex.expressions import substitute
 from symflex.model.declarations import one_of, without_sign
 from symflex.model.units import exact_expression
@@ -83,10 +83,10 @@ def settled(
 def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> DeclaredParameter:
     name = parameter.name
     text = Text(str(given), Span(Source(OPTION, f"{name}={given}"), len(name) + 1, len(f"{name}={given}")))
-    try:
-        quantity = parse_quantity(text) if isinstance(given, str) else _number(name, given)
-    except SpecError as error:
-        reader.take(error.diagnostics)
+    quantity = reader.read(
+        lambda text: parse_quantity(text) if isinstance(given, str) else _number(name, given), text
+    )
+    if quantity is None:
         return parameter
     own = one_of(parameter.unit_text) if parameter.unit_text else parameter.quantity
     if own is not None and (parameter.has_unit or parameter.unit_text):
