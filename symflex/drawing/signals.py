@@ -120,8 +120,7 @@ class SignalGraph:
         return [n.name for n in self.nodes if n.kind == "reading"]
 
     def _end(self, kind: Kind, name: str, label: str, value: Expression) -> None:
-        origin = self._positive(value)
-        self._join(origin, self._new(kind, name, label), is_minus=False)
+        self._box(kind, name, label, self._positive(value))
 
     def _positive(self, value: Expression) -> int:
         """Return the node whose signal an expression is, behind a gain of -1 where it is minus that."""

@@ -145,9 +145,9 @@ def _section(section: Section, level: int) -> str:
     anchor = _escape(section.anchor)
     tag = f"h{min(level, DEEPEST_HEADING)}"
     if not section.title:
-        body = "\n".join(_block(block, level, anchor) for block in section.blocks)
+        body = "\n".join(_block(block, level) for block in section.blocks)
         return f'<div id="{anchor}">\n{body}\n</div>'
-    blocks = [_block(block, level + 1, anchor) for block in section.blocks]
+    blocks = [_block(block, level + 1) for block in section.blocks]
     if section.folded:
         # A chapter's first sentences, and what it warns of, stay in sight.
         shown = sum(1 for _ in takewhile(lambda b: isinstance(b, Paragraph | Notice), section.blocks))
@@ -160,7 +160,7 @@ def _section(section: Section, level: int) -> str:
     )
 
 
-def _block(block: Block, level: int, anchor: str) -> str:
+def _block(block: Block, level: int) -> str:
     match block:
         case Section():
             return _section(block, level)

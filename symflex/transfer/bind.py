@@ -428,10 +428,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     for factor, exponent in tf.ratio.factors:
         value = images.apply(factor)
         if value.is_zero and exponent < 0:
-            message = f"the denominator of {tf.name} is zero for these values"
-            raise ModelError(
-                Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations")
-            )
+            raise _vanishing(f"the denominator of {tf.name}")
         if exponent > 0:
             above = above * value**exponent
         else:
@@ -453,6 +450,11 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     kernels = tf.kernels.embedded([(v, images.apply_factored(v)) for v in tf.kernels.values])
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
     return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts))
+
+
+def _vanishing(what: str) -> ModelError:
+    hint = "a rigid or massless limit has its own equations"
+    return ModelError(Diagnostic("SF231", f"{what} is zero for these values", None, hint))
 
 
 def _compared(bound: BoundTransferFunction) -> BoundTransferFunction:
@@ -598,10 +600,7 @@ class _Substitution:
         for factor, exponent in value.factors:
             image = self.apply(factor)
             if image.is_zero and exponent < 0:
-                message = "a denominator is zero for these values"
-                raise ModelError(
-                    Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations")
-                )
+                raise _vanishing("a denominator")
             result = result * image**exponent
         return result
 

@@ -69,11 +69,10 @@ def figure_section(study: Study) -> ChapterPart | None:
     for figure in (*(asked or _defaults(drawable)), *_steps(study, drawable)):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: PageFigure | SymflexError
-        if figure.gain and figure.kind in LOOP_FIGURES:
-            drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
-        elif figure.kind not in FIGURES:
+        is_loop = bool(figure.gain) and figure.kind in LOOP_FIGURES
+        if not is_loop and figure.kind not in FIGURES:
             drawn = SymflexError(Diagnostic("SF902", f"a figure of kind '{figure.kind}' names a gain"))
-        elif chosen:
+        elif is_loop or chosen:
             drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
         else:
             drawn = SymflexError(Diagnostic("SF402", "all its functions are zero: there is nothing to draw"))
@@ -113,30 +112,27 @@ def _ends(bound: AnyBoundFunction) -> tuple[str, str]:
     return bound.source.input.name, bound.source.output.unit
 
 
-def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> PageFigure:
-    """Draw a root locus, or a Nyquist plot of the loop gain."""
-    drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
-    caption = f"{figure.title}. " if figure.title else ""
-    caption += f"{LOOP_WORDS[figure.kind]} {figure.gain}."
-    return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
-
-
 def _picture(
     study: Study, figure: Figure, chosen: list[AnyBoundFunction], files: dict[str, bytes]
 ) -> PageFigure:
+    """Draw functions, measured data with one of them, or the loop of a gain."""
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
-    caption = f"{figure.title}. " if figure.title else ""
-    told = next((c for c in study.comparisons if c.measured.name == chosen[0].name), None)
-    if figure.has_data and told is not None:
+    data = study.comparisons if figure.has_data else ()
+    told = next((c for c in data if c.measured.name == chosen[0].name), None)
+    if figure.gain and figure.kind in LOOP_FIGURES:
+        drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
+        caption = f"{LOOP_WORDS[figure.kind]} {figure.gain}."
+    elif told is not None:
         drawn = draw_measured(told.measured, told.model, told.unit)
         kind = "SYNTHETIC data, computed and not measured" if told.measured.is_synthetic else "measured data"
-        caption += f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
-        return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
-    frame = AxisLimits(x=(0.0, float(figure.until))) if figure.until else FREE
-    drawn = draw(figure.kind, chosen, band_hz=figure.band, frame=frame)
-    caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
-    return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
+        caption = f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
+    else:
+        frame = AxisLimits(x=(0.0, float(figure.until))) if figure.until else FREE
+        drawn = draw(figure.kind, chosen, band_hz=figure.band, frame=frame)
+        caption = f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
+    title = f"{figure.title}. " if figure.title else ""
+    return picture(f"{study.stem}_{figure.name}", drawn, title + caption, files)
 
 
 def data_section(study: Study) -> ChapterPart | None:
