@@ -19,7 +19,7 @@ def varies_along_x(expression: Expression) -> bool:
 
     Examples
     --------
-    >>> from symflex.expressions import Product
+    >>> from symflex.expressions import Name, Product
     >>> varies_along_x(Product((Name("A_0"), Name("x")))), varies_along_x(Name("A_0"))
     (True, False)
     """
