@@ -433,19 +433,30 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     if all(x.denominator == 1 for x in written) or any(n.name not in ("exp", "sqrt") for n in calls):
         return num, den
     wanted = {*written, Fraction(1)}
-    (above, powers), (below, divisors) = powers_of(num), powers_of(den)
+
+    def led_by_s(part: Expression) -> Expression:
+        if not isinstance(part, Sum) or powers_of(part.terms[0])[1].keys() != {S}:
+            return part
+        scaled = _scaled(part, divisor := _typed_scale(part, wanted))
+        return part if scaled is None else product_of([number(divisor), scaled])
+
+    (above, powers), (below, divisors) = (powers_of(rebuilt(e, led_by_s)) for e in (num, den))
     scale = above / below
     for parts, side in ((divisors, -1), (powers, 1)):
         for part in [p for p in parts if isinstance(p, Sum)]:
             divisor = _typed_scale(part, wanted)
             if divisor != 1 and (scaled := _scaled(part, divisor)) is not None:
                 scale *= divisor ** (parts[part] * side)
-                parts[scaled] = parts.pop(part)
+                ordered = [(scaled if base == part else base, n) for base, n in parts.items()]
+                parts.clear()
+                for base, n in ordered:
+                    parts[base] = parts.get(base, 0) + n
     if (own := _number_in(scale)) is None:
         return num, den
     tried = [product_of([own, *(power(b, n) for b, n in powers.items())])]
-    sums = (b for b, n in powers.items() if isinstance(b, Sum) and n == 1)
-    inside = next((b for b in sums if Name(IMAGINARY) not in names(b)), None)
+    sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
+    # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2.
+    inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
     if inside is not None and scale != 1 and (spread := _scaled(inside, 1 / scale)) is not None:
         tried.append(product_of([spread if b == inside else power(b, n) for b, n in powers.items()]))
     new = min(tried, key=length), product_of([power(b, n) for b, n in divisors.items()])
@@ -458,11 +469,19 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
     tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
 
-    def rank(divisor: Fraction) -> tuple[bool, bool, int, bool, int]:
+    def rank(divisor: Fraction) -> tuple[bool | int, ...]:
         divided = [f / divisor for f in fronts]
         is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
-        as_usual = is_monic and divided[0] == 1
-        return all(is_wanted), as_usual, sum(is_wanted), is_whole[0], sum(is_whole)
+        is_typed = all(is_wanted)
+        as_usual = is_monic and divided[0] == 1 and sum(is_whole) >= len(divided) - 1
+        has_symbols = {*names(total)} != {S}
+        return (
+            is_typed and (divisor == 1 or not has_symbols),
+            as_usual,
+            sum(is_wanted),
+            is_whole[0],
+            sum(is_whole),
+        )
 
     return max(tried, key=rank)
 

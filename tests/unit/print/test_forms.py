@@ -382,6 +382,9 @@ SHAPES = {
         "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
     "a resonance given in hertz, by powers of s": (
         "zeta = 0.1, f = '5 Hz'", "u/(s^2 + 2*zeta*f*s + f^2)", "1/(s^2 + 4*pi*zeta*f*s + 4*pi^2*f^2)"),
+    "a notch of typed damping": (
+        "f = '60 Hz'", "(s^2 + 2*0.05*f*s + f^2)*u/(s^2 + 2*0.5*f*s + f^2)",
+        "(s^2 + 0.2*pi*f*s + 4*pi^2*f^2)/(s^2 + 2*pi*f*s + 4*pi^2*f^2)"),
     # Sallen & Key 1955, with unity gain.
     "a filter of second order, by powers of s": (
         "R_1 = {}, R_2 = {}, C_1 = {}, C_2 = {}", "u/(C_2*s*(R_1*(R_2*C_1*s + 1) + R_2) + 1)",
