@@ -11,6 +11,7 @@ TARGETS = (
     "expression",
     "quantity",
     "columns",
+    "input_signal",
     "universal_file",
     "network_file",
     "numpy_archive",

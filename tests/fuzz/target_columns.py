@@ -21,6 +21,8 @@ def seeds():
         b'"f","psd_x","psd_y"\n' + b"".join(b"%d,%d,1\n" % (i, 3 * i % 7 + 1) for i in range(1, 12)),
         b"Magnitude\nf,dB\n1,2\n2,3\n3,4\n\nPhase (deg)\nf,value\n1,2\n2,3\n3,4\n",
         b"* x\n* Data: Impedance (ohms), Phase (degrees)\n1 2 3\n2 3 4\n3 4 5D+0\n",
+        b"f,1,2,3,4,5,6,7\nre,1,2,3,4,5,6,7\nim,3,2,3,2,1,2,3\n",
+        b"C   RUN\nC   F(HZ)  RE  IM\n1  2  3\n2  3  4\n3  4  5D0\n",
         b"f;-Im(Z)/Ohm;Re(Z)/Ohm\n3;1-2i;2\n2;3;4\n1;4;(1,2)\n",
     ]
 

@@ -30,7 +30,7 @@ LEAST_OFF = 0.1
 """Deviation of the logarithm below which a line cannot hide a resonance and is left to the fit."""
 NARROW = 0.1
 """Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
-MOST_DIGITS = 6
+MOST_DIGITS = 7
 """Of numbers that count as rounded."""
 EXACT, SMALLEST = 1e-9, 1e-13
 """Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
@@ -133,7 +133,7 @@ def written_step(numbers: Real) -> Real:
     found: Real = np.zeros(size.size)
     decade = np.floor(np.log10(np.maximum(size, SMALLEST)) + EXACT) + 1
     for place in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
-        for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS):
+        for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS + 1):
             step = 10 ** (place - digits)
             if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + SMALLEST):
                 found = np.maximum(found, step)

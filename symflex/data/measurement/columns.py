@@ -30,15 +30,15 @@ Complex = npt.NDArray[np.complex128]
 
 _WORDS: Final = {
     "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence coherencia coerenza",
-    "phase": "phase phas phs phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas faza "
-    "фаза 相位 位相",
+    "phase": "phase phas phs pha phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas "
+    "faza фаза 相位 位相",
     "imaginary": "im imag imaginary imaginär imaginärteil imaginaire imaginaria immaginaria zim zimag zimg "
     "z'' zs'' quadrature",
     "real": "re real realteil réel réelle reale zre zreal z' zs' inphase",
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
-    "modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag verstärkung pegel logmag "
-    "linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
+    "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
+    "verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
@@ -54,8 +54,8 @@ _FREQUENCY_UNITS: Final = {
     **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
 }  # fmt: skip
 _DEGREES: Final = (
-    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "град", "度", "degs", "°", "º", "ø", "*",
-    "\ufffd",
+    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "graden", "graus", "град", "度", "degs",
+    "°", "º", "ø", "*", "\ufffd",
 )  # fmt: skip
 _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
     ("rad", "radian", "radians", "rads"), 1.0
@@ -178,7 +178,9 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         inside = bracket[1].strip()
         parts = re.findall(_PARTS, inside.lower())
         is_unit = inside.lower() in UNITS
-        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(r"[\w .()]+", inside)
+        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(
+            r"[\w .]*(?:\([\w .,]*\))?[\w .]*", inside
+        )
         if (
             is_unit
             or "/" in inside
@@ -230,6 +232,7 @@ def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> Co
         factor = _FREQUENCY_UNITS.get(small or own)
         factor = 1e-3 if unit == "mHz" else factor
         factor = _FREQUENCY_UNITS["rad/s"] if found.kind == "omega" and small in ("1/s", "s^-1") else factor
+        factor = _FREQUENCY_UNITS["rad/s"] if small == "rad" else factor
         return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
     if found.kind == "phase":
         factor = _PHASE_UNITS.get(small)

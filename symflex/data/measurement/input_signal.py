@@ -16,12 +16,13 @@ import re
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import Array, Arrays, arrays_in, matrix_of
+from symflex.data.measurement.arrays import Arrays, arrays_in, matrix_of
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES, listed_names
 from symflex.data.measurement.text_table import SIGNS, TextTable, cut
 from symflex.errors import DataError, Diagnostic
@@ -134,7 +135,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
     if len(times) < 2:  # noqa: PLR2004 (a line has two ends)
         raise DataError(Diagnostic("SF605", f"'{name}' holds fewer than two samples", None, HINT))
     if max(time.denominator for time in times) > MOST_DIGITS:  # binary numbers written to the end
-        times = _decimal_times(np.array([float(time) for time in times]))
+        times = _decimal_times(times)
     return InputSignal(tuple(times), tuple(values), tuple(guesses))
 
 
@@ -179,26 +180,32 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
             message = f"'{name}': an input is one array called t or time, and one other as long"
             held = f"it has {listed_names(list(arrays)) or 'none'}"
             raise DataError(Diagnostic("SF602", message, None, held))
-        times, values = plain[key].ravel(), plain[fitting[0]].ravel()
+        times, values = plain[key], plain[fitting[0]]
         factor = SECONDS[(match["unit"] or match["alone"] or "s").lower()]
+    exact = []
     for array, what in ((times, "time"), (values, "value")):
-        if not np.isfinite(array).all():
-            place = int(np.argmin(np.isfinite(array))) + 1
+        numbers = np.asarray(array.real.ravel(), np.float64)
+        if not np.isfinite(numbers).all():
+            place = int(np.argmin(np.isfinite(numbers))) + 1
             raise DataError(Diagnostic("SF603", f"'{name}': {what} {place} is not a finite number"))
-    if np.any(np.diff(times) <= 0):
+        exact.append([Fraction(number) for number in numbers.tolist()])
+    if not all(a < b for a, b in pairwise(exact[0])):
         raise DataError(Diagnostic("SF604", f"'{name}': times do not increase"))
-    exact = [Fraction(value) for value in np.asarray(values.real, float).tolist()]
-    return InputSignal(tuple(t * factor for t in _decimal_times(times)), tuple(exact), tuple(guesses))
+    seconds = (time * factor for time in _decimal_times(exact[0]))
+    return InputSignal(tuple(seconds), tuple(exact[1]), tuple(guesses))
 
 
-def _decimal_times(times: Array) -> list[Fraction]:
-    """Return the times that an array means: even ones as multiples of one decimal, others in ten digits."""
-    numbers = np.asarray(times.real, float)
-    step = float(f"{(numbers[-1] - numbers[0]) / (numbers.size - 1):.10g}")
+def _decimal_times(times: list[Fraction]) -> list[Fraction]:
+    """Return the times that binary numbers mean: multiples of one decimal, or ten digits of each."""
+    if max(abs(times[0]), abs(times[-1])) > MOST_DIGITS:
+        return times
+    numbers = np.array([float(time) for time in times])
+    step = float(f"{(numbers[-1] - numbers[0]) / (numbers.size - 1):.10g}") or 1.0
     places = np.round(numbers / step)
+    found = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
     if np.all(np.abs(numbers - places * step) <= EVEN * step):
-        return [Fraction(str(step)) * int(place) for place in places.tolist()]
-    return [Fraction(f"{number:.10g}") for number in numbers.tolist()]
+        found = [Fraction(str(step)) * int(place) for place in places.tolist()]
+    return found if all(a < b for a, b in pairwise(found)) else times
 
 
 def _decimal(text: str, decimal: str = ".") -> Fraction | None:
