@@ -143,7 +143,19 @@ _UNITS: Final = (
     _row("1/(N*m)", -1, -2, 2),  # angular receptance
     _row("1/(N*m*s)", -1, -2, 1),  # angular mobility
     _row("1/(N*m*s^2)", -1, -2),  # angular accelerance
+    # sound and liquids
+    _row("Pa*s/m", 1, -2, -1),  # specific acoustic impedance
+    _row("Pa*s/m^3", 1, -4, -1),  # acoustic impedance
+    _row("m^3/Pa", -1, 4, 2),  # acoustic compliance
+    _row("m^3/(Pa*s)", -1, 4, 1),  # acoustic admittance
+    # heat
+    _row("W/K", 1, 2, -3, 0, -1),  # thermal conductance
+    _row("W/(m*K)", 1, 1, -3, 0, -1),  # thermal conductivity
+    _row("W/(m^2*K)", 1, 0, -3, 0, -1),  # heat transfer coefficient
+    _row("K/W", -1, -2, 3, 0, 1),  # thermal resistance
     _row("K*m^2/W", -1, 0, 3, 0, 1),  # thermal resistance of an area
+    _row("J/K", 1, 2, -2, 0, -1),  # heat capacity
+    _row("J/(kg*K)", 0, 2, -2, 0, -1),  # specific heat
     # electricity
     _row("C", 0, 0, 1, 1),  # charge
     _row("V", 1, 2, -3, -1),  # voltage
@@ -152,6 +164,9 @@ _UNITS: Final = (
     _row("H", 1, 2, -2, -2),  # inductance
     _row("F", -1, -2, 4, 2),  # capacitance
     _row("T", 1, 0, -2, -1),  # magnetic flux density
+    _row("Ohm/m", 1, 1, -3, -2),  # resistance of a line
+    _row("H/m", 1, 1, -2, -2),  # inductance of a line
+    _row("F/m", -1, -3, 4, 2),  # capacitance of a line
     _row("V/m", 1, 1, -3, -1),  # electric field
     _row("A/m", 0, -1, 0, 1),  # magnetic field
     _row("A/s", 0, 0, -1, 1),  # current slope

@@ -104,6 +104,8 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
     derivative of one.
     """
     model = bound.source.model
+    if model.fields:
+        return Refused("what is stored is known of elements, not of fields")
     if not bound.is_of_model or not is_passive(model, bound.all_values):
         return Refused("something in the model may supply energy")
     model = in_one_way(model)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from symflex import loads
+from symflex import loads, pipeline
 from symflex.analysis.time_response import SampleTimes, time_response
 from symflex.analysis.time_response.estimated_modes import estimated
 from symflex.analysis.time_response.function_size import SizeOfExponentials
@@ -357,6 +357,20 @@ def test_the_size_of_a_function_whose_terms_cancel_holds_in_a_wide_ball():
 def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
     assert isinstance(passive_bound(clamped(spring("-1")), 1), Refused)
     assert isinstance(passive_bound(clamped(output="arm.y(0.5 m) - arm.y(0.2 m)"), 1), Refused)
+
+
+WALL = """symflex = 1
+parameters = { a = "1e-6 m^2/s", l = "0.1 m" }
+fields.T = { domain = ["0", "l"], equation = "a*T'' = s*T", conditions = ["T(0) = u", "T'(l) = 0"] }
+inputs.u = { unit = "K" }
+outputs.back = "T(l)"
+"""
+
+
+def test_a_field_is_not_said_to_supply_energy():
+    model = pipeline.loads(WALL)
+    (wall,) = pipeline.derive_bound(model, model.transfer_functions)
+    assert passive_bound(wall, 1) == Refused("what is stored is known of elements, not of fields")
 
 
 @pytest.mark.slow
