@@ -218,7 +218,7 @@ def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factore
     What may be otherwise stays as it is, all of it.
     """
     table, result = bound.kernels, Factored.number(part.ring, part.unit)
-    if not table.kernels or any(law.kind != "wave" for law in table.dispersions):
+    if not table.kernels or any(law.kind != "wave" or not law.shift.is_zero for law in table.dispersions):
         return part
     for factor, exponent in part.factors:
         value = Factored.polynomial(part.ring, factor)

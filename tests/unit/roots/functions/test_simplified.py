@@ -182,3 +182,20 @@ def test_modes_that_waves_in_step_by_value_share_are_hidden():
     assert found.certificate.certified
     turns = [float(p.im) * 3 / 10 / pi for p in found.poles if p.im > 0]
     assert turns == pytest.approx([1, 2, 4, 5, 7])
+
+
+def test_a_string_that_moves_along_has_the_poles_of_both_waves():
+    # (T - mu v^2) u'' - 2 mu v s u' - mu s^2 u = 0 between fixed ends: waves at c + v and c - v,
+    # poles j n pi (c^2 - v^2)/(c l)
+    text = """
+    symflex = 1
+    parameters = { T = "8 N", mu = "2 kg/m", v = "1 m/s", l = "1 m" }
+    inputs.q = {}
+    outputs.Y = "u(l/2)"
+    [fields.u]
+    domain = ["0", "l"]
+    equation = "(T - mu*v^2)*u'' - 2*mu*v*s*u' - mu*s^2*u = 0"
+    conditions = ["u(0) = q", "u(l) = 0"]
+    """
+    turns = sorted(im / 1.5 / pi for _, im in poles(text) if im > 0)
+    assert turns == pytest.approx([1, 3, 5, 7, 9])
