@@ -91,7 +91,8 @@ class Radicals:
 
     def either_root(self, value: Factored) -> Factored | None:
         """Return one of the two square roots, whatever the signs of generators are, as :meth:`root`."""
-        return replace(self, positive=frozenset(range(len(self.ring.names)))).root(value)
+        powers = self.with_powers(value) if self else value
+        return replace(self, positive=frozenset(range(len(self.ring.names)))).root(powers)
 
     @property
     def free(self) -> frozenset[int]:

@@ -373,8 +373,7 @@ class _Demands:
             if known.kind != law.kind or any(not x.is_zero for x in (law.shift, known.shift)):
                 continue
             of = [self.settled(x) for x in known.characteristic]
-            ratio = c[0] / of[0]
-            if law.meets or known.meets or ratio.depends_on("s"):
+            if law.meets or known.meets or of[0].is_zero or (ratio := c[0] / of[0]).depends_on("s"):
                 continue
             root = self.root(ratio)
             scale = root if root is None or law.kind == "wave" else self.root(root)

@@ -410,6 +410,7 @@ class _Searched:
         limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
+        has_more = False  # poles than those that are known
         for place, part in (*poles, (2 * len(poles), product)):
             is_hidden = part is product
             try:
@@ -418,10 +419,11 @@ class _Searched:
                     if place < len(self.sides)
                     else Side(bound, part, self.digits, is_hidden=is_hidden)
                 )
+                has_more = has_more or not side.is_finite
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 if proof or is_over:
-                    if rests:
-                        known += [r for r in side.at_origin if r not in known]
+                    more = side.all_roots if side.is_finite else side.at_origin if rests else ()
+                    known += [r for r in more if r not in known]
                     found.append(tuple(known))
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
@@ -443,7 +445,7 @@ class _Searched:
         if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*found)):
             proof = COMPRESSED
         if proof:
-            unsure = "" if rests else "none of those found lies on the imaginary axis"
+            unsure = "" if rests or not has_more else "none of those found lies on the imaginary axis"
         seen = [root for each in found[:-1] for root in each]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))

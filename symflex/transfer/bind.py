@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, cached_property
+from itertools import combinations
 from math import inf, isfinite, lcm
 from typing import TYPE_CHECKING
 
@@ -420,7 +421,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
         return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
     images = _substitution(tf, exact)
     ring, radicals = images.ring, images.radicals
-    if degenerate := _degenerate(tf, images):
+    if degenerate := _degenerate(tf, images) or _in_step(tf, images):
         try:
             return _derived_with_numbers(tf, exact, degenerate)
         except ModelError as error:
@@ -508,6 +509,19 @@ def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
         if plain and images.apply(factor).is_zero:
             zeros.append(factor)
     return [p.name for p in tf.parameters_in(zeros)]
+
+
+def _in_step(tf: TransferFunction, images: _Substitution) -> list[str]:
+    """Return the parameters of waves that these values alone make rational multiples of one another.
+
+    Their kernels then have factors in common.
+    """
+    laws = tf.kernels.dispersions
+    if any(law.kind != "wave" for law in laws):
+        return []
+    pairs = combinations((law.characteristic[0] for law in laws), 2)
+    alike = [x for a, b in pairs if images.radicals.either_root(images.apply_factored(a / b)) for x in (a, b)]
+    return [p.name for p in tf.parameters_in([f for x in alike for f, _ in x.factors])]
 
 
 def _derived_with_numbers(

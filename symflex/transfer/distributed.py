@@ -140,7 +140,9 @@ class KernelReduction:
         matched = self._without_reflections(num, den, cancelled)
         quotient, shared = matched or self._lowest(above, below, before)
         table, back = self._restorer([quotient, shared])
-        quotient, shared = self._radicals.reduced(back(quotient)) if matched else back(quotient), back(shared)
+        quotient, shared = back(quotient), back(shared)
+        if matched:
+            quotient, _ = self._radicals.in_lowest_terms(quotient)
         ratio = _split_contents(self._shortest(quotient), self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:

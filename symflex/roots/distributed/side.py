@@ -115,6 +115,11 @@ class Side:
         return self._search is None
 
     @property
+    def all_roots(self) -> Sequence[Root]:
+        """All roots that are known, whichever are chosen."""
+        return self._located
+
+    @property
     def at_origin(self) -> list[Root]:
         """The root at 0, wherever else roots were sought; empty where there is none."""
         return [root for root in (*self._origin, *self._exact) if root.is_zero]

@@ -26,8 +26,6 @@ from symflex.transfer.balls import at_centre
 from symflex.transfer.transfer_function import HiddenFactor
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import Kernel
@@ -218,52 +216,38 @@ def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factore
     What may be otherwise stays as it is, all of it.
     """
     table, result = bound.kernels, Factored.number(part.ring, part.unit)
-    if not table.kernels or any(law.kind != "wave" for law in table.dispersions):
+    if not table.kernels or any(law.kind != "wave" or not law.shift.is_zero for law in table.dispersions):
         return part
     for factor, exponent in part.factors:
         value = Factored.polynomial(part.ring, factor)
         kernels = [k for k in table.kernels if value.depends_on(k.generator)]
         names = {name for law in table.dispersions for name in law.wavenumbers if value.depends_on(name)}
         names |= {k.wavenumber for k in kernels}
-        image = _of_one_wave(bound, factor, sorted(names)) if names else value
+        image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None if names else value
         if image is None:
             return part
         result = result * image**exponent
     return result
 
 
-def _of_one_wave(bound: BoundTransferFunction, factor: fmpz_mpoly, names: Sequence[str]) -> Factored | None:
+def _of_one_wave(bound: BoundTransferFunction, factor: fmpz_mpoly, wavenumber: str) -> Factored | None:
     """Return what a factor is a multiple of, by an exponential and a number, where one of these is left."""
     ring, table = bound.ratio.ring, bound.kernels
     s = Factored.polynomial(ring, ring.context.gen(0))
-    laws = {name: law for law in table.dispersions for name in law.wavenumbers if name in names}
-    square = -laws[names[0]].characteristic[0]
-    # All wavenumbers are numbers times the first.
-    scales = {name: bound.radicals.either_root(-law.characteristic[0] / square) for name, law in laws.items()}
-    known = {name: scale for name, scale in scales.items() if scale is not None}
-    arguments = arguments_of(table)
+    law = next(law for law in table.dispersions if law.wavenumbers == (wavenumber,))
+    square = -law.characteristic[0]
+    arguments, root = arguments_of(table), bound.radicals.either_root(square)
     terms = None if arguments is None else exponential_sum(ring, table, arguments, factor)
-    if terms is None or arguments is None or len(known) < len(names):
+    if terms is None or (root is None and (square / s**2).depends_on(LAPLACE)):
         return None
-    root = bound.radicals.either_root(square)
-    if root is None and (square / s**2).depends_on(LAPLACE):
-        return None
-    sums: dict[str, tuple[Factored, Factored]] = {}
-    for exponent, amplitude in terms.terms.items():
-        place = s * 0
-        for i, a, _ in exponent:
-            place = place + arguments[i].length * known[arguments[i].wavenumber] * a
-        even, odd = sums.get(str(place), (s * 0, s * 0))
+    left: list[Factored] = []
+    for amplitude in terms.terms.values():
+        even = odd = s * 0
         for monomial, (number, _) in amplitude.items():  # of cosh and sinh all numbers are real
             powers = {ring.names[i]: e for i, e in monomial}
-            waves = {name: powers.pop(name, 0) for name in names}
-            whole, rest = divmod(sum(waves.values()), 2)
-            term = prod((known[n] ** e for n, e in waves.items()), start=square**whole * number)
-            term = prod((Factored.generator(ring, n) ** e for n, e in powers.items()), start=term)
-            even, odd = (even, odd + term) if rest else (even + term, odd)
-        sums[str(place)] = even, odd
-    left: list[Factored] = []
-    for even, odd in sums.values():
+            whole, rest = divmod(powers.pop(wavenumber, 0), 2)
+            term = prod((Factored.generator(ring, n) ** e for n, e in powers.items()), start=square**whole)
+            even, odd = (even, odd + term * number) if rest else (even + term * number, odd)
         if root is not None:
             total = bound.radicals.reduced(even + odd * root)
             left += [] if total.is_zero else [total]

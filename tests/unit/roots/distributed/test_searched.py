@@ -49,6 +49,10 @@ class Known:
     asked: list = field(default_factory=list)
     restored: list | None = None
 
+    @property
+    def all_roots(self):
+        return self.roots
+
     def _ask(self, *given):
         self.asked.append(given)
         if self.fails:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, exp, sin, sqrt, tanh
+from math import cos, exp, pi, sin, sqrt, tanh
 
 import pytest
 
@@ -144,3 +144,58 @@ def test_a_beam_without_mass_is_a_spring():
     decay = exp(-0.7 / 4) * (cos(0.7 * turn) + sin(0.7 * turn) / 4 / turn)
     assert found.certified
     assert found.values[0] == pytest.approx((1 - decay) / stiffness, rel=1e-11)
+
+
+def test_a_rod_on_a_critical_foundation_that_ends_in_its_impedance_is_a_spring_and_a_damper():
+    # sqrt(E A (mu s^2 + 2 sqrt(k mu) s + k)) = sqrt(E A mu) s + sqrt(E A k)
+    text = """
+    symflex = 1
+    parameters = { EA = "600 N", mu = "6 kg/m", k = "50 N/m^2", l = "0.7 m" }
+    inputs.F = { force = "x" }
+    outputs.X = "x"
+    definitions.c = "2*sqrt(k*mu)"
+    [elements]
+    bar = { type = "rod", between = ["x", "y"], EA = "EA", rhoA = "mu", l = "l", k_f = "k", c_f = "c" }
+    dash = { type = "damper", between = ["y", "ground"], b = "sqrt(EA*mu)" }
+    spring = { type = "spring", between = ["y", "ground"], k = "sqrt(EA*k)" }
+    """
+    bound = loads(text).transfer_function("X", "F").bind().bound
+    assert not bound.source.is_distributed
+    assert not bound.hidden
+    assert bound(3 + 4j) == pytest.approx(1 / (60 * (3 + 4j) + sqrt(30000)))
+
+
+def test_modes_that_waves_in_step_by_value_share_are_hidden():
+    # A string and a rod of one speed and impedance: sinh(q) sinh(2 q)/sinh(3 q), q = s/10
+    text = """
+    symflex = 1
+    parameters = { N = "600 N", mu = "6 kg/m", EA = "600 N", rhoA = "6 kg/m", l = "1 m" }
+    inputs.F = { force = "x" }
+    outputs.X = "x"
+    [elements]
+    bar = { type = "rod", between = ["x", "ground"], EA = "EA", rhoA = "rhoA", l = "l" }
+    wire = { type = "string", between = ["x", "ground"], N = "N", rhoA = "mu", l = "2*l" }
+    """
+    model = pipeline.loads(text)
+    (bound,) = pipeline.derive_for_roots(model, model.transfer_functions)
+    found = pipeline.roots(bound)
+    assert found.certificate.certified
+    turns = [float(p.im) * 3 / 10 / pi for p in found.poles if p.im > 0]
+    assert turns == pytest.approx([1, 2, 4, 5, 7])
+
+
+def test_a_string_that_moves_along_has_the_poles_of_both_waves():
+    # (T - mu v^2) u'' - 2 mu v s u' - mu s^2 u = 0 between fixed ends: waves at c + v and c - v,
+    # poles j n pi (c^2 - v^2)/(c l)
+    text = """
+    symflex = 1
+    parameters = { T = "8 N", mu = "2 kg/m", v = "1 m/s", l = "1 m" }
+    inputs.q = {}
+    outputs.Y = "u(l/2)"
+    [fields.u]
+    domain = ["0", "l"]
+    equation = "(T - mu*v^2)*u'' - 2*mu*v*s*u' - mu*s^2*u = 0"
+    conditions = ["u(0) = q", "u(l) = 0"]
+    """
+    turns = sorted(im / 1.5 / pi for _, im in poles(text) if im > 0)
+    assert turns == pytest.approx([1, 3, 5, 7, 9])
