@@ -115,7 +115,7 @@ def _ends(bound: AnyBoundFunction) -> tuple[str, str]:
 
 def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> PageFigure:
     """Draw a root locus, or a Nyquist plot of the loop gain."""
-    drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
+    drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
     caption = f"{figure.title}. " if figure.title else ""
     caption += f"{LOOP_WORDS[figure.kind]} {figure.gain}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
