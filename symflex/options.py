@@ -361,7 +361,7 @@ class StabilityOptions:
     Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz.
     """
 
-    gain: str = option("", "--gain", required=True, metavar="K", help="Parameter that is the loop's gain.")
+    gain: str = option("", "--gain", metavar="K", help="Parameter that is the loop's gain; required.")
     limits: tuple[Stated | None, Stated | None] | None = option(
         None,
         "--range",

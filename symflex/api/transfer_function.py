@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from symflex import pipeline
 from symflex.api.analyses import Analyses
@@ -166,6 +166,19 @@ class _Derived:
 
     def __str__(self) -> str:
         return str(self._shortest)
+
+    def __call__(self, *_: object) -> NoReturn:
+        """Say that only numbers have a value."""
+        raise TypeError(f"{self.name} has no numbers yet: call bind() first, as in G.bind()(2j)")
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            """Say which attributes a function has once it has numbers."""
+            message = f"'{type(self).__name__}' object has no attribute '{name}'"
+            if not name.startswith("_") and hasattr(BoundTransferFunction, name):
+                message += f"; call bind() first, as in G.bind().{name}"
+            raise AttributeError(message, name=name, obj=self)
 
 
 @dataclass(frozen=True)

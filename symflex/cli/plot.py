@@ -103,6 +103,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     title = figure.title or None if figure else None
     if gain:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
+        limits = limits or (figure.limits if figure else None)
         drawing = draw_loop(
             drawn,
             characteristic_loop(model, gain),

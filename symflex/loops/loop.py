@@ -137,6 +137,9 @@ def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) 
     return bind(tf, candidates[-1])
 
 
+GAINS_LISTED = 24
+
+
 def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter:
     """Return a model's parameter by its name; SF902 when there is none."""
     from symflex.errors.diagnostic import nearest
@@ -144,11 +147,12 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
     known = {p.name: p for p in parameters}
     if name not in known:
         hint = nearest(name, known) or (
-            "parameters: " + ", ".join(list(known)[:8])
+            "parameters: " + ", ".join(list(known)[:GAINS_LISTED])
             if known
             else "the gain is a parameter of a loop in [signals] or [blocks]; 'symflex new servo' writes one"
         )
-        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+        message = f"there is no parameter '{name[:64]}'" if name else "name the gain of the loop: --gain K"
+        raise UsageError(Diagnostic("SF902", message, None, hint))
     return known[name]
 
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.model import Model
+    from symflex.model.model import Model, ModelParameter
     from symflex.model.reading import Reader
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
@@ -147,7 +147,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "gain", "band", "until", "data", "title", "doc"), what)
+        reader.keys(table, ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc"), what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
@@ -158,7 +158,10 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         limits = table.get("band")
         band = _band(reader, limits) if limits else None
         until = _until(reader, table, kind, what)
-        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until))
+        ends = _range(reader, table, kind, what, next((p for p in model.parameters if p.name == gain), None))
+        found.append(
+            Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, ends)
+        )
     return tuple(found)
 
 
@@ -244,6 +247,38 @@ def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model)
         reader.note("SF207", f"{what} is of kind '{kind}', which has no gain", text.span, hint)
     is_known = _check_among(reader, text, [p.name for p in model.parameters], "parameter")
     return text.value if is_known else ""
+
+
+def _range(
+    reader: Reader, table: TableValue, kind: str, what: str, gain: ModelParameter | None
+) -> tuple[Fraction, Fraction] | None:
+    """Return the first and last gain of a locus in SI units, None where it does not say."""
+    entry = table.get("range")
+    if entry is None:
+        return None
+    if kind != "locus" or gain is None:
+        hint = 'only a locus has one, as in kind = "locus", gain = "K"'
+        reader.note("SF207", f"{what} has a 'range' without a locus and its gain", entry.key_span, hint)
+        return None
+    value, ends = entry.value, list[Fraction]()
+    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
+        reader.misfit("range must be an array of two gains", value, "for instance [0, 1e4]")
+        return None
+    for item in value.items:
+        if isinstance(item, NumberValue):
+            ends.append(item.value)
+        elif quantity := reader.quantity(item, "a gain"):
+            if quantity.unit and (not gain.unit or quantity.dimension != unit_of(gain.unit).dimension):
+                message = f"'{gain.name}' is in '{gain.unit or 1}', the range is in '{quantity.unit}'"
+                reader.note("SF203", message, item.span)
+                return None
+            number, pi_power = quantity.cyclic() if gain.cycles else quantity.angular()
+            ends.append(number * PI_NEARLY**pi_power)
+    if len(ends) == 2 and ends[0] < ends[1]:  # noqa: PLR2004
+        return ends[0], ends[1]
+    if len(ends) == 2:  # noqa: PLR2004
+        reader.note("SF227", "the range must end above its start", value.span, "write the lower gain first")
+    return None
 
 
 def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:

@@ -245,7 +245,8 @@ class Analysis:
 class Figure:
     """A figure the specification asks for; of a loop when a gain is named, in reports over measured data.
 
-    ``band`` holds the frequencies it shows [Hz], ``until`` the last time [s], where it says so itself.
+    ``band`` holds the frequencies it shows [Hz], ``until`` the last time [s], ``limits`` the first and last
+    gain of a locus, where it says so itself.
     """
 
     name: str
@@ -257,6 +258,7 @@ class Figure:
     has_data: bool = False
     band: tuple[Fraction, Fraction] | None = None
     until: Fraction | None = None
+    limits: tuple[Fraction, Fraction] | None = None
 
 
 TRANSFORMER_SYMBOLS: Final = ("gears", "belt", "screw", "rack", "lever", "coils", "box")

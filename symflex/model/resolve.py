@@ -239,7 +239,8 @@ def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: 
 def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return the problems in the order of the text, each once; those of other files come last.
 
-    A name that can be read two ways is one problem, however often it occurs: the first place is shown.
+    A name that is unknown or can be read two ways is one problem, however often it occurs: the first place
+    is shown, with the lines of the others.
     """
     unique = list(dict.fromkeys(problems))
 
@@ -250,8 +251,18 @@ def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic
         return (int(span.source is not source), span.source.name, span.start)
 
     ordered = sorted(unique, key=place)
-    first = {(p.code, p.message): p for p in reversed(ordered)}
-    return [p for p in ordered if p.code != "SF211" or first[p.code, p.message] is p]
+    same: dict[tuple[str, object], list[Diagnostic]] = {}
+    for p in ordered:
+        same.setdefault((p.code, p.message if p.code in ("SF210", "SF211") else id(p)), []).append(p)
+    return [_with_lines(*each) for each in same.values()]
+
+
+def _with_lines(first: Diagnostic, *others: Diagnostic) -> Diagnostic:
+    lines = dict.fromkeys(str(p.span.line) for p in others if p.span is not None)
+    if not lines:
+        return first
+    also = f"also in line{'s'[: len(lines) - 1]} {', '.join(lines)}"
+    return replace(first, hint=f"{first.hint}; {also}" if first.hint else also)
 
 
 def _refuse_twins(

@@ -349,6 +349,11 @@ def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> 
     return quotient_of_units(above, below)
 
 
+def unit_of_response(output: Output, source: Input) -> str:
+    """Return the SI unit of an output in time: that of the input, rad/s, where 1/s could mean more."""
+    return source.unit if source.unit and output.dimension == source.dimension else output.unit
+
+
 def quotient_of_units(above: str, below: str) -> str:
     """Return one unit over another in the words of both, so that m/s over A is not called V/N.
 

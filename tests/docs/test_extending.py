@@ -20,7 +20,7 @@ symflex = 1
 parameters = { m = "2 kg", B = "1 kg", k = "12 N/m", T = "0.5 s" }
 inputs     = { F = { force = "x" } }
 outputs    = { X = "x", Y = "P*x" }
-blocks     = { P = { type = "low_pass", T = "T" } }
+blocks     = { P = { type = "wash_out", T = "T" } }
 
 [elements]
 body   = { type = "mass",    at = "x", m = "m" }
@@ -126,8 +126,8 @@ def test_a_new_element_a_new_block_and_a_new_form_are_printed(said):
     """An inerter adds to the mass, a low pass multiplies, and the form multiplies by s once at a time."""
     expected = {
         ("polynomial", "X/F"): ("1", "(m + B)*s^2 + k"),
-        ("factored", "Y/F"): ("1", "(T*s + 1)*((m + B)*s^2 + k)"),
-        ("horner", "Y/F"): ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k"),
+        ("factored", "Y/F"): ("T*s", "(T*s + 1)*((m + B)*s^2 + k)"),
+        ("horner", "Y/F"): ("T*s", "((T*(m + B)*s + m + B)*s + k*T)*s + k"),
     }
     found = {(form, tf): derived(said, "model", form)[tf] for form, tf in expected}
     assert {key: (entry["num"], entry["den"]) for key, entry in found.items()} == expected

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import doctest
 import re
-import shutil
 
 import pytest
 
 import symflex
 from tests.docs.reference import FORMULA, PLACE, with_tables
-from tests.docs.update import printed
+from tests.docs.update import copy_files, printed
 from tests.house.repository import ROOT, all_blocks, blocks, pages
 from tests.unit.refusals import refusal
 
@@ -28,10 +27,10 @@ SAID = {}
 
 def takes_long(block):
     """Tell whether a session fits every order, sweeps models or proves what beams do in loops or in time."""
-    chooses_an_order = block.text.startswith("$ symflex fit") and "BIC" in block.text
-    proves = block.text.startswith(("$ symflex stability derivations", "$ symflex respond"))
+    chooses_an_order = "$ symflex fit" in block.text and "BIC" in block.text
+    proves = "$ symflex stability eppinger1988" in block.text or block.text.startswith("$ symflex respond")
     is_long_page = block.page.name in ("published-formula.md", "force-loop.md", "flexible-arm.md")
-    return chooses_an_order or proves or is_long_page or block.text.startswith("$ symflex sweep")
+    return chooses_an_order or proves or is_long_page or "$ symflex sweep" in block.text
 
 
 def by_page(found):
@@ -42,14 +41,11 @@ def by_page(found):
 
 @pytest.fixture
 def reader(tmp_path, monkeypatch):
-    """The folder of a reader who copied every titled file of a page."""
+    """The folder of a reader who copied every titled file and example of a page."""
 
     def copy(page):
-        for block in blocks(page):
-            if block.title:
-                (tmp_path / block.title).write_text(block.text, encoding="utf-8")
-        shutil.copytree(ROOT / "derivations", tmp_path / "derivations")
         monkeypatch.chdir(tmp_path)
+        copy_files(page)
         return tmp_path
 
     return copy
@@ -57,7 +53,7 @@ def reader(tmp_path, monkeypatch):
 
 def said(command):
     """Return what a command prints; one that writes no file and reads worked models prints the same again."""
-    if "derivations/" not in command or " -o " in command:
+    if "eppinger1988/" not in command or " -o " in command:
         return printed(command)
     if command not in SAID:
         SAID[command] = printed(command)

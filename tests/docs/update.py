@@ -12,7 +12,6 @@ import io
 import os
 import re
 import shlex
-import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -28,6 +27,15 @@ def printed(command):
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         run(shlex.split(command)[1:])
     return err.getvalue() + out.getvalue()
+
+
+def copy_files(page):
+    """Write the titled files of a page into the current folder, and the examples that it copies."""
+    for block in blocks(page):
+        if block.title:
+            Path(block.title).write_text(block.text, encoding="utf-8")
+    for command in dict.fromkeys(re.findall(r"symflex examples copy [\w/]+", page.read_text("utf-8"))):
+        printed(command)
 
 
 def shown_now(text):
@@ -46,10 +54,7 @@ def update(page):
     """Rewrite the sessions of one page, in a folder with the files that it titles."""
     text = with_tables(page.read_text("utf-8"))
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for block in blocks(page):
-            if block.title:
-                Path(block.title).write_text(block.text, encoding="utf-8")
-        shutil.copytree(ROOT / "derivations", "derivations")
+        copy_files(page)
         for block in blocks(page):
             if block.language == "console" and block.text.startswith("$ symflex"):
                 text = text.replace(block.text, shown_now(block.text))

@@ -199,6 +199,14 @@ def test_the_json_dictionary_is_what_the_command_line_lists(tip):
     assert tip.to_json_dict("polynomial")["den"] == "m_1*m_2*s^3 + b*(m_1 + m_2)*s^2 + k*(m_1 + m_2)*s"
 
 
+def test_a_function_without_numbers_says_how_it_gets_them(colocated):
+    with pytest.raises(TypeError, match=r"call bind\(\) first"):
+        colocated(2j)
+    with pytest.raises(AttributeError, match=r"G\.bind\(\)\.poles"):
+        colocated.poles()
+    assert not hasattr(colocated, "pole")
+
+
 def test_a_bound_function_evaluates_at_a_number(colocated):
     for s in (1j, 50j, -3 + 2j, 1.5):
         value = colocated.bind()(s)

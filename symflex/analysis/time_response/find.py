@@ -56,6 +56,7 @@ from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 from symflex.transfer import BoundNested
 from symflex.transfer.balls import at_centre
+from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -125,7 +126,7 @@ def time_response(
     return EnclosedResponse(
         bound.name,
         kind,
-        bound.source.output.unit,
+        unit_of_response(bound.source.output, bound.source.input),
         times.seconds,
         found.values,
         found.impulses,

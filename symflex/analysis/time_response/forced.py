@@ -29,6 +29,7 @@ from symflex.model.loss_factors import check_causal
 from symflex.options import exact
 from symflex.roots.precision import precision
 from symflex.transfer.balls import ball
+from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +110,7 @@ def forced_response(
     return EnclosedResponse(
         bound.name,
         FORCED,
-        bound.source.output.unit,
+        unit_of_response(bound.source.output, bound.source.input),
         np.array([float(t) for t in times]),
         found,
         impulses,

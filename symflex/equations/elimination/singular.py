@@ -16,7 +16,7 @@ from symflex.algebra import LAPLACE, PRIME, random_point, residue
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, format_expression, names
-from symflex.library.elements import COMPONENTS, LineElement, Variable
+from symflex.library.elements import CIRCUITS, COMPONENTS, LineElement, Variable
 from symflex.model.network import domain_of, variable_of
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def explain_singular(equations: Equations) -> ModelError:
                 "SF301",
                 f"nothing determines {what} {names}: {verb}",
                 _place(equations, nodes[0]),
-                _meant(equations.model, nodes, f"connect {hold} to ground or give {hold} a mass"),
+                _meant(equations.model, nodes, _held(equations.model, nodes, hold)),
             )
         )
     elif loops:
@@ -111,6 +111,14 @@ def explain_singular(equations: Equations) -> ModelError:
         place = _place(equations, open_unknowns[0]) if open_unknowns else None
         problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
     return ModelError(*problems)
+
+
+def _held(model: Model, nodes: Sequence[Variable], hold: str) -> str:
+    """Return how nodes are held, in the words of their domain."""
+    domain = next((n.domain for n in model.nodes if n.name == nodes[0].owner), "")
+    if domain in CIRCUITS:
+        return f"connect {hold} to ground, directly or through an element"
+    return f"connect {hold} to ground or give {hold} {'an inertia' if domain == 'rotation' else 'a mass'}"
 
 
 def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:

@@ -118,10 +118,10 @@ def _picture(
     """Draw functions, measured data with one of them, or the loop of a gain."""
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
-    data = study.comparisons if figure.has_data else ()
+    data = study.comparisons if figure.has_data and chosen else ()
     told = next((c for c in data if c.measured.name == chosen[0].name), None)
     if figure.gain and figure.kind in LOOP_FIGURES:
-        drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
+        drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
         caption = f"{LOOP_WORDS[figure.kind]} {figure.gain}."
     elif told is not None:
         drawn = draw_measured(told.measured, told.model, told.unit)

@@ -47,6 +47,15 @@ def test_json_has_the_schema_and_holds_the_closed_form(oscillator):
         assert abs(float(value) - step_of_oscillator(t)) <= float(radius) + 1e-17
 
 
+def test_a_step_of_a_speed_is_in_the_unit_of_its_command(oscillator, tmp_path):
+    loop = '[signals]\nw = "(r - w)/(s*T)"\n[inputs]\nr = { unit = "rad/s" }\n[outputs]\nW = "w"\n'
+    text = f'symflex = 1\n[parameters]\nT = "1 s"\n{loop}'
+    (tmp_path / "speed.toml").write_text(text, encoding="utf-8")
+    assert (
+        oscillator("respond", "speed.toml", "--until", "1", "--points", "2", "--json").json["unit"] == "rad/s"
+    )
+
+
 def test_without_an_end_a_step_is_followed_until_it_has_died_away(oscillator):
     found = oscillator("respond", "osc.toml", "--tf", "X/F", "--json").json
     left = math.exp(-found["time"][-1])  # the poles are -1 +- 20j

@@ -66,9 +66,14 @@ def test_what_is_not_certified_has_exit_code_4(files):
     assert "NOT CERTIFIED" in done.out
 
 
+def test_without_a_gain_the_parameters_are_listed(files):
+    assert files("stability", "loop.toml").err.endswith("hint: parameters: K, T\n")
+
+
 def test_errors(files):
     for arguments, code, exit_code in (
         (("stability", "loop.toml", "--gain", "Q"), "SF902", 2),
+        (("stability", "loop.toml"), "SF902", 2),
         (("stability", "loop.toml", "--gain", "T"), "SF801", 3),
         (("stability", "loop.toml", "--gain", "K", "--range", "3", "1"), "SF804", 2),
         (("stability", "loop.toml", "--gain", "K", "--range", "0", "inf"), "SF804", 2),

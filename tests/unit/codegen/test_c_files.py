@@ -8,12 +8,15 @@ import math
 import re
 import subprocess
 from functools import cache
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from symflex import pipeline
+from symflex.cli import run
 from symflex.codegen.c.body import Kind, Term, complex_term, difference, product, quotient, total
 from symflex.codegen.c.module import C99, helpers
 from symflex.codegen.exporters import EXPORTERS
@@ -476,20 +479,53 @@ def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(tmp_pa
 # -------------------------------------------------------------------------------- the page and the command
 
 
+def output_of(name):
+    """Return what the program of a page prints, beside the files of the page, and what the page shows."""
+    page = blocks(ROOT / "docs" / name)
+    for block in page:
+        if block.title:
+            Path(block.title).write_text(block.text, encoding="utf-8")
+    said = ""
+    for command in [
+        line.split() for block in page if block.language == "sh" for line in block.text.splitlines()
+    ]:
+        if command[0] == "symflex":
+            assert run(command[1:]) == 0
+        else:
+            said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return said, Path("output").read_text(encoding="utf-8")
+
+
 @pytest.mark.slow
-def test_the_example_of_the_page_prints_what_it_says(tmp_path):
-    page = blocks(ROOT / "docs" / "export-c.md")
-    (program,) = [block.text for block in page if block.title == "main.c"]
-    (output,) = [block.text for block in page if block.title == "output"]
-    (commands,) = [block.text.splitlines() for block in page if block.language == "sh"]
-    specification = commands[0].split()[2]
-    model = pipeline.load(ROOT / specification)
-    files = C99.export(model, pipeline.derive_all(model), stem="beam", is_alone=False, samples=5)
-    for name, text in (("beam.c", files.text), ("beam.h", files.companions[".h"]), ("main.c", program)):
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    subprocess.run(commands[1].split(), cwd=tmp_path, check=True)
-    done = subprocess.run(["./main"], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout == output
+def test_a_loop_of_an_exported_plant_and_controller_moves_as_the_machine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said, output = output_of("code-on-a-drive.md")
+    assert said == output
+    # The plant's state equations, exact from one sample to the next; the force is delayed by 4.3 samples.
+    rigid, vibrating = np.array([[0.0, 1.0], [0.0, 0.0]]), np.array([[0.0, 1.0], [-30e6, -4e3]])
+    vibrating[1] *= 1 / 20 + 1 / 40
+    system = np.zeros((5, 5))  # centre of mass, x_1 - x_2, force
+    system[:2, :2], system[2:4, 2:4], system[1, 4], system[3, 4] = rigid, vibrating, 1 / 60, 1 / 20
+    early, late = (expm(system * share * 1e-4)[:4] for share in (0.3, 0.7))
+    state, forces, rate, error = np.zeros(4), [0.0] * 5, 0.0, 0.0
+    shown = []
+    for k in range(1001):
+        position = state[0] + 40 / 60 * state[2]
+        shown += [f"{0.1 * k:.1f} ms  {1e3 * position:.7f} mm"] if k % 200 == 0 else []
+        before, error = error, 1e-3 - position
+        # Tustin's rule for s/(1 + T_f s): 2/h is 20000/s.
+        rate = (2e4 * (error - before) - (1 - 2e-4 * 2e4) * rate) / (1 + 2e-4 * 2e4)
+        forces.append(5e5 * (error + 20e-3 * rate))
+        for step, force in ((early, forces[-6]), (late, forces[-5])):
+            state = step @ np.append(state, force)
+    assert output.splitlines() == shown
+
+
+@pytest.mark.slow
+def test_the_example_of_the_page_prints_what_it_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said, output = output_of("export-c.md")
+    assert said == output
     # Vaughan 1968: V_tip/F at a length l, by the closed form of the sliding-free beam.
     q = (7850 * 4.8e-4 / (200e9 * 4e-9)) ** 0.25 * math.sqrt(math.tau * 10) * 0.543
     exact = -(math.cos(q) + math.cosh(q)) / (math.cosh(q) * math.sin(q) + math.sinh(q) * math.cos(q))

@@ -260,6 +260,31 @@ def test_a_figure_that_cannot_be_drawn_is_refused():
     assert codes(figure('of = ["X/F"]\ndata = true').replace('"bode"', '"poles_zeros"')) == ["SF207"]
 
 
+def locus(keys):
+    gain = '[parameters]\ng = { value = 1, unit = "N/m" }\n[definitions]\nG = "g"\n'
+    return f'{MASS}{gain}[figures.one]\nkind = "locus"\n{keys}\n'
+
+
+def test_a_locus_has_a_range_in_the_units_of_its_gain():
+    (found,) = pipeline.loads(locus('gain = "g"\nrange = [0, "2 N/mm"]')).figures
+    assert found.limits == (0, 2000)
+    for keys, code in [
+        ("range = [0, 1]", "SF207"),
+        ('gain = "g"\nrange = 3', "SF206"),
+        ('gain = "g"\nrange = [1, "1 m"]', "SF203"),
+        ('gain = "g"\nrange = [2, 1]', "SF227"),
+    ]:
+        assert codes(locus(keys)) == [code], keys
+
+
+def test_a_name_that_is_unknown_in_several_lines_is_one_problem():
+    text = f'{MASS}Y = "K_p*x"\nZ = "K_p"\n[parameters]\nk_p = 2\n[definitions]\nG = "K_p"\n'
+    with pytest.raises(SpecError) as caught:
+        pipeline.loads(text)
+    (found,) = caught.value.diagnostics
+    assert (found.span.line, found.hint) == (8, "did you mean 'k_p'?; also in lines 9, 13")
+
+
 def test_the_unit_of_a_ratio_tells_the_other_side_however_it_is_written():
     head = '[parameters]\np = 1\nn = 4\nr = "5 mm/rad"\nJ = "2 kg*m^2"\n[elements]\n'
     rotor = 'R = { type = "inertia", at = "phi", J = "J" }\n'
