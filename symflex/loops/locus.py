@@ -53,7 +53,7 @@ WIDER = (1.4, 1.15, 1.02)
 """Than all poles that are marked, a disc in which those of a network are followed."""
 TURNS = (0.3, 1.9, 3.4, 5.0)
 PARTING = (2e-2, 6e-4, 2e-5)
-"""How far away poles that part are sought, relative to the largest at the first gain."""
+"""How far away poles that part are sought, relative to the largest at the first gain; double ones nearer."""
 TOUCHING = 1e-7
 ORIGIN_BITS = 256
 ENDS_AGREE = 1e-6
@@ -387,7 +387,8 @@ def _moved(
         if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
             # Another pole is there already, or two part from the axis: the others are divided out.
             known = (*resting, *found)
-            tries = [s + rect(share * size, angle) for share in PARTING for angle in TURNS]
+            shares = PARTING if parts else PARTING[:1]
+            tries = [s + rect(share * size, angle) for share in shares for angle in TURNS]
             candidates = [c for start in tries if (c := _newton(function, start, gain, known)) is not None]
             apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in found)]
             if apart:
