@@ -13,7 +13,6 @@ import numpy as np
 from flint import acb
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
-from symflex.errors import BudgetError, Diagnostic
 from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, write_title
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
@@ -28,7 +27,6 @@ from symflex.figures.style import (
     paper_style,
     title_lines,
 )
-from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,10 +65,6 @@ def draw_impulse(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
 
 
 def _drawn(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    for bound in bounds:
-        if isinstance(bound, BoundNested):
-            message = f"the closed form of {bound.name} is too large for a response in time"
-            raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
         responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]

@@ -21,7 +21,7 @@ from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_or
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import precision
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
@@ -184,9 +184,13 @@ class DistributedFactors:
             return PoleCount(
                 count_right(side.roots), sum(r.multiplicity for r in side.roots if r.on_imaginary_axis)
             )
+        if self.passive is not None and self.passive.rests:
+            return PoleCount(0, zeros)
         for nudge in NUDGES:
             try:
                 return PoleCount(side.count_right(log(self.radius[0] * 1.01) + nudge), zeros)
+            except RootOnAxisError:
+                break
             except RootOnPathError:
                 continue
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"

@@ -83,7 +83,12 @@ def find_stable_gains(
     if along is not None:
         crossings += along.crossings(digits + GUARD_DIGITS)
     search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
-    boundaries, intervals = search.between(crossings)
+    try:
+        boundaries, intervals = search.between(crossings)
+    except UncertifiedError as error:
+        if along is None or loop.nominal is None:
+            raise
+        return _at_nominal(loop, (low, high), digits, error.diagnostics[0].message)
     nominal = loop.nominal
     reasons = [] if along is None else along.reasons
     radius = None if along is None else along.radius[0]

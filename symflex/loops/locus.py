@@ -12,6 +12,8 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
+from flint import acb, arb
+
 from symflex.algebra import Factored
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -19,7 +21,7 @@ from symflex.loops.apart import poles_apart
 from symflex.loops.loop import NO_LOOP, Loop, LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
-from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
+from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root, precision
 from symflex.roots.locate import locate
 from symflex.roots.networks.cramer import EssentialSingularityError
 from symflex.roots.networks.members import UndecidedError
@@ -50,7 +52,10 @@ HALVINGS = 9
 WIDER = (1.4, 1.15, 1.02)
 """Than all poles that are marked, a disc in which those of a network are followed."""
 TURNS = (0.3, 1.9, 3.4, 5.0)
+PARTING = (2e-2, 6e-4, 2e-5)
+"""How far away poles that part are sought, relative to the largest at the first gain; double ones nearer."""
 TOUCHING = 1e-7
+ORIGIN_BITS = 256
 ENDS_AGREE = 1e-6
 
 
@@ -191,9 +196,10 @@ def trace_locus(
     poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)
     goals = _goals(bottom, top)
-    early = _trace(function, poles, bottom, goals[:1])
+    resting = (0j,) * (_shared_at_zero(function, poles) if isinstance(function, LoopFunction) else 0)
+    early = _trace(function, poles, bottom, goals[:1], resting)
     first = [branch[-1] for branch in early]
-    later = _trace(function, first, goals[0], goals[1:])
+    later = _trace(function, first, goals[0], goals[1:], resting)
     forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
     # poles accumulate, which no search exhausts.
@@ -215,7 +221,7 @@ def trace_locus(
     entering: list[tuple[complex, ...]] = []
     if matched is not None and len(kept) > len(matched):
         # Both members of a pair are followed, as where they part one of them may come from a marked pole.
-        back = _trace(function, kept, top, [*reversed(goals[:-1])])
+        back = _trace(function, kept, top, [*reversed(goals[:-1])], resting)
         ended = {final[i] for i in matched}
         for s, branch in zip(kept, back, strict=True):
             near = _nearest(first, branch[-1])
@@ -239,17 +245,29 @@ def trace_locus(
     )
 
 
+def _shared_at_zero(function: LoopFunction, poles: Sequence[complex]) -> int:
+    """Return how often A and B both vanish at 0, as they do where a hidden pole rests there."""
+    omega = arb(TOUCHING * max((abs(s) for s in poles), default=1.0))
+    _, value = function.on(omega, ORIGIN_BITS)
+    with precision(ORIGIN_BITS):
+        orders = [
+            acb(0, 1) * omega * slope / of
+            for of, slope in ((value.a, value.a_slope), (value.b, value.b_slope))
+        ]
+    return min(round(float(order.real.mid())) if order.is_finite() else 0 for order in orders)
+
+
 def _range(
     loop: AnyLoop, limits: tuple[Fraction | None, Fraction | None] | None
 ) -> tuple[Fraction, Fraction]:
     """Return the first and the last gain."""
     name = loop.gain.name
     if limits is None:
-        if loop.nominal is None or not loop.nominal > 0:
-            value = "no value" if loop.nominal is None else f"the value {float(loop.nominal):.6g}"
+        if not loop.nominal:
+            value = "no value" if loop.nominal is None else "no value but 0"
             message = f"'{name}' has {value} from which a locus could take its range"
             raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI"))
-        return Fraction(0), 10 * loop.nominal
+        return min(Fraction(0), 10 * loop.nominal), max(Fraction(0), 10 * loop.nominal)
     low, high = limits
     if low is None or high is None:
         message = f"a locus ends at a finite value of '{name}'"
@@ -308,9 +326,13 @@ def _nearest(points: Sequence[complex], s: complex) -> int | None:
 
 
 def _trace(
-    function: Traceable, poles: Sequence[complex], gain: float, goals: Sequence[float]
+    function: Traceable,
+    poles: Sequence[complex],
+    gain: float,
+    goals: Sequence[float],
+    resting: tuple[complex, ...],
 ) -> list[list[complex]]:
-    """Return the curves of poles from one gain through others."""
+    """Return the curves of poles from one gain through others, but of hidden ones that rest at 0."""
     size = max((abs(s) for s in poles), default=1.0) or 1.0
     branches = [[s] for s in poles]
     current, reached = list(poles), gain
@@ -319,7 +341,7 @@ def _trace(
         while pending:
             spend()
             aim = pending[-1]
-            found = _moved(function, current, aim, size)
+            found = _moved(function, current, aim, size, resting)
             far = max(
                 (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
             )
@@ -344,17 +366,20 @@ def _bends(branches: Sequence[Sequence[complex]], found: Sequence[complex], size
     return False
 
 
-def _moved(function: Traceable, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
+def _moved(
+    function: Traceable, poles: Sequence[complex], gain: float, size: float, resting: tuple[complex, ...]
+) -> list[complex]:
     """Return the poles at the next gain; those that meet are sent apart."""
     found: list[complex] = []
     for i, s in enumerate(poles):
-        new = _newton(function, s, gain, ())
+        parts = s in resting or sum(abs(p - s) < TOUCHING * size for p in poles) > 1
+        new = None if parts else _newton(function, s, gain, resting)
         twins = [k for k in range(i) if new is not None and abs(found[k] - new) < TOUCHING * size]
         if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
             # Another pole is there already, or two part from the axis: the others are divided out.
-            known = tuple(found)
-            reach = max(TOUCHING * size, 0.02 * size)
-            tries = [s + rect(reach, angle) for angle in TURNS]
+            known = (*resting, *found)
+            shares = PARTING if parts else PARTING[:1]
+            tries = [s + rect(share * size, angle) for share in shares for angle in TURNS]
             candidates = [c for start in tries if (c := _newton(function, start, gain, known)) is not None]
             apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in found)]
             if apart:

@@ -459,12 +459,12 @@ def _between(interval: GainInterval, found: StabilityMap) -> str:
 def _exact(value: arb, digits: int) -> str:
     if value.is_exact() and value == value.floor() and abs(value) < 10**digits:
         return str(int(value.unique_fmpz() or 0))
-    return decimals(value, arb(0), digits).re
+    return decimals(value, arb(0), digits).told.re
 
 
 def _boundary_row(found: StabilityMap, index: int) -> tuple[str, ...]:
     boundary = found.boundaries[index]
-    printed = decimals(boundary.gain, arb(0), found.digits)
+    printed = decimals(boundary.gain, arb(0), found.digits).told
     change = found.change(index)
     passing = f"{change:+d}" if change else "touch the axis"
     return (printed.re, printed.radius, *_places(boundary, found.digits), passing)
@@ -474,7 +474,7 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     if not boundary.frequencies:
         infinite = any(c.is_infinite for c in boundary.crossings)
         return ("infinite" if infinite else "on the axis", "")
-    omegas = [decimals(w, arb(0), digits).re for w in boundary.frequencies]
+    omegas = [decimals(w, arb(0), digits).told.re for w in boundary.frequencies]
     cycles = [f"{float(hertz(w).mid()):.{SHORT_DIGITS}g}" for w in boundary.frequencies]
     return ", ".join(omegas), ", ".join(cycles)
 
@@ -486,8 +486,8 @@ def _margins(found: StabilityMap) -> Passage:
         places = ", ".join(
             f"{float(hertz(w).mid()):.{SHORT_DIGITS}g} Hz" for w in margin.boundary.frequencies
         )
-        factor = decimals(margin.factor, arb(0), SHORT_DIGITS).re
-        size = decimals(decibels(margin.factor), arb(0), SHORT_DIGITS).re
+        factor = decimals(margin.factor, arb(0), SHORT_DIGITS).told.re
+        size = decimals(decibels(margin.factor), arb(0), SHORT_DIGITS).told.re
         rows.append(("gain", f"x {factor}", f"{size} dB", places))
     worst = found.phase_margin
     for each in found.phase_margins:
@@ -495,7 +495,7 @@ def _margins(found: StabilityMap) -> Passage:
         direction = "lag" if angle > 0 else "lead"
         place = f"{float(hertz(each.frequency).mid()):.{SHORT_DIGITS}g} Hz"
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
-        shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
+        shown = decimals(abs(angle), arb(0), SHORT_DIGITS).told.re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
     if found.margin_beyond is not None and found.radius is not None:
         place = f"all above {found.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"

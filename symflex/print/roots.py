@@ -94,14 +94,14 @@ def _frequency(root: Root, printed: RootDecimals, digits: int) -> str:
 
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         frequency = root.natural_frequency() / (2 * arb.pi())
-    return decimals(frequency, arb(0), digits).re
+    return decimals(frequency, arb(0), digits).told.re
 
 
 def _angular_frequency(root: Root, printed: RootDecimals, digits: int) -> str:
     """Return abs(s) [rad/s]."""
     from symflex.roots import decimals  # imports numpy
 
-    return decimals(root.natural_frequency(), arb(0), digits).re
+    return decimals(root.natural_frequency(), arb(0), digits).told.re
 
 
 def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
@@ -117,7 +117,7 @@ def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
         return "1" if root.re < 0 else "-1"
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         ratio = -root.re / frequency
-    return decimals(ratio, arb(0), digits).re
+    return decimals(ratio, arb(0), digits).told.re
 
 
 def _plain_damping(root: Root, printed: RootDecimals, digits: int) -> str:

@@ -4,7 +4,8 @@ A force or torque that follows the motion it acts on, ``u = -K (alpha + beta s) 
 negative, is a spring and a damper. Added to a structure that nothing supplies with energy it makes another
 one: for every K > 0 no pole lies right of the imaginary axis (Anderson & Vongpanitlerd 1973, Network Analysis
 and Synthesis, chapter 2). One lies on the axis only where nothing that dissipates moves, and what rests
-with that is followed through the equations.
+with that is followed through the equations. The same holds of every law whose force over velocity is positive
+real, as of filtered PD control, whose lead is a spring in series with a damper.
 
 Example: PD control of the joint of a flexible arm. At a pole on the axis the joint rests, and no moment is
 left on it: three of four states of the link vanish at its base. Then ``(EI y'')'' = rho A omega^2 y`` makes
@@ -94,10 +95,10 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
     line = line_of(model, known.items())
     inputs = {each.name for each in model.inputs}
     sources = [e for e in model.elements if e.element.is_source and not follows_inputs(e, line, inputs)]
-    if any(not isinstance(e.element, ThroughSource) for e in sources) or model.blocks:
+    if any(not isinstance(e.element, ThroughSource) for e in sources):
         return None
     rest = tuple(e for e in model.elements if e not in sources)
-    if not is_passive(replace(model, elements=rest, signals=()), known.items()):
+    if not is_passive(replace(model, elements=rest, signals=(), blocks=()), known.items()):
         return None
     named, signals = list(rest), list(model.signals)
     for number, source in enumerate(sources):
@@ -171,6 +172,15 @@ def _ends(use: PlacedElement, model: Model) -> Ends:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Law:
+    """How a force follows the motion it acts on."""
+
+    is_moved: bool  # the gain is part of it, or there is none
+    loses: bool  # it dissipates wherever that moves
+    powers: Powers | None  # of a polynomial
+
+
 @dataclass(frozen=True)
 class _Structure:
     """The equations of a passive structure and of what closes a loop about it, with numbers."""
@@ -188,15 +198,15 @@ class _Structure:
             return None
         # Signals are no part of the structure: none is left that moves by itself.
         moving = {v for v in self.equations.unknowns if v.kind in ("node", "through")}
-        if not _followed(moving, [form for _, form in self._forms], self._is_constant).issuperset(
-            self.equations.unknowns
-        ):
+        own = [form for role, form in self._forms if role in ("signal", "constraint")]
+        if not _followed(moving, own, self._fades).issuperset(self.equations.unknowns):
             return None
-        damped = [at.ends for at, law in zip(places, laws, strict=True) if any(i == 1 for i, _ in law)]
-        moved = [law for law in laws if not self.gain or any(j for _, j in law)]
-        size = [float(sum(c.mid() for law in moved for (i, _), c in law.items() if i == n)) for n in range(3)]
-        # The phase of a mass, or of a loop in several places, is not known.
-        is_bounded = len(moved) == 1 and not size[INERTIA]
+        damped = [at.ends for at, law in zip(places, laws, strict=True) if law.loses]
+        moved = [law.powers for law in laws if law.is_moved]
+        known = [powers for powers in moved if powers is not None]
+        size = [float(sum(c.mid() for law in known for (i, _), c in law.items() if i == n)) for n in range(3)]
+        # The phase of a mass, of a filter, or of a loop in several places, is not known.
+        is_bounded = len(moved) == len(known) == 1 and not size[INERTIA]
         return PassiveLoop(size[0], size[1] if is_bounded else 0.0, self._rests(damped))
 
     @cached_property
@@ -204,8 +214,8 @@ class _Structure:
         """What vanishes where inputs rest, each row with its role."""
         return [(row.role, _form(row.form)) for row in self.equations.rows]
 
-    def _law(self, number: int, at: _Acting) -> Powers | None:
-        """Return the polynomial with which minus the motion is multiplied, where none of it is negative."""
+    def _law(self, number: int, at: _Acting) -> _Law | None:
+        """Return with what minus the motion is multiplied, where that is proved to be passive."""
         ends = at.ends
         effort = Variable("signal", str(number))
         rows = [form for role, form in self._forms if role in ("signal", "constraint")]
@@ -215,7 +225,7 @@ class _Structure:
         if found is None:
             return None
         if len(found) == 1:
-            return {}  # it follows inputs, through signals
+            return _Law(is_moved=False, loses=False, powers={})  # it follows inputs, through signals
         shares = [
             found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
         ]
@@ -224,11 +234,20 @@ class _Structure:
         ):
             return None
         law, below = self._powers(shares[0].numerator()), self._powers(shares[0].denominator())
-        if law is None or below is None or below.keys() != {(0, 0)}:
+        if law is None or below is None or any(j for _, j in below) or any(j > 1 for _, j in law):
             return None
-        with precision(BITS):
-            law = {(i + at.rate, j): c / below[0, 0] for (i, j), c in law.items() if c != 0}
-        return law if all(i <= INERTIA and j <= 1 and c > 0 for (i, j), c in law.items()) else None
+        law = {(i + at.rate, j): c for (i, j), c in law.items() if c != 0}
+        is_moved = not self.gain or any(j for _, j in law)
+        if below.keys() == {(0, 0)}:
+            with precision(BITS):
+                law = {power: c / below[0, 0] for power, c in law.items()}
+            is_passive = all(i <= INERTIA and c > 0 for (i, _), c in law.items())
+            return _Law(is_moved, any(i == 1 for i, _ in law), law) if is_passive else None
+        over = {i + 1: c for (i, _), c in below.items()}
+        losses = {
+            _loss({i: c for (i, j), c in law.items() if j == power}, over) for power in {j for _, j in law}
+        }
+        return None if None in losses else _Law(is_moved, True in losses, None)
 
     def _rests(self, damped: Sequence[Ends]) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""
@@ -357,9 +376,15 @@ class _Structure:
                 found[at] = found.get(at, arb(0)) + total
         return found
 
-    def _is_constant(self, coefficient: Factored) -> bool:
-        """Tell whether a coefficient vanishes for no s and no K > 0."""
-        return self._turn(coefficient) != 0 and all(i == 0 for i, _ in self._powers(coefficient) or {})
+    def _fades(self, coefficient: Factored) -> bool:
+        """Tell whether a coefficient vanishes left of the imaginary axis or at 0 only, for every K > 0."""
+        powers = self._powers(coefficient)
+        if powers is None or self._turn(coefficient) == 0:
+            return False
+        order = min(i for i, _ in powers)
+        if all(i == order for i, _ in powers):
+            return True
+        return not any(j for _, j in powers) and _is_stable({i - order: c for (i, _), c in powers.items()})
 
     def _turn(self, coefficient: Factored) -> complex:
         """Return 1, -1, 1j or -1j: the side of a coefficient in the complex plane; 0 where it has none.
@@ -378,6 +403,45 @@ class _Structure:
     def _is_real(self, coefficient: Factored) -> bool:
         """Tell whether a coefficient is real on the axis, and has one sign there."""
         return self._turn(coefficient) != 0 and all(i % 2 == 0 for i, _ in self._powers(coefficient) or {})
+
+
+def _loss(above: Mapping[int, arb], below: Mapping[int, arb]) -> bool | None:
+    """Tell whether a positive real quotient of polynomials has a positive real part at every frequency.
+
+    None where it is not proved that it is positive real: both together have to have roots left of the
+    imaginary axis only, and the real part must nowhere on the axis be negative (Chen & Smith 2009, A note on
+    tests for positive-real functions).
+    """
+    order = min(*above, *below)
+    with precision(BITS):
+        total, real = dict(above), dict[int, arb]()
+        for k, c in below.items():
+            total[k] = total.get(k, arb(0)) + c
+            for i in (i for i in above if (i - k) % 2 == 0):
+                sign = -1 if (i - k) % 4 else 1
+                real[i + k] = real.get(i + k, arb(0)) + sign * above[i] * c
+        if any(not x >= 0 for x in real.values()) or not _is_stable({i - order: c for i, c in total.items()}):
+            return None
+    return any(x > 0 for x in real.values())
+
+
+def _is_stable(coefficients: Mapping[int, arb]) -> bool:
+    """Tell whether all roots of a polynomial lie left of the imaginary axis, by Routh's scheme."""
+    degree = max(coefficients)
+    first, second = ([coefficients.get(i, arb(0)) for i in range(n, -1, -2)] for n in (degree, degree - 1))
+    if first[0] < 0:
+        first, second = [-c for c in first], [-c for c in second]
+    with precision(BITS):
+        for _ in range(degree):
+            if not first[0] > 0 or not second[0] > 0:
+                return False
+            following = [*first[1:], arb(0)]
+            beside = [*second[1:], arb(0), arb(0)]
+            first, second = (
+                second,
+                [x - first[0] / second[0] * y for x, y in zip(following, beside, strict=False)],
+            )
+    return bool(first[0] > 0)
 
 
 def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:

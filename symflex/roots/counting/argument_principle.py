@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.roots.counting.local_series import SeriesSteps
-from symflex.roots.counting.winding import SPREAD, WIDENED, Cell, RootOnPathError, Winding, total_turn
+from symflex.roots.counting.winding import (
+    SPREAD,
+    WIDENED,
+    Cell,
+    RootOnAxisError,
+    RootOnPathError,
+    Winding,
+    total_turn,
+)
 from symflex.roots.functions.kernel_function import ROOM, angle
 from symflex.roots.precision import precision
 
@@ -89,6 +97,23 @@ class CertifiedWinding(Winding):
             for start, end in cell.edges:
                 total += self.certified_turn(start, end, smallest)
             return _whole(total / (2 * arb.pi()))
+
+    def count_right(self, low: float, high: float) -> int:
+        """Return the number of roots right of the imaginary axis with ``low < ln(abs(s)) < high``: proved.
+
+        F is real on the real axis: below it, the argument turns as above. RootOnAxisError where a root lies
+        on the imaginary axis, or too close to it; RootOnPathError on the arcs.
+        """
+        smallest = max(SMALLEST, 1e-9 * max(high - low, pi))
+        above, below = complex(high, pi / 2), complex(low, pi / 2)
+        try:
+            turn = self.certified_turn(above, below, smallest)
+        except RootOnPathError as error:
+            raise RootOnAxisError from error
+        with precision(BITS):
+            turn += self.certified_turn(complex(high, 0.0), above, smallest)
+            turn += self.certified_turn(below, complex(low, 0.0), smallest)
+            return _whole(turn / arb.pi())
 
     def count_within(self, z: float, left: float) -> int:
         """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.

@@ -55,6 +55,10 @@ class RootOnPathError(Exception):
     """A path meets a root, or passes too close to it."""
 
 
+class RootOnAxisError(RootOnPathError):
+    """The imaginary axis meets a root: no other path about the right half plane avoids it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Cell:
     """A rectangle ``low < ln abs(s) < high``, ``right < arg(s) < left``."""

@@ -127,14 +127,14 @@ class Count:
     def right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
 
-        RootOnPathError where a root lies on the path, which follows the imaginary axis, or too close to it;
-        SF505, SF506.
+        RootOnAxisError, RootOnPathError where a root lies on the path, which follows the imaginary axis, or
+        too close to it; SF505, SF506.
         """
         winding = CertifiedWinding(self.winding.function, tries_series=True)
         low = min(winding.smallest(pi, self.holes), high - 1.0)
         if winding.count_within(low, pi) != self.order:
             raise RootOnPathError
-        counted, rest = divmod(winding.count(Cell(low, high, -pi / 2, pi / 2)), winding.function.power)
+        counted, rest = divmod(winding.count_right(low, high), winding.function.power)
         if rest:
             raise RootOnPathError
         return counted

@@ -36,6 +36,18 @@ def test_a_step_figure_has_a_curve_a_function_up_to_the_time_asked_for():
     assert np.allclose(y[t <= 1], np.maximum(3 * (t[t <= 1] - 0.5), 0), atol=1e-6)
 
 
+def test_a_step_of_a_network_in_nested_form_is_drawn():
+    model = loads(
+        'symflex = 1\nparameters = { m = "1 kg", k = "1 N/m" }\ninputs.F = { force = "x" }\noutputs.X = "x"\n'
+        'elements.a = { type = "mass", at = "x", m = "m" }\n'
+        'elements.b = { type = "spring", between = ["x", "ground"], k = "k" }'
+    )
+    (axes,) = draw("step", [model.nested("X", "F").bind().bound], frame=AxisLimits(x=(0.0, 7.0))).axes
+    (curve,) = [line for line in axes.lines if len(line.get_xdata()) > 2]
+    t, x = curve.get_data()
+    assert np.allclose(x, 1 - np.cos(t), atol=1e-6)
+
+
 def test_an_impulse_that_is_not_drawn_is_said():
     figure = drawn("impulse", AxisLimits(x=(0.0, 2.0)))
     assert "E/r: it also has impulses, which are not drawn" in figure.get_suptitle()

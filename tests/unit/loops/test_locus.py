@@ -247,3 +247,39 @@ def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(loop):
     assert legend.get_title().get_text() == (
         f"A loop\nopen loop: no pole in the right half plane\nclosed loop {said}"
     )
+
+
+ROD = """
+symflex = 1
+parameters = { EA = "1 kN", mu = "0.5 kg/m", l = "2 m", m = "1 kg", K = "GAIN N*s/m", T = "0.1 s" }
+inputs.v = { unit = "m/s" }
+outputs.V = "s*a"
+elements.bar = { type = "rod", between = ["a", "b"], EA = "EA", rhoA = "mu", l = "l" }
+elements.body = { type = "mass", at = "a", m = "m" }
+elements.drive = { type = "force_source", at = "a", f = "LAW" }
+"""
+
+
+@pytest.mark.slow
+def test_curves_of_speed_loops_leave_hidden_poles_at_0_and_part_from_there():
+    """A rod with one free end resists at the other with EA k tanh(k l), k = s sqrt(mu/EA)."""
+    for law, force in [
+        ("K*(v - s*a)", lambda s: 20 * s),  # where the rod is does not matter
+        ("K*(1 + 1/(T*s))*(v - s*a)", lambda s: 20 * (s + 10)),  # two poles part from 0
+    ]:
+        model = symflex.loads(ROD.replace("GAIN", "2").replace("LAW", law))
+        locus = trace_locus(characteristic(model), modes=2)
+        assert locus.arrived, law
+        for s in (branch[-1] for branch in locus.branches):
+            wave = s * (0.5 * 1000) ** 0.5 * np.tanh(s * (0.5 / 1000) ** 0.5 * 2)
+            assert abs(s**2 + force(s) + wave) < 1e-6 * abs(s**2), (law, s)
+
+
+def test_the_locus_of_a_negative_gain_begins_at_ten_times_its_value():
+    cart = symflex.loads(
+        'symflex = 1\nparameters = { K = { value = -2, assume = "real" } }\n'
+        'signals.y = "K*(r - y)/(s + 1)"\ninputs.r = {}\noutputs.Y = "y"'
+    )
+    locus = trace_locus(characteristic(cart))
+    assert locus.limits == (-20, 0)
+    assert locus.branches[0][0] == pytest.approx(19)  # s + 1 + K = 0

@@ -72,8 +72,33 @@ def test_other_loops_are_not_taken_for_passive():
         "K*(r - (1 + 1/(T*s))*hub.theta)",
         "K*(r - T^3*s^3*hub.theta)",
         "K*(r - hub.theta) - arm.tau",
+        "K/n*(r/(1 - T*s) - (1 + T*s)*hub.theta)",  # what the reference passes grows
+        "K/n*(1 - T*s)/(1 - T*s)*(r - (1 + T*s)*hub.theta)",  # cancels, but grows
     ]:
         assert closed(arm(tau)) is None
+
+
+def test_a_law_with_a_filter_is_passive_where_force_over_velocity_is_positive_real():
+    """Judged by the poles of that and by its real part at many frequencies."""
+    omega = 1j * np.geomspace(1e-3, 1e4, 2000)
+    for law, above, below in [
+        ("1 + T*s/(1 + T*s/20)", [0.21, 1], [0.01, 1, 0]),  # filtered PD
+        ("(1 + T*s)/(1 + T*s/20)", [0.2, 1], [0.01, 1, 0]),  # leads
+        ("(1 + T*s/20)/(1 + T*s)", [0.01, 1], [0.2, 1, 0]),  # lags
+        ("T*s/(1 + T*s)", [0.2], [0.2, 1]),  # a velocity, filtered
+        ("T*s/(1 + T*s)^2", [0.2], [0.04, 0.4, 1]),  # filtered twice
+        ("T*s/(1 - T*s)", [0.2], [-0.2, 1]),  # grows by itself
+        ("1 + T*s/(1 + T*s/20) + 1/(T*s)", [0.042, 1.01, 5], [0.01, 1, 0, 0]),  # with an integral
+        ("F*(1 + T*s)", [0.028, 0.34, 1], [0.04, 0.4, 1, 0]),  # by a block
+        ("F*T*s", [0.028, 0.2], [0.04, 0.4, 1]),
+    ]:
+        tau = f"K/n*({law})*(r - hub.theta)"
+        text = ARM.substitute(tau=tau, section=UNIFORM, between='"hub", "tip"', more="")
+        block = 'blocks.F = { type = "tf", num = "1 + 0.7*T*s", den = "(1 + T*s)^2" }'
+        model = pipeline.loads(text.replace("[elements]", f"{block}\n[elements]") if "F" in law else text)
+        real = (np.polyval(above, omega) / np.polyval(below, omega)).real
+        is_passive = max(np.roots(below).real) <= 0 <= min(real)
+        assert (closed(model) is not None) == is_passive, law
 
 
 def test_a_gain_may_be_a_mass_of_which_no_phase_is_known():
@@ -218,6 +243,26 @@ def test_where_a_loop_has_no_damping_of_its_own_phase_margins_beyond_are_not_cer
     assert not found.certified
     assert found.is_complete
     assert found.reasons == ("phase margins above 1 Hz are not known",)
+
+
+AXLE = """
+symflex = 1
+parameters = { K = "1 N*m/rad", T = "0.1 s" }
+inputs.r = { unit = "rad" }
+outputs.y = "phi"
+elements.rotor = { type = "inertia", at = "phi", J = "1 kg*m^2" }
+elements.axle = { type = "shaft", between = ["phi", "end"], GJ = "1 N*m^2", rhoJ = "1 kg*m", l = "1 m" }
+elements.motor = { type = "torque_source", at = "phi", tau = "K*(r - phi)*LAW" }
+"""
+
+
+@pytest.mark.slow
+def test_a_lead_holds_a_shaft_without_loss_and_a_lag_is_said_to_shake_it():
+    """``(1 + a s)/(1 + b s)`` damps where a > b: at s = j omega its imaginary part has the sign of a - b."""
+    for law, word in [("(1 + T*s)/(1 + T*s/9)", "stable"), ("(1 + T*s/9)/(1 + T*s)", "unstable")]:
+        found = stability(pipeline.loads(AXLE.replace("LAW", law)), StabilityOptions(gain="K"))
+        assert found.verdict.word == word, law
+        assert found.reasons, law  # neither is certified: how far poles are counted, or phase margins
 
 
 def test_no_phase_margin_above_a_frequency_is_below_that_of_spring_and_damper():
