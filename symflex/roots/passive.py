@@ -173,7 +173,7 @@ def _ends(use: PlacedElement, model: Model) -> Ends:
 
 
 @dataclass(frozen=True, slots=True)
-class _Law:
+class _Feedback:
     """How a force follows the motion it acts on."""
 
     is_moved: bool  # the gain is part of it, or there is none
@@ -214,7 +214,7 @@ class _Structure:
         """What vanishes where inputs rest, each row with its role."""
         return [(row.role, _form(row.form)) for row in self.equations.rows]
 
-    def _law(self, number: int, at: _Acting) -> _Law | None:
+    def _law(self, number: int, at: _Acting) -> _Feedback | None:
         """Return with what minus the motion is multiplied, where that is proved to be passive."""
         ends = at.ends
         effort = Variable("signal", str(number))
@@ -225,7 +225,7 @@ class _Structure:
         if found is None:
             return None
         if len(found) == 1:
-            return _Law(is_moved=False, loses=False, powers={})  # it follows inputs, through signals
+            return _Feedback(is_moved=False, loses=False, powers={})  # it follows inputs, through signals
         shares = [
             found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
         ]
@@ -242,12 +242,12 @@ class _Structure:
             with precision(BITS):
                 law = {power: c / below[0, 0] for power, c in law.items()}
             is_passive = all(i <= INERTIA and c > 0 for (i, _), c in law.items())
-            return _Law(is_moved, any(i == 1 for i, _ in law), law) if is_passive else None
+            return _Feedback(is_moved, any(i == 1 for i, _ in law), law) if is_passive else None
         over = {i + 1: c for (i, _), c in below.items()}
         losses = {
             _loss({i: c for (i, j), c in law.items() if j == power}, over) for power in {j for _, j in law}
         }
-        return None if None in losses else _Law(is_moved, True in losses, None)
+        return None if None in losses else _Feedback(is_moved, True in losses, None)
 
     def _rests(self, damped: Sequence[Ends]) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""

@@ -507,18 +507,18 @@ def length(*expressions: Expression) -> int:
 
 
 def reading(expression: Expression) -> float:
-    """Return the length of an expression, and more if it is nested as ``s*(a*s + b) + c``.
+    """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``.
 
     So is ``omega*(2*zeta*s + omega) + s^2``.
     """
-    is_nested = any(
-        isinstance(term, Product)
-        and any(Name(LAPLACE) in inner and {*inner} & {*term.factors} for inner in map(_inside, term.factors))
-        for total in nodes(expression)
-        if isinstance(total, Sum)
-        for term in total.terms
+    sums = {e for e in nodes(expression) if isinstance(e, Sum) and any(map(_is_nested, e.terms))}
+    return length(expression) + (NESTED - 1) * length(*sums)
+
+
+def _is_nested(term: Expression) -> bool:
+    return isinstance(term, Product) and any(
+        Name(LAPLACE) in inner and {*inner} & {*term.factors} for inner in map(_inside, term.factors)
     )
-    return length(expression) * (NESTED if is_nested else 1)
 
 
 def _inside(factor: Expression) -> tuple[Expression, ...]:

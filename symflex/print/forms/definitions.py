@@ -69,8 +69,8 @@ def _tidied(part: Expression, order: Mapping[str, int]) -> Expression:
     terms = [powers_of(t) for t in part.terms]
     shared: dict[Expression, int] = {
         base: min(powers.get(base, 0) for _, powers in terms)
-        for base in terms[0][1]
-        if isinstance(base, Name) and all(powers.get(base, 0) > 0 for _, powers in terms)
+        for base in sorted(terms[0][1], key=lambda base: isinstance(base, Sum))
+        if isinstance(base, Name | Sum) and all(powers.get(base, 0) > 0 for _, powers in terms)
     }
     if not shared:
         return part

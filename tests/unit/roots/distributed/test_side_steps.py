@@ -379,10 +379,13 @@ class Right(Circle):
 
     def __init__(self, within, right, smallest=-2.0):
         super().__init__(within, smallest)
-        self.right, self.cells = right, []
+        self.right, self.rings = right, []
 
     def count(self, cell):
-        self.cells.append(cell)
+        return self.right
+
+    def count_right(self, low, high):
+        self.rings.append((low, high))
         return self.right
 
 
@@ -404,7 +407,7 @@ def test_the_right_half_plane_is_counted_between_two_half_circles(monkeypatch):
             continue
         assert one.count_right(3.0) == count
         low = min(smallest, 2.0)
-        assert used.cells == [Cell(low, 3.0, -pi / 2, pi / 2)]
+        assert used.rings == [(low, 3.0)]
         assert used.asked == [(pi, one.holes), (low, pi)]
 
 
