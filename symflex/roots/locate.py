@@ -31,7 +31,7 @@ from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
-from symflex.roots.passive import fastest_growth, passive_loop
+from symflex.roots.passive import fastest_growth, observed, passive_loop
 from symflex.roots.passive_fields import are_passive
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
@@ -168,7 +168,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
         where,
         digits,
         is_default=is_default,
-        proof=_passivity(source.model, bound.values)[0],
+        proof=_passivity(bound, bound.values)[0],
     )
     is_open = not found.certificate.certified and found.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
@@ -407,7 +407,8 @@ class _Searched:
         proof, rests = _passivity_of(bound)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
-        limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
+        model = observed(bound.source.model, bound.source.output)
+        limit = fastest_growth(model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
         has_more = False  # poles than those that are known
@@ -523,11 +524,12 @@ def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
 
 
 def _passivity_of(bound: BoundTransferFunction) -> tuple[str, bool]:
-    return _passivity(bound.source.model, bound.all_values) if bound.is_of_model else ("", False)
+    return _passivity(bound, bound.all_values) if bound.is_of_model else ("", False)
 
 
-def _passivity(model: Model, values: Sequence[tuple[str, ExactValue]]) -> tuple[str, bool]:
+def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]) -> tuple[str, bool]:
     """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
+    model = observed(bound.source.model, bound.source.output)
     if is_passive(model, values) or are_passive(model, values):
         return PASSIVE, False
     loop = passive_loop(model, "", values)

@@ -25,7 +25,7 @@ from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
-from symflex.expressions import Name, Number
+from symflex.expressions import Expression, Name, Number, Power, Quotient, names_among, nodes, substitute
 from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
@@ -48,9 +48,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from symflex.equations import Equations
-    from symflex.model import ExactValue, Model, PlacedElement
+    from symflex.model import ExactValue, Model, Output, PlacedElement
 
 BITS = 128
+OBSERVED = "(output)"
+"""No name of a specification reads so."""
 INERTIA = 2
 """The power of s of a mass."""
 Form = dict[Variable, Factored]
@@ -106,11 +108,41 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
         name = str(number)  # what a source supplies, as a signal; no name of a specification begins so
         named.append(replace(source, values=((quantity, Name(name)),)))
         signals.append(Signal(name, supplied))
+    dynamic = _dynamic(model)
+    signals = [replace(each, expression=substitute(each.expression, dynamic)) for each in signals]
     equations = assemble(
         replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
     ends = [_Acting.of(source, equations.model) for source in sources]
     return _Structure(equations, rest, gain, line, known).closed_at(ends)
+
+
+def _dynamic(model: Model) -> dict[str, Expression]:
+    """Return the definitions that depend on s, each in terms of none: their poles are seen then."""
+    kept = {LAPLACE, *(b.name for b in model.blocks)}
+    found: dict[str, Expression] = {}
+    for _ in model.definitions:
+        told = {d.name: substitute(d.expression, found) for d in model.definitions}
+        found = {name: e for name, e in told.items() if names_among(e, kept)}
+    return found
+
+
+def observed(model: Model, output: Output) -> Model:
+    """Return a model with an output as a signal where it may have poles of its own, as ``x/(T*s + 1)`` has.
+
+    What is passive says nothing of these.
+    """
+    behind = {LAPLACE, *(b.name for b in model.blocks), *_dynamic(model)}
+
+    def may_vanish(e: Expression) -> bool:
+        below = e.denominator if isinstance(e, Quotient) else e.base if isinstance(e, Power) else None
+        is_whole = isinstance(e, Power) and isinstance(e.exponent, Number) and e.exponent.value >= 0
+        return below is not None and not is_whole and bool(names_among(below, behind))
+
+    used = names_among(output.expression, behind - {LAPLACE})
+    if not used and not any(map(may_vanish, nodes(output.expression))):
+        return model
+    return replace(model, signals=(*model.signals, Signal(OBSERVED, output.expression)))
 
 
 def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> float | None:

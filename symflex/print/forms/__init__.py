@@ -22,7 +22,15 @@ from symflex.print.forms.polynomial import (
     monic_form,
     polynomial_form,
 )
-from symflex.print.forms.printed import Arrange, Begin, PrintedForm, counts_of, forms_of, require
+from symflex.print.forms.printed import (
+    KERNELS_ONLY,
+    Arrange,
+    Begin,
+    PrintedForm,
+    counts_of,
+    forms_of,
+    require,
+)
 from symflex.print.forms.shapes import shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
@@ -267,7 +275,7 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
 def _length(form: PrintedForm) -> float:
     """Return the length of all but the model's definitions, which may stay closed."""
     parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
-    return sum(map(reading, parts))
+    return length(*parts) if form.name in KERNELS_ONLY else sum(map(reading, parts))
 
 
 __all__ = [

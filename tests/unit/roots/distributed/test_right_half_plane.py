@@ -154,3 +154,43 @@ def test_a_negative_damper_is_not_passive_and_its_rod_unstable():
     right = [float(p.re.mid()) for p in shown.poles if p.re > 0]
     assert right
     assert right == pytest.approx([0.34657359027997264] * len(right))
+
+
+LOSSY_ARM = """
+symflex = 1
+inputs.F = { force = "x" }
+[elements]
+wall = { type = "fixed", at = "root" }
+arm = { type = "beam", between = ["root", "x"], EI = 1, rhoA = 1, l = 1, eta = 0.01 }
+"""
+OWN = {  # {} stands for s - a or s + a
+    "a quotient": ("", "x/({})"),
+    "a definition": ('definitions.C = "1/({})"', "x*(1 + C)"),
+    "a block": ('blocks.P = {{ type = "tf", num = [1], den = "{}" }}', "P*x"),
+    "a signal": ('signals.u = "x/({})"', "u"),
+}
+
+
+@pytest.mark.parametrize("kind", OWN)
+@pytest.mark.parametrize("den", ["s - 100", "s + 100"])
+def test_a_passive_structure_says_nothing_of_poles_that_its_output_adds(kind, den):
+    line, output = (part.format(den) for part in OWN[kind])
+    shown = found(LOSSY_ARM.replace("[elements]", f'{line}\noutputs.X = "{output}"\n[elements]'), Modes(1))
+    right = [100] if "-" in den else []
+    assert [float(p.re.mid()) for p in shown.unstable] == right
+    assert (shown.verdict.word, shown.verdict.right) == ("unstable" if right else "stable", len(right))
+
+
+@pytest.mark.parametrize("drive", ["u/(s - 100)", "C*u"])
+def test_a_passive_structure_says_nothing_of_poles_of_what_drives_it(drive):
+    text = LOSSY_ARM.replace('F = { force = "x" }', "u = {}")
+    text = text.replace("[elements]", 'definitions.C = "1/(s - 100)"\noutputs.X = "x"\n[elements]')
+    shown = found(text + f'push = {{ type = "force_source", at = "x", f = "{drive}" }}\n', Modes(1))
+    assert [float(p.re.mid()) for p in shown.unstable] == [100]
+
+
+def test_delays_in_an_output_are_no_part_of_what_is_passive():
+    # 1 + 2 exp(-s) vanishes at ln 2 + j pi (2 n + 1), all along a line right of the axis.
+    text = 'symflex = 1\nblocks.D = { type = "delay", T = 1 }\ninputs.u = {}\noutputs.y = "u/(1 + 2*D)"'
+    verdict = found(text, Modes(2)).verdict
+    assert (verdict.word, verdict.right) == ("unstable", None)
