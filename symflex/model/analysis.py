@@ -34,7 +34,7 @@ from symflex.model.model import (
 )
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
-from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue
+from symflex.model.spec import BooleanValue, NumberValue, TableValue
 from symflex.quantities import IMAGINARY_NAMES, unit_of
 
 if TYPE_CHECKING:
@@ -68,11 +68,11 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
 
 def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
     value = entry.value
-    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
-        hint = 'for instance ["0.1 Hz", "1 kHz"]'
-        reader.misfit("band must be an array of two frequencies", value, hint)
+    hint = 'for instance ["0.1 Hz", "1 kHz"]'
+    items = reader.pair(value, "band must be an array of two frequencies", hint)
+    if items is None:
         return None
-    limits = [_frequency(reader, item) for item in value.items]
+    limits = [_frequency(reader, item) for item in items]
     if limits[0] is None or limits[1] is None:
         return None
     low, high = limits[0], limits[1]
@@ -82,7 +82,7 @@ def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
         return None
     if low <= 0:
         message = "the band must begin above 0 Hz"
-        reader.note("SF227", message, value.items[0].span, "both frequencies must be positive")
+        reader.note("SF227", message, items[0].span, "both frequencies must be positive")
         return None
     return low, high
 
@@ -260,25 +260,29 @@ def _range(
         hint = 'only a locus has one, as in kind = "locus", gain = "K"'
         reader.note("SF207", f"{what} has a 'range' without a locus and its gain", entry.key_span, hint)
         return None
-    value, ends = entry.value, list[Fraction]()
-    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
-        reader.misfit("range must be an array of two gains", value, "for instance [0, 1e4]")
+    items = reader.pair(entry.value, "range must be an array of two gains", "for instance [0, 1e4]")
+    if items is None:
         return None
-    for item in value.items:
-        if isinstance(item, NumberValue):
-            ends.append(item.value)
-        elif quantity := reader.quantity(item, "a gain"):
-            if quantity.unit and (not gain.unit or quantity.dimension != unit_of(gain.unit).dimension):
-                message = f"'{gain.name}' is in '{gain.unit or 1}', the range is in '{quantity.unit}'"
-                reader.note("SF203", message, item.span)
-                return None
-            number, pi_power = quantity.cyclic() if gain.cycles else quantity.angular()
-            ends.append(number * PI_NEARLY**pi_power)
-    if len(ends) == 2 and ends[0] < ends[1]:  # noqa: PLR2004
-        return ends[0], ends[1]
-    if len(ends) == 2:  # noqa: PLR2004
-        reader.note("SF227", "the range must end above its start", value.span, "write the lower gain first")
-    return None
+    low, high = (_end(reader, item, gain) for item in items)
+    if low is None or high is None:
+        return None
+    if low >= high:
+        span = entry.value.span
+        reader.note("SF227", "the range must end above its start", span, "write the lower gain first")
+        return None
+    return low, high
+
+
+def _end(reader: Reader, item: Value, gain: ModelParameter) -> Fraction | None:
+    quantity = reader.quantity(item, "a gain")
+    if quantity is None:
+        return None
+    if quantity.unit and (not gain.unit or quantity.dimension != unit_of(gain.unit).dimension):
+        message = f"'{gain.name}' is in '{gain.unit or 1}', the range is in '{quantity.unit}'"
+        reader.note("SF203", message, item.span)
+        return None
+    number, pi_power = quantity.cyclic() if gain.cycles else quantity.angular()
+    return number * PI_NEARLY**pi_power
 
 
 def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:

@@ -12,7 +12,6 @@ from symflex.model.declarations import read_label
 from symflex.model.model import FieldProblem
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -162,11 +161,10 @@ def _domain(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Express
     given = reader.needed(table, "domain", entry, message, 'for instance domain = ["0", "l"]')
     if given is None:
         return None
-    value = given.value
-    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
-        reader.misfit(f"{what} must be an array of its two ends", value, 'for instance ["0", "l"]')
+    ends = reader.pair(given.value, f"{what} must be an array of its two ends", 'for instance ["0", "l"]')
+    if ends is None:
         return None
-    start, end = (reader.expression(item, what) for item in value.items)
+    start, end = (reader.expression(item, what) for item in ends)
     return None if start is None or end is None else (start, end)
 
 

@@ -87,6 +87,14 @@ class Reader:
         if not (isinstance(value, OtherValue) and value.kind == "invalid"):
             self.note("SF206", f"{message}, found {describe(value)}", value.span, hint)
 
+    def pair(self, value: Value, message: str, hint: str) -> tuple[Value, Value] | None:
+        """Return the two items of an array; anything else is noted with a message."""
+        match value:
+            case ArrayValue(items=(first, second)):
+                return first, second
+        self.misfit(message, value, hint)
+        return None
+
     def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         """Add one problem."""
         self.take((Diagnostic(code, message, span, hint),))

@@ -317,7 +317,8 @@ def unit_hint(symbol: str) -> str | None:
     ("did you mean 'kN'?", "did you mean 'kg*mm'?")
     """
     for written in (symbol, symbol.lower()):
-        if written in _INSTEAD and (written == symbol or len(symbol) > 2):  # noqa: PLR2004
+        # Two letters are too few to tell a slip from another unit.
+        if written in _INSTEAD and (written == symbol or symbol[2:]):
             return _INSTEAD[written]
     small = "k" + symbol[1:]
     if symbol[0] == "K" and (unit_named(small) or run_together(small)):

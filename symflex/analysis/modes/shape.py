@@ -218,7 +218,7 @@ class EnclosedModeShape:
     """The motion of everything at one pole, up to a complex factor."""
 
     pole: Root
-    # Of every unknown of the equations: nodes, forces and currents, signals, and the constants of fields.
+    # One for every unknown of the equations: nodes, forces and currents, signals, and constants of fields.
     motions: tuple[Motion, ...]
     distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
     reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``

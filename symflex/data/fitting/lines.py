@@ -31,7 +31,7 @@ LEAST_OFF = 0.1
 NARROW = 0.1
 """Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
 MOST_DIGITS = 7
-"""Of numbers that count as rounded."""
+"""Numbers with so many digits, or fewer, count as rounded."""
 EXACT, SMALLEST = 1e-9, 1e-13
 """Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
 FIRST_SHARE = 4

@@ -215,9 +215,10 @@ def _columns(
         guesses.append(f"the numbers begin in line {block.lines[0] + 1}")
     title = _title(table, [i for i in above if i != line])
     # Analysers write two parts of all that they trace, the second one empty where there is only one.
-    is_single = width > 2 and not any(n.any() for n, _ in numbers[2:])  # noqa: PLR2004
-    if title and ((width == 2 and not meanings[1].kind) or is_single):  # noqa: PLR2004
-        meanings[1:] = [title, *(ColumnMeaning() for _ in numbers[2:])]
+    beside = numbers[2:]
+    is_single = not any(n.any() for n, _ in beside) if beside else not meanings[1].kind
+    if title and is_single:
+        meanings[1:] = [title, *(ColumnMeaning() for _ in beside)]
     unit = next((m[1] for i in above if (m := _AXIS_UNIT.search(table.lines[i][:200]))), "")
     if unit and not meanings[0].kind:
         meanings[0] = replace(meanings[0], unit=unit)

@@ -167,7 +167,7 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
     matrix = matrix_of(arrays)
     if matrix is not None:
         times, values = matrix[1][:, 0], matrix[1][:, 1]
-        if matrix[1].shape[1] > 2:  # noqa: PLR2004
+        if matrix[1][:, 2:].size:
             guesses.append(f"of '{matrix[0]}' only the first two columns are used")
         guesses.append(f"the first column of '{matrix[0]}' is the time in seconds")
         factor = Fraction(1)

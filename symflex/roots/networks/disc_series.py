@@ -28,14 +28,14 @@ GUARD_BITS = 64
 MOST_TIMES_BITS = 8
 """Of the precision of a series, that telling its roots apart may take."""
 SMALLEST_ARC = 2.0**-11
-"""Of a circle on which the argument is followed [rad]: below, a root is taken to lie on it."""
+"""Shortest arc of a circle on which the argument is followed [rad]; below, a root counts as on it."""
 BISECTIONS = 60
 SERIES_TERMS = 40
-"""Of the function about a point of a circle; what comes after is bounded."""
+"""Terms of the function about a point of a circle; the others are bounded."""
 LEFT_OUT = 8
 """Times what coefficients lack, that leaving some out may add: three bits of them."""
 WITHIN = 0.9
-"""Of the distance to 0, how far the function may move on a step."""
+"""Share of its distance to 0 by which the function may move on a step."""
 WIDENINGS = 8
 FEWEST_POINTS = 8
 """Half of them, on a circle."""

@@ -148,7 +148,7 @@ def test_a_transducer_turns_no_energy_into_heat():
 
 
 def test_a_transducer_supplies_no_energy_unless_its_stiffness_is_negative():
-    # Of power v i + f s (x_a - x_b), what alpha adds cancels: C v^2/2 + k (x_a - x_b)^2/2 is stored.
+    # What alpha adds to the power v i + f s (x_a - x_b) cancels: C v^2/2 + k (x_a - x_b)^2/2 is stored.
     for alpha in ("alpha", "-alpha"):
         text = piezo(VOLTAGE).replace('alpha = "alpha"', f'alpha = "{alpha}"')
         assert is_passive(pipeline.loads(text)), alpha

@@ -178,7 +178,7 @@ equations = ["m*s*v + v/d + k*x = F", "v = s*x"]
 
 
 def test_units_are_inferred_beside_a_written_number():
-    # Of 2*m*Omega*s*y the 2 is a pure number, as nothing in the model says otherwise.
+    # The 2 of 2*m*Omega*s*y is a pure number, as nothing in the model says otherwise.
     model = symflex.loads("""
     symflex = 1
     parameters = { m = "2 ug", k = "0.8 N/m", Omega = "5 rad/s" }
