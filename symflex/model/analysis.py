@@ -256,9 +256,10 @@ def _range(
     entry = table.get("range")
     if entry is None:
         return None
-    if kind != "locus" or gain is None:
+    if kind != "locus" or table.get("gain") is None:
         hint = 'only a locus has one, as in kind = "locus", gain = "K"'
         reader.note("SF207", f"{what} has a 'range' without a locus and its gain", entry.key_span, hint)
+    if kind != "locus" or gain is None:
         return None
     items = reader.pair(entry.value, "range must be an array of two gains", "for instance [0, 1e4]")
     if items is None:
