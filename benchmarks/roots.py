@@ -21,9 +21,10 @@ from mpmath import mp, mpc, mpf
 
 import symflex
 from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_snippet, times_as_fast
-from symflex.roots import Budget, Mode, Modes, Position, Rectangle
+from symflex.roots import Mode, Modes, Position, Rectangle
 from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
+from symflex.roots.polynomial_roots import in_order
 from symflex.roots.root import exact_fraction
 
 if TYPE_CHECKING:
@@ -82,13 +83,13 @@ def solve_one(model: BoundTransferFunction, mode: int, digits: int) -> Root:
 
 
 def _poles(engine: str, model: BoundTransferFunction, region: Region, digits: int) -> tuple[Root, ...]:
-    side = Side(model, model.den, digits, Budget(), engines=(engine,))
+    side = Side(model, model.den, digits, engines=(engine,))
     if isinstance(region, Mode):
         side.numbered(region.number)
-        return side.in_order()
+        return in_order(side.roots)
     side.search(region)
     assert side.prove(region).is_complete
-    ordered = side.in_order()
+    ordered = in_order(side.roots)
     inside = zip(ordered, region.classify(ordered), strict=True)
     return tuple(root for root, position in inside if position is not Position.OUTSIDE)
 
