@@ -8,12 +8,12 @@ neither decides, nothing is said.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.algebra import LAPLACE, by_powers, degree_in, irreducible_factors
 from symflex.library.elements import CIRCUITS
-from symflex.model import Model
+from symflex.model.signs import is_passive
 from symflex.print.forms import Arranger
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Ring
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.expressions import Expression
-    from symflex.model import PlacedElement
+    from symflex.model import Model
     from symflex.transfer import TransferFunction
 
 Kind = Literal["always", "never", "if positive", "as given", "unknown"]
@@ -133,19 +133,14 @@ def _sign(polynomial: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> Sign:
 
 
 def _is_passive(model: Model) -> bool:
+    """Tell whether a model is a mechanism that supplies no energy, whatever positive values it has."""
+    elements = [use.element for use in model.elements]
+    free = tuple(replace(p, value=None, assume="positive") for p in model.parameters)
     return (
-        not model.signals
-        and not model.blocks
-        and not model.fields
-        and all(map(_is_passive_mechanism, model.elements))
-        and all(p.assume != "real" for p in model.parameters)
+        all(p.assume != "real" for p in model.parameters)
+        and all(e.passive is not None and all(p.domain not in CIRCUITS for p in e.ports) for e in elements)
+        and is_passive(replace(model, parameters=free))
     )
-
-
-def _is_passive_mechanism(use: PlacedElement) -> bool:
-    """Tell whether an element supplies no energy for any positive values of its parameters."""
-    element = use.element
-    return element.passive is not None and all(port.domain not in CIRCUITS for port in element.ports)
 
 
 def _has_one_scale(tf: TransferFunction) -> bool:

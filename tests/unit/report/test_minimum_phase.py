@@ -72,3 +72,19 @@ def test_the_zeros_of_a_beam_without_losses_move_along_rays():
 
 def test_a_driving_point_of_a_passive_structure_is_minimum_phase():
     assert condition(pipeline.load(FOLDER / "six_mass.toml"), "X_act/F").kind == "always"
+
+
+def test_a_driving_point_is_not_where_a_stiffness_may_be_negative():
+    # The zeros are those of s^2 + k + k_1 - P with m_2 = 1: one is positive where P > k + k_1.
+    model = pipeline.loads("""
+symflex = 1
+parameters = { k = {}, k_1 = {}, P = {} }
+inputs.F = { force = "x" }
+outputs.X = "x"
+[elements]
+one  = { type = "mass", at = "x", m = 1 }
+two  = { type = "mass", at = "y", m = 1 }
+join = { type = "spring", between = ["x", "y"], k = "k" }
+wall = { type = "spring", between = ["y", "ground"], k = "k_1 - P" }
+""")
+    assert condition(model, "X/F").kind != "always"
