@@ -31,7 +31,7 @@ from symflex.expressions import (
     names,
     substitute,
 )
-from symflex.library.elements import LineElement
+from symflex.library.elements import CIRCUITS, LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
 from symflex.model.reading import literal_value
@@ -137,12 +137,12 @@ class Line:
         return polynomial is not None and all(e >= 0 for m in polynomial for n, e in m if n == name)
 
     def opened_names(self, expression: Expression) -> set[str]:
-        """Return the names of an expression and of the definitions in it; a dot for all others."""
+        """Return the names of an expression and of the definitions in it; a dot for what else may vary."""
         found: set[str] = set()
         for each in names(expression):
             if isinstance(each, Name) and each.name in self.definitions:
                 found |= self.opened_names(self.definitions[each.name])
-            elif not isinstance(each, Call):
+            elif not isinstance(each, Call) or each.name not in FUNCTIONS:
                 found.add(each.name if isinstance(each, Name) else ".")
         return found
 
@@ -539,6 +539,12 @@ def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
         for name in law.equal
     ):
         return False
+    if law.is_alike and len({domain in CIRCUITS for _, domain in use.domains}) > 1:
+        return False
+    if law.definite:
+        one, other, mutual = (given[name] for name in law.definite)
+        if line.sign(Sum((Product((one, other)), Negative(Product((mutual, mutual)))))) not in (0, 1):
+            return False
     signs = parameter_signs(use, line)
     return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
 

@@ -55,14 +55,14 @@ class Transformer(TwoPort):
 
     Each side is a node, or a pair of nodes, of which the first is taken relative to the second. The ratio
     holds between displacements [m], angles [rad] or voltages [V]. ``f``, ``tau`` or ``i``, depending on the
-    domain of ``to``, is delivered at ``to``; ``ratio`` times as much is drawn at ``from``, so no power is
-    lost.
+    domain of ``to``, is delivered at ``to``; ``ratio`` times as much is drawn at ``from``. No power is lost
+    between two motions, nor between voltages or pressures.
     """
 
     type_name = "transformer"
     summary = "Gear, rack, screw, lever or electrical transformer: to = ratio * from"
     parameters = (ParameterPort("ratio", "", "a transformer ratio"),)
-    passive = Passivity(of_any_sign=("ratio",))
+    passive = Passivity(of_any_sign=("ratio",), is_alike=True)
     moves_as_one = True
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
@@ -354,6 +354,7 @@ class CoupledInductors(Element):
         ParameterPort("M", "H", "a mutual inductance"),
     )
     through = ("i_1", "i_2")
+    passive = Passivity(of_any_sign=("M",), definite=("L_1", "L_2", "M"))
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute both currents and the rows of both windings."""

@@ -206,6 +206,9 @@ class Passivity:
     # the other.
     of_any_sign: tuple[str, ...] = ()
     equal: tuple[str, ...] = ()  # parameters that must be the same
+    definite: tuple[str, ...] = ()  # two and one whose square must not be larger than their product
+    # Power is one product at all ports, such as displacement, force and s: a voltage is no displacement.
+    is_alike: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 import symflex
+from symflex import pipeline
 from symflex.errors import SpecError
+from symflex.model.signs import is_passive
 
 S = 0.3 + 4j
 
@@ -168,6 +170,19 @@ O = "o"
 """
     _, second = solved([[2 + 3 * S, 1.5 * S], [1.5 * S, 7 + 5 * S]], [1, 0])
     assert values(text, "O/V") == pytest.approx([-7 * second])
+
+
+def test_coupled_inductors_supply_no_energy_where_their_matrix_is_semidefinite():
+    for l_1, l_2, m in [(3, 5, 1.5), (1, 4, -2), (1, 4, 2.01), (1, 1, -1.5), (-1, -1, 0.5)]:
+        text = f"""symflex = 1
+elements.core = {{ type = "coupled_inductors", terminals = ["a", "ground", "o", "ground"], L_1 = {l_1},
+                  L_2 = {l_2}, M = {m} }}
+elements.load = {{ type = "resistor", between = ["o", "ground"], R = 7 }}
+inputs.V = {{ voltage = "a" }}
+outputs.O = "o"
+""".replace(",\n", ",")
+        least = min(np.linalg.eigvalsh([[l_1, m], [m, l_2]]))
+        assert is_passive(pipeline.loads(text)) is bool(least > -1e-9), (l_1, l_2, m)
 
 
 def test_a_loudspeaker_in_a_vented_box():
