@@ -26,7 +26,7 @@ from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
-from symflex.roots.passive import PassiveLoop, passive_loop
+from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
 from symflex.transfer.balls import ball
 
@@ -111,8 +111,9 @@ class DistributedFactors:
     @cached_property
     def passive(self) -> PassiveLoop | None:
         """How the loop is closed, where it is proved to be passive for every gain in the range."""
+        source = self.bound.source
         return (
-            passive_loop(self.bound.source.model, self.gain, self.bound.all_values)
+            passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
             if self.limits[0] >= 0
             else None
         )

@@ -35,6 +35,7 @@ from symflex.roots.passive import fastest_growth, observed, passive_loop
 from symflex.roots.passive_fields import are_passive
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
+    NONE_ON_AXIS,
     Certificate,
     Exclusion,
     HiddenRoot,
@@ -161,6 +162,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     if not model.is_distributed:
         return locate(lumped(bound), region, digits)
     where, is_default = _region_of(bound, region)
+    proof, rests = _passivity(bound, bound.values)
     found = locate_in_network(
         equations_of(bound),
         bound.name,
@@ -168,7 +170,8 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
         where,
         digits,
         is_default=is_default,
-        proof=_passivity(bound, bound.values)[0],
+        proof=proof,
+        rests=rests,
     )
     is_open = not found.certificate.certified and found.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
@@ -408,7 +411,8 @@ class _Searched:
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
         model = observed(bound.source.model, bound.source.output)
-        limit = fastest_growth(model, bound.all_values) if bound.is_of_model else None
+        growth = fastest_growth(model, bound.all_values) if bound.is_of_model else None
+        limit = growth[0] if growth else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
         has_more = False  # poles than those that are known
@@ -445,8 +449,9 @@ class _Searched:
         unsure = gaps_text(gaps)
         if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*found)):
             proof = COMPRESSED
+            rests = growth is not None and growth[1]
         if proof:
-            unsure = "" if rests or not has_more else "none of those found lies on the imaginary axis"
+            unsure = "" if rests or not has_more else NONE_ON_AXIS
         seen = [root for each in found[:-1] for root in each]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
@@ -530,9 +535,11 @@ def _passivity_of(bound: BoundTransferFunction) -> tuple[str, bool]:
 def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]) -> tuple[str, bool]:
     """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
     model = observed(bound.source.model, bound.source.output)
-    if is_passive(model, values) or are_passive(model, values):
-        return PASSIVE, False
+    if are_passive(model, values):
+        return PASSIVE, are_passive(model, values, are_lossy=True)
     loop = passive_loop(model, "", values)
+    if is_passive(model, values):
+        return PASSIVE, loop is not None and loop.rests
     if loop is None:
         return "", False
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests

@@ -16,7 +16,6 @@ where it pushes. So the link rests too: no pole is on the axis, at any frequency
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 from math import atan2, pi, prod
 from typing import TYPE_CHECKING
@@ -25,11 +24,22 @@ from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
-from symflex.expressions import Expression, Name, Number, Power, Quotient, names_among, nodes, substitute
+from symflex.expressions import (
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Quotient,
+    names_among,
+    nodes,
+    substitute,
+)
 from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
+from symflex.model.along import COORDINATE
 from symflex.model.network import variable_of
 from symflex.model.signs import (
     Line,
@@ -145,8 +155,8 @@ def observed(model: Model, output: Output) -> Model:
     return replace(model, signals=(*model.signals, Signal(OBSERVED, output.expression)))
 
 
-def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> float | None:
-    """Return an abs(s) [rad/s] beyond which no pole lies right of the imaginary axis.
+def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> tuple[float, bool] | None:
+    """Return an abs(s) [rad/s] beyond which no pole lies right of the imaginary axis, and if all rests on it.
 
     None where that is not known: it is where nothing supplies energy but uniform members that are compressed.
     Over s their energy is ``rho A |w|^2 s + (EI |w''|^2 - P |w'|^2)/s``, and on a length l the integral of
@@ -157,28 +167,32 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> fl
     line = line_of(model, known)
     beams = [use for use in model.elements if isinstance(use.element, Beam)]
     pressed = [use for use in beams if parameter_signs(use, line).get("N") == -1]
-    rest = [_unloaded(use) if use in pressed else use for use in model.elements]
-    if not pressed or not is_passive(replace(model, elements=tuple(rest)), known):
+    # Where beams are pulled, the same rests on the axis: no proof of that depends on the force's sign.
+    pulled = replace(model, elements=tuple(_pulled(u) if u in pressed else u for u in model.elements))
+    loop = passive_loop(pulled, "", known) if pressed else None
+    if loop is None or not is_passive(pulled, known):
         return None
     squares = []
     with precision(BITS):
         for use in pressed:
-            given = {name: value_along(value, arb("nan"), line) for name, value in use.values}
-            force, length = given["N"], given["l"]
+            length = value_along(dict(use.values)["l"], arb("nan"), line)
+            along = arb(0).union(arb("nan") if length is None else length)
+            given = {name: value_along(value, along, line) for name, value in use.values}
+            force = given["N"]
             bending, mass = _product(given, "EI", "E", "I"), _product(given, "rhoA", "rho", "A")
             if force is None or length is None or not bending > 0 or not mass > 0:
                 return None
             squares.append(float((-force / mass * (12 / length**2 - force / bending)).upper()))
-    return float(max(squares) ** 0.5) * (1 + ROUNDING)
+    return float(max(squares) ** 0.5) * (1 + ROUNDING), loop.rests
 
 
-def _unloaded(use: PlacedElement) -> PlacedElement:
-    kept = tuple((name, Number(Fraction(0)) if name == "N" else value) for name, value in use.values)
+def _pulled(use: PlacedElement) -> PlacedElement:
+    kept = tuple((name, Negative(value) if name == "N" else value) for name, value in use.values)
     return replace(use, values=kept)
 
 
 def _product(given: Mapping[str, arb | None], whole: str, *parts: str) -> arb:
-    """Return a product, given whole or in parts; not a number where one has no value or varies along x."""
+    """Return a product, given whole or in parts; not a number where one has no value."""
     values = [given.get(name) for name in ((whole,) if whole in given else parts)]
     return prod((arb("nan") if value is None else value for value in values), start=arb(1))
 
@@ -293,12 +307,14 @@ class _Structure:
             given, law = signs[use.name], use.element.damping
             if law and given[law] == 1:
                 damped.append(_ends(use, self.equations.model))
+            if given.get("R") == 1:  # what flows through a resistance, of motors too
+                resting.add(Variable("through", use.name, use.element.through[0]))
             if isinstance(use.element, LineElement):
                 states = self._states(use, use.element)
                 members.append(states)
                 if _grows(use, given):
                     beams.append(states)
-                if _loses(use, given):
+                if _loses(use, given, self.line):
                     resting.update(v for state in states for v in state if v is not None)
         forms = [form for _, form in self._forms]
         forms += [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
@@ -485,18 +501,19 @@ def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
     )
 
 
-def _loses(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
+def _loses(use: PlacedElement, signs: Mapping[str, int | None], line: Line) -> bool:
     """Tell whether a member rests where it loses no energy.
 
     Without strain it moves as a rigid body, which its mass alone does not let it do by itself; an axial force
-    may, as in a hinged blade that turns, and rotary inertia that varies. Without deflection the sections of a
-    Timoshenko beam may still turn, all alike, against shear.
+    that varies may, as in a hinged blade that turns, and rotary inertia that varies. Without deflection the
+    sections of a Timoshenko beam may still turn, all alike, against shear.
     """
     theory = dict(use.choices).get("theory")
     if signs["c_f"] == 1 and theory != "timoshenko":
         return True
     heavy = signs["rho"] == 1 and signs.get("A", signs.get("J")) == 1
-    is_free = signs["k_f"] == 0 and signs.get("N", 0) == 0 and theory != "rayleigh"
+    is_even = all(COORDINATE not in line.opened_names(value) for name, value in use.values if name == "N")
+    is_free = signs["k_f"] == 0 and is_even and theory != "rayleigh"
     return signs.get("eta") == 1 and is_free and heavy
 
 

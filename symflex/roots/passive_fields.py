@@ -45,8 +45,8 @@ MOST_STATES = 6
 """Of a field, whose displacements and forces are told by trial."""
 MOST_TOGETHER = 4
 """Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
-INERTIA = 2
-"""The power of s of a mass."""
+LOSS, INERTIA = 1, 2
+"""The powers of s of a loss and of a mass."""
 LINE = 2
 """States of a field whose waves go to and fro."""
 BEAM = 4
@@ -56,17 +56,18 @@ Pair = tuple[int, int, int]
 """The number of a displacement, that of its force, and the sign of the work they do."""
 
 
-def are_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
+def are_passive(model: Model, values: Iterable[tuple[str, ExactValue]], *, are_lossy: bool = False) -> bool:
     """Tell whether it is proved that nothing in a model of fields alone supplies energy but its inputs.
 
-    ``values`` are those of the parameters. Nothing is known with elements, signals or blocks, or where the
+    ``values`` are those of the parameters. Where fields shall be lossy, whatever moves loses energy: no pole
+    lies on the imaginary axis but at 0. Nothing is known with elements, signals or blocks, or where the
     equations of a field are of no such form as those above.
     """
     if not model.fields or model.elements or model.signals or model.blocks:
         return False
     with precision(BITS):
         plain = replace(model, outputs=(), figures=(), published=())
-        return _Fields(assemble(plain, is_cut=True), dict(values)).are_passive()
+        return _Fields(assemble(plain, is_cut=True), dict(values), are_lossy).are_passive()
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,7 @@ class _Fields:
 
     equations: Equations
     values: Mapping[str, ExactValue]
+    are_lossy: bool = False  # only what is lost counts, not what is stored
 
     def are_passive(self) -> bool:
         """Tell whether all fields and what holds their ends are passive."""
@@ -107,14 +109,17 @@ class _Fields:
                     yield _Paired(field, states, pairs)
 
     def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Sequence[Pair]) -> bool:
-        """Tell whether what is stored and lost along a field is not negative, and zero only at rest."""
+        """Tell whether what is stored and lost along a field is not negative, and zero only at rest.
+
+        If fields shall be lossy, what is lost alone is zero only at rest.
+        """
         resting = set[int]()
         for q, p, sign in pairs:
             give = matrix[q][p] * sign
             powers = set[int]() if give.is_zero else self._stored(1 / give, field)
             if powers is None:
                 return False
-            if powers:
+            if powers & self._counted:
                 resting.add(p)
         for group in _joined(len(pairs), lambda i, j: not matrix[pairs[i][1]][pairs[j][0]].is_zero):
             together = [pairs[i] for i in group]
@@ -122,16 +127,27 @@ class _Fields:
             powers = self._held(held, field)
             if powers is None:
                 return False
-            if powers:
+            if powers & self._counted:
                 resting |= {q for q, _, _ in together}
         # A state at rest has no slope; if that is made of one other state alone, it rests, too.
         size = range(len(matrix))
         while True:
-            moving = [[j for j in size if not matrix[i][j].is_zero and j not in resting] for i in resting]
-            more = {row[0] for row in moving if len(row) == 1}
+            moving = [
+                (i, [j for j in size if not matrix[i][j].is_zero and j not in resting]) for i in resting
+            ]
+            more = {row[0] for i, row in moving if len(row) == 1 and self._keeps(matrix[i][row[0]])}
             if not more:
                 return len(resting) == len(matrix)
             resting |= more
+
+    @property
+    def _counted(self) -> set[int]:
+        """The powers of s whose energy is looked at: of stiffness, loss and mass, or of loss alone."""
+        return {LOSS} if self.are_lossy else {0, LOSS, INERTIA}
+
+    def _keeps(self, value: Factored) -> bool:
+        """Tell whether a coefficient vanishes nowhere that matters: right of the axis, or on it but at 0."""
+        return not self.are_lossy or len(_coefficients(value) or ()) == 1
 
     def _held(self, held: Matrix, field: Continuum | None) -> set[int] | None:
         """Return the powers of s whose energy holds all displacements, ``None`` where one may be negative."""

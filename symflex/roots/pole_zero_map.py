@@ -31,6 +31,7 @@ MOST_NAMES = 3
 """Nodes and signals that one line of hidden motion names."""
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to decide"
 NONE_FOUND = "no pole was found, and those elsewhere may lie on the imaginary axis"
+NONE_ON_AXIS = "none of those found lies on the imaginary axis, but others may"
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,10 +188,11 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
         if unproved and not proof:  # a pole that grows may lie beyond what was counted
             return StabilityVerdict("unknown", None, False, f"{where}; {unproved}")
         return StabilityVerdict("marginal", 0, True, f"{where}; {proof}" if proof else where)
-    if proof and not unclear and (every or not unproved):
-        return StabilityVerdict("stable", 0, True, f"{proof}; {unproved}" if unproved else proof)
+    if proof and not unclear and not unproved:
+        return StabilityVerdict("stable", 0, True, proof)
     if proof:
-        return StabilityVerdict("unknown", 0, False, f"{proof}; {ON_AXIS if unclear else NONE_FOUND}")
+        where = ON_AXIS if unclear else unproved if every else NONE_FOUND
+        return StabilityVerdict("unknown", 0, False, f"{proof}; {where}")
     if unproved or unclear:
         return StabilityVerdict("unknown", None, False, unproved or ON_AXIS)
     return StabilityVerdict("stable", 0, True)

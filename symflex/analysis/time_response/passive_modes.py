@@ -41,6 +41,7 @@ from symflex.expressions import Attribute, Expression, Name, Negative, Sum
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import is_passive
+from symflex.roots.passive import observed
 from symflex.roots.precision import precision
 from symflex.transfer.balls import ball
 from symflex.transfer.bind import bind
@@ -106,7 +107,7 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
     model = bound.source.model
     if model.fields:
         return Refused("what is stored is known of elements, not of fields")
-    if not bound.is_of_model or not is_passive(model, bound.all_values):
+    if not bound.is_of_model or not is_passive(observed(model, bound.source.output), bound.all_values):
         return Refused("something in the model may supply energy")
     model = in_one_way(model)
     here = acting(model, bound.source.input)

@@ -24,6 +24,7 @@ from symflex.roots.networks.members import UndecidedError
 from symflex.roots.networks.network import OtherNetworkError, network_of
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
+    NONE_ON_AXIS,
     Certificate,
     HiddenRoot,
     PoleZeroMap,
@@ -49,7 +50,6 @@ WIDER = 1e-3
 MATCHING_ROUNDS = 20
 """Searches that go further because input or output do not see some of the modes."""
 NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
-NONE_ON_AXIS = "none of those found lies on the imaginary axis"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"
 NOT_COUNTED = "the roots could not be counted"
 REACHED = "poles are known up to {:.4g} Hz only"
@@ -68,11 +68,13 @@ def locate_in_network(
     *,
     is_default: bool,
     proof: str,
+    rests: bool = False,
 ) -> PoleZeroMap:
     """Find poles and zeros of a transfer function, by counts where nothing loses energy, else in discs.
 
     ``equations`` have numbers in place of all parameters, and ``proof`` says why they have no pole right of
-    the imaginary axis, or is empty. Of a function that is zero, nothing is searched.
+    the imaginary axis, or is empty; where all ``rests`` on the axis, none lies there but at 0. Of a function
+    that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
         return _Sought(name, region, digits, is_default).nothing(ZERO)
@@ -82,7 +84,7 @@ def locate_in_network(
     except OtherNetworkError:
         network = None
     symmetric = (False, False) if network is None else network.symmetric
-    sought = _Sought(name, region, digits, is_default, proof, symmetric)
+    sought = _Sought(name, region, digits, is_default, proof, symmetric, "" if rests else NONE_ON_AXIS)
     cramer = CramerEquations.of(equations, *pair)
     if network is None or not (network.driven and network.read):
         return sought.in_disc(cramer)
@@ -104,6 +106,7 @@ class _Sought:
     is_default: bool = False
     proof: str = ""  # why no pole lies right of the imaginary axis
     symmetric: tuple[bool, bool] = (False, False)  # poles, and zeros, mirror each other in the axis
+    unsure: str = NONE_ON_AXIS  # what is not known with that proof
 
     def found(
         self,
@@ -161,7 +164,7 @@ class _Sought:
             reasons.append(in_disc.certificate.reason or "")
         known = [*poles, *(h.root for h in hidden if not h.is_proved)]
         unseen = [h.root for h in hidden if h.is_proved]
-        verdict = judge(known, NONE_ON_AXIS if self.proof else NOT_PASSIVE, self.proof, unseen)
+        verdict = judge(known, self.unsure if self.proof else NOT_PASSIVE, self.proof, unseen)
         return self.found(engine, (poles, zeros, hidden), verdict, reasons + search.reasons, code=code)
 
     def in_disc(self, cramer: CramerEquations) -> PoleZeroMap:
@@ -179,7 +182,7 @@ class _Sought:
         known = [*found.poles, *(r for r in found.shared if not r.is_zero)]
         beyond = REACHED.format(found.radius / (2 * pi))
         at_rest = [r for r in found.shared if r.is_zero]
-        verdict = judge(known, NONE_ON_AXIS if self.proof else beyond, self.proof, at_rest)
+        verdict = judge(known, self.unsure if self.proof else beyond, self.proof, at_rest)
         roots = (poles, zeros, _hidden(found.shared, poles, region))
         reasons = () if found.holds(wanted_modes(region)) else (TOO_FEW,)
         return self.found(CRAMER, roots, verdict, reasons, right_beyond(found.poles, poles))

@@ -259,3 +259,20 @@ def test_a_servo_with_a_timoshenko_arm_is_stable_for_every_gain_below_the_freque
     found = model.stability("k_p", (100, 1000), up_to_hz=1000)
     assert counts(found) == [(0, 0)]
     assert abs(found.counted_up_to_hz - 1000) < 1e-9
+
+
+def test_a_passive_structure_says_nothing_of_delays_in_its_output():
+    # theta/(1 - 2 exp(-s T)) grows at ln(2)/T, for every gain.
+    text = """
+symflex = 1
+parameters = { K = "1 N*m", T = "0.3 s" }
+blocks.D = { type = "delay", T = "T" }
+inputs.r = { unit = "rad" }
+outputs.y = "phi/(1 - 2*D)"
+[elements]
+rod = { type = "shaft", between = ["phi", "end"], GJ = 1, rhoJ = 1, l = 1 }
+motor = { type = "torque_source", at = "phi", tau = "K*(r - (1 + T*s)*phi)" }
+"""
+    found = symflex.loads(text).stability("K", (0, 5))
+    assert not any(interval.poles.is_stable for interval in found.proved.intervals)
+    assert not found.is_stable

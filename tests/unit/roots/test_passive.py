@@ -719,6 +719,17 @@ def test_lossy_lines_are_passive_with_what_ends_them():
         )
 
 
+def test_fields_rest_on_the_axis_where_what_moves_them_loses_energy():
+    # EI (1 + eta s) w'''' = -rhoA s^2 w has s^2 + eta p s + p = 0 with p > 0; without eta s^2 = -p.
+    for law, expected in [("(1 + eta*s)*EI", True), ("EI", False)]:
+        ends = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", f"{law}*w'''(l) = -F"]
+        model = model_of(f"{law}*w'''' + rhoA*s^2*w = 0", ends)
+        assert are_passive(model, [(p.name, p.value) for p in model.parameters], are_lossy=True) is expected
+    # (R + L s) (G + C s) = -q^2 has its roots left of the axis with R or G.
+    line = pipeline.loads(TRANSMISSION)
+    assert are_passive(line, [(p.name, p.value) for p in line.parameters], are_lossy=True)
+
+
 COLUMN = """
 symflex = 1
 parameters = { EI = "2 N*m^2", I = "1e-8 m^4", m = "3 kg/m", A = "1e-4 m^2", l = "0.7 m", t = TIME }
@@ -744,6 +755,15 @@ eta = "t"
 def column(factor, first="pin", time="0 s"):
     time = f'{{ value = "{time}", assume = "nonnegative" }}'
     return COLUMN.replace("FACTOR", factor).replace("FIRST", first).replace("TIME", time)
+
+
+@pytest.mark.slow
+def test_a_post_buckles_under_its_own_weight():
+    # Greenhill 1881: clamped, of stiffness EI and weight q per length, at q l^3 = 7.8373 EI.
+    text = column("1", "fixed").replace('b = { type = "pin", at = "b" }\n', "")
+    for weight, expected in [("7.83", "marginal"), ("7.84", "unstable")]:
+        loaded = text.replace('N = "-P"', f'N = "-{weight}*EI/l^2*(1 - x/l)"')
+        assert word(pipeline.loads(loaded)).word == expected, weight
 
 
 @pytest.mark.slow
@@ -782,7 +802,7 @@ def test_a_column_of_a_bending_stiffness_is_one_of_modulus_and_section():
     whole = text.replace('E = "EI/I"\nI = "I"\nrho = "m/A"\nA = "A"', 'EI = "EI"\nrhoA = "m"')
     assert whole != text
     limits = [
-        fastest_growth(model, ((p.name, p.value) for p in model.parameters))
+        fastest_growth(model, ((p.name, p.value) for p in model.parameters))[0]
         for model in map(pipeline.loads, (text, whole))
     ]
     assert limits[0] == pytest.approx(limits[1], rel=1e-12)
@@ -792,7 +812,7 @@ def test_growth_of_a_compressed_column_is_bounded_from_above():
     # Both ends pinned: s^2 = (P pi^2/l^2 - EI pi^4/l^4)/m at its largest.
     for load in (5, 50, 500):
         model = pipeline.loads(column(str(load)))
-        limit = fastest_growth(model, ((p.name, p.value) for p in model.parameters))
+        limit, _ = fastest_growth(model, ((p.name, p.value) for p in model.parameters))
         waves = np.arange(1, 40) * pi / 0.7
         force = load * pi**2 * 2 / 0.7**2
         grows = np.sqrt(max((force * waves**2 - 2 * waves**4) / 3))

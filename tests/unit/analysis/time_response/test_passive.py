@@ -357,6 +357,8 @@ def test_the_size_of_a_function_whose_terms_cancel_holds_in_a_wide_ball():
 def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
     assert isinstance(passive_bound(clamped(spring("-1")), 1), Refused)
     assert isinstance(passive_bound(clamped(output="arm.y(0.5 m) - arm.y(0.2 m)"), 1), Refused)
+    grows = passive_bound(clamped('parameters.T = "1 s"', output="x/(1 - T*s)"), 1)
+    assert grows == Refused("something in the model may supply energy")
 
 
 WALL = """symflex = 1

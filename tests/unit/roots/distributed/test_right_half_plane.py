@@ -194,3 +194,62 @@ def test_delays_in_an_output_are_no_part_of_what_is_passive():
     text = 'symflex = 1\nblocks.D = { type = "delay", T = 1 }\ninputs.u = {}\noutputs.y = "u/(1 + 2*D)"'
     verdict = found(text, Modes(2)).verdict
     assert (verdict.word, verdict.right) == ("unstable", None)
+
+
+STRINGS = """
+symflex = 1
+inputs.F = { force = "c" }
+outputs.X = "c"
+elements.one = { type = "string", between = ["ground", "a"], N = 1, rhoA = 1, l = 0.3 }
+elements.two = { type = "string", between = ["a", "c"], N = 1, rhoA = 1, l = 0.15 }
+elements.three = { type = "string", between = ["c", "ground"], N = 1, rhoA = 1, l = 0.55 }
+elements.loss = { type = "damper", between = ["a", "ground"], b = 0.5 }
+"""
+
+
+def test_a_mode_above_those_shown_that_no_damper_feels_keeps_a_passive_structure_from_being_stable():
+    # Of a string of length 1 mode n is sin(n pi x): at x = 0.3 the tenth rests, at x = 0.45 it moves.
+    verdict = found(STRINGS, Modes(2)).verdict
+    assert (verdict.word, verdict.right, verdict.certified) == ("unknown", 0, False)
+    # At the end of a rod every mode feels it.
+    damped = ROD + DAMPER.format(b=0.5) + FORCE
+    assert found(damped, Modes(1)).verdict.sentence == "stable: passive, nothing supplies energy"
+
+
+def test_a_voltage_that_follows_a_motion_may_supply_energy():
+    # An inductor is an integral of the motion then: m s^2 + n^2/(L s) and a rod's s coth(s) have zeros there.
+    text = (
+        ROD
+        + FORCE
+        + """
+elements.body = { type = "mass", at = "x", m = 1 }
+elements.pickup = { type = "transformer", from = "x", to = "v", ratio = 1 }
+elements.coil = { type = "inductor", between = ["v", "ground"], L = 1 }
+"""
+    )
+    grows = mpmath.findroot(lambda s: s**2 + s * mpmath.coth(s) + 1 / s, 0.3 + 0.9j)
+    assert grows.real > 0
+    verdict = found(text, Modes(1))
+    assert verdict.verdict.word == "unstable"
+    assert any(abs(complex(p.re.mid(), p.im.mid()) - complex(grows)) < 1e-9 for p in verdict.all_poles)
+    assert "passive" not in verdict.verdict.reason
+
+
+def test_a_force_that_follows_a_point_of_a_member_is_no_passive_one():
+    # sinh(s l)/s of the rod, cosh(s) + K sinh(s/2)/s = 0: with K = -3 a root lies where they meet.
+    text = (
+        ROD
+        + FORCE
+        + """
+parameters = { K = "3 N/m", x_s = "0.5 m" }
+elements.loop = { type = "force_source", at = "x", f = "K*rod.u(x_s)" }
+"""
+    )
+    grows = mpmath.findroot(lambda s: s * mpmath.cosh(s) - 3 * mpmath.sinh(s / 2), 1)
+    verdict = found(text, Modes(1))
+    assert verdict.verdict.word == "unstable"
+    assert "passive" not in verdict.verdict.reason
+    assert any(abs(p.re.mid() - float(grows)) < 1e-9 for p in verdict.all_poles)
+    # A force of the other sign has no root there, but neither is it a spring.
+    verdict = found(text.replace('"K*rod', '"-K*rod'), Modes(1)).verdict
+    assert (verdict.word, verdict.certified) == ("unknown", False)

@@ -19,7 +19,7 @@ from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, Righ
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.locate import _degenerate_points, _Searched, locate_distributed
 from symflex.roots.plane.search import HIGHEST
-from symflex.roots.pole_zero_map import HiddenRoot
+from symflex.roots.pole_zero_map import NONE_ON_AXIS, HiddenRoot
 from symflex.transfer import HiddenFactor
 from tests.unit.roots.distributed_models import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
 from tests.unit.roots.stand_ins import OVER, places, root
@@ -497,8 +497,8 @@ def test_a_passive_model_is_stable_without_a_search_unless_it_is_another_functio
     assert PASSIVE in shown.verdict.reason
     world.sides["poles"] = Known(pair(-1, 9))
     shown = world.locate(ROD)
-    assert shown.verdict.word == "stable"
-    assert shown.verdict.reason == f"{PASSIVE}; none of those found lies on the imaginary axis"
+    assert (shown.verdict.word, shown.verdict.right) == ("unknown", 0)
+    assert shown.verdict.reason == f"{PASSIVE}; {NONE_ON_AXIS}"
     world.locate(replace(bound(ROD), is_of_model=False))
     assert [name for name, *_ in world.judged] == ["poles", "hidden"]
 

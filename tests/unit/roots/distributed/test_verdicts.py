@@ -34,7 +34,7 @@ def test_poles_allow_this_verdict_and_no_other():
         ([LEFT], "", "", ("stable", 0, True, "", 0)),
         ([LEFT], "no end", "", ("unknown", None, False, "no end", 0)),
         ([LEFT], "", "passive", ("stable", 0, True, "passive", 0)),
-        ([LEFT], "no end", "passive", ("stable", 0, True, "passive; no end", 0)),
+        ([LEFT], "no end", "passive", ("unknown", 0, False, "passive; no end", 0)),
         ([LEFT, NEAR], "", "", ("unknown", None, False, ON_AXIS, 0)),
         ([LEFT, NEAR], "no end", "", ("unknown", None, False, "no end", 0)),
         ([LEFT, RIGHT, TWICE], "", "", ("unstable", 3, True, "", 3)),
