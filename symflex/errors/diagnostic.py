@@ -153,8 +153,8 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     --------
     >>> nearest("sprnig", ["mass", "spring"])
     "did you mean 'spring'?"
-    >>> nearest("X", ["x", "XY"])
-    "did you mean 'x'?"
+    >>> nearest("X", ["x", "XY"]), nearest("x_1", ["x", "F"])
+    ("did you mean 'x'?", "did you mean 'x'?")
     """
     if len(name) > 64:  # noqa: PLR2004
         return None
@@ -162,5 +162,6 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
     known = sorted(known)
     same = [n for n in known if n.lower() == name.lower()]
-    matches = same or get_close_matches(name, known, n=1, cutoff=0.6)
+    bare = [n for n in known if n == name.rstrip("0123456789_")]
+    matches = same or get_close_matches(name, known, n=1, cutoff=0.6) or bare
     return f"did you mean '{matches[0]}'?" if matches else None

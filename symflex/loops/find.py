@@ -174,7 +174,7 @@ def _factors(
         return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
         message = f"a loop with beams, rods or delays must be linear in '{loop.gain.name}'"
-        hint = "use the parameter as a single gain, not squared"
+        hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)

@@ -22,6 +22,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     is_number,
+    names,
     names_among,
 )
 from symflex.model.scope import outside, without_point
@@ -65,7 +66,12 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
     degrees = _Degrees(scope, constant)
     degree = degrees.of(expression)
     if not constant and degree == "constant" and not degrees.problems and not is_number(expression, 0):
-        degrees.problems.append(without_signal(expression.span))
+        problem = without_signal(expression.span)
+        if any(n.name == LAPLACE for n in names(expression)):
+            problem = replace(
+                problem, hint="a function of s belongs in [definitions], or multiply by an input"
+            )
+        degrees.problems.append(problem)
     return degrees.problems
 
 

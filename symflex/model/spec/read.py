@@ -8,6 +8,7 @@ import stat
 from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
+from symflex.errors.diagnostic import nearest
 from symflex.files.examples import example_of
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def read_file(name: str, limit: int) -> bytes:
     try:
         return read_bytes(name, limit)
     except OSError as error:
-        raise _unreadable(name, error.strerror or "input/output error", example_of(name)) from None
+        raise _unreadable(name, error.strerror or "input/output error", _meant(name)) from None
     except ValueError:
         raise _unreadable(name, "the name contains a character that file names cannot have") from None
 
@@ -68,9 +69,22 @@ def read_bytes(name: str, limit: int) -> bytes:
         return file.read(limit + 1)
 
 
-def _unreadable(name: str, reason: str, example: str | None = None) -> UsageError:
-    hint = None if example is None else f"'symflex examples copy {example}' writes a model of this name"
+def _unreadable(name: str, reason: str, hint: str | None = None) -> UsageError:
     return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}", None, hint))
+
+
+def _meant(name: str) -> str | None:
+    """Return a hint to the example of this name, to a file beside it with nearly this name, or to a start."""
+    if example := example_of(name):
+        return f"'symflex examples copy {example}' writes a model of this name"
+    folder, own = os.path.split(name)
+    suffix = os.path.splitext(own)[1]
+    try:
+        beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix))[:MOST_FILES]
+    except OSError:
+        return None
+    start = "'symflex new' writes a specification to start from, 'symflex examples' lists models to copy"
+    return nearest(own, beside) or (start if suffix == ".toml" else None)
 
 
 def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:
@@ -83,6 +97,7 @@ def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:
 
 
 MAX_BYTES: Final = 1_000_000
+MOST_FILES: Final = 500  # of a folder, among which a file of nearly the name is sought
 MAX_NESTING: Final = 32
 MAX_LEVELS: Final = 64
 MAX_ENTRIES: Final = 20_000

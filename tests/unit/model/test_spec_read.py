@@ -91,3 +91,9 @@ def test_a_name_no_file_can_have_is_refused() -> None:
 def test_a_loop_of_links_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a").symlink_to("a")
     assert "cannot read" in refusal(tmp_path / "a").message
+
+
+def test_a_missing_file_has_a_hint_to_one_of_nearly_its_name(path: Path) -> None:
+    path.with_name("quarter_cars.toml").touch()
+    assert refusal(path.with_name("quarter_crs.toml")).hint == "did you mean 'quarter_cars.toml'?"
+    assert "symflex new" in str(refusal(path.with_name("nothing.toml")).hint)
