@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ class Equations:
     cleared: Factored | None = None
     continua: tuple[Continuum, ...] = ()  # the distributed parts
     is_split: bool = False  # what is coupled has several laws somewhere, or equal wavenumbers
+    # What was computed of them, by output and input.
+    memo: dict[tuple[str, str], object] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
     def delays(self) -> dict[str, tuple[Factored, Factored]]:

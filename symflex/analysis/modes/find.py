@@ -203,7 +203,8 @@ class _ModeSearch:
 
     def again(self, root: Root, digits: int) -> Root:
         """Return a root known already, to more digits where it is found again."""
-        if root.is_zero:
+        known = (p for (_, most), m in self._maps.items() if most >= digits for p in _poles_of(m))
+        if root.is_zero or any(p is root for p in known):
             return root
         region: Region | None = None
         if self.bound.is_distributed:
@@ -214,8 +215,7 @@ class _ModeSearch:
         except (BudgetError, UncertifiedError):
             spend()
             return root
-        candidates = [*found.all_poles, *(h.root for h in found.hidden)]
-        nearest = min(candidates, key=lambda r: _distance(r, root), default=root)
+        nearest = min(_poles_of(found), key=lambda r: _distance(r, root), default=root)
         return nearest if _is_same(nearest, root) else root
 
     def shapes(self, pole: Callable[[int], Root], digits: int) -> tuple[EnclosedModeShape, ...]:
@@ -276,6 +276,11 @@ class _ModeSearch:
         )
         distributed = tuple(part.shape(known, bits) for part in system.continua)
         return EnclosedModeShape(root, motions, distributed, "", is_proved)
+
+
+def _poles_of(found: PoleZeroMap) -> list[Root]:
+    """Return all poles found, hidden ones among them."""
+    return [*found.all_poles, *(h.root for h in found.hidden)]
 
 
 def _name(variable: Variable, starts: Mapping[str, float]) -> str:

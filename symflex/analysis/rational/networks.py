@@ -80,6 +80,7 @@ class NetworkSides:
         with self._enclosed():
             search, radius = self._search(digits)
             den, num = search.sides(radius)
+        self._known.setdefault(digits, (den.series, num.series))
         if den.zero_reach or num.zero_reach:
             message = f"the behaviour of {self.bound.name} near s = 0 could not be determined"
             raise UncertifiedError(Diagnostic("SF405", message))

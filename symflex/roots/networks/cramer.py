@@ -9,6 +9,7 @@ where a ball is wide that leads to none, so what is said of a whole disc comes f
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from heapq import nsmallest
@@ -24,16 +25,19 @@ from symflex.algebra.propagators import EXPONENTIAL
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
 from symflex.roots.networks.members import UndecidedError, settled
-from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent, later, summed
+from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent, later
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping
 
     from symflex.algebra import Factored
     from symflex.equations import Equations
     from symflex.library.elements import Variable
 
+Powers = Sequence[tuple[str, int]]
+Plan = tuple[acb, Powers, Sequence[tuple[int, Sequence[tuple[acb, Powers]], int]]]
+"""A constant, powers of generators that are none, and sums of such terms with exponents."""
 MOST_LOST = 16
 """Bits that elimination may lose per equation; chains of beams lose about one."""
 ZERO, ONE = acb(0), acb(1)
@@ -64,13 +68,21 @@ class CramerEquations:
     divisor: Factored  # of the output
     _constants: dict[int, dict[str, acb]] = field(default_factory=dict)  # by bits
     _resting: dict[int, list[dict[int, acb]]] = field(default_factory=dict)  # by bits: entries free of s
+    _plans: dict[tuple[int, int], tuple[object, Plan]] = field(
+        default_factory=dict
+    )  # by bits and id of a value
     # By size: pivots, and the bits they were chosen at.
     _orders: dict[int, tuple[list[tuple[int, int]], int]] = field(default_factory=dict)
     _least_bits: int = 0  # with fewer, elimination came to nothing
+    # By radius [rad/s], the mean of ln abs of denominator and numerator on a circle.
+    sizes: dict[float, tuple[float, float]] = field(default_factory=dict)
 
     @staticmethod
     def of(equations: Equations, output: str, source: str) -> CramerEquations:
-        """Return the equations between an input and an output."""
+        """Return the equations between an input and an output; those asked for before are the same."""
+        known = equations.memo.get((output, source))
+        if isinstance(known, CramerEquations):
+            return known
         columns = {v: i for i, v in enumerate(equations.unknowns)}
         size = len(columns)
         given = next(v for v in equations.inputs if v.owner == source)
@@ -86,7 +98,8 @@ class CramerEquations:
         form = LinearForm.total([read.form])
         below = _denominator(form)
         rows.append({places[v]: c for v, c in (form * below).terms if v in places})
-        return CramerEquations(equations, rows, read.divisor * below)
+        found = equations.memo[output, source] = CramerEquations(equations, rows, read.divisor * below)
+        return found
 
     # -------------------------------------------------------------------------------- values at points
 
@@ -184,17 +197,47 @@ class CramerEquations:
             groups.setdefault((p.dispersion, p.length), []).append((p.generator, p.order))
         return groups
 
-    @staticmethod
-    def _value(value: Factored, values: Mapping[str, acb], factors: dict[int, acb]) -> acb:
-        result = acb(fmpq(value.unit.numerator, value.unit.denominator))
-        for factor, exponent in value.factors:
-            known = factors.get(id(factor))
+    def _value(self, value: Factored, values: Mapping[str, acb], factors: dict[int, acb]) -> acb:
+        result, powers, sums = self._plan(value, values)
+        for name, power in powers:
+            result = result * values[name] if power == 1 else result * values[name] ** power
+        for number, terms, exponent in sums:
+            known = factors.get(number)
             if known is None:
-                known = factors[id(factor)] = summed(
-                    terms_of(factor), value.ring.names, values.__getitem__, ONE
-                )
-            result = result * known**exponent if exponent > 0 else result / known**-exponent
+                known = ZERO
+                for term, of in terms:
+                    for name, power in of:
+                        term *= values[name] if power == 1 else values[name] ** power  # noqa: PLW2901
+                    known += term
+                factors[number] = known
+            result = result * known if exponent == 1 else result * known**exponent
         return result
+
+    def _plan(self, value: Factored, values: Mapping[str, acb]) -> Plan:
+        """Return how to evaluate a value, with the products of constants, made once for each precision."""
+        key = ctx.prec, id(value)
+        if key in self._plans:
+            return self._plans[key][1]
+        constant, powers, sums = acb(fmpq(value.unit.numerator, value.unit.denominator)), [], []
+        for factor, exponent in value.factors:
+            found: dict[tuple[tuple[str, int], ...], acb] = {}
+            for monomial, coefficient in terms_of(factor):
+                term, moving = acb(coefficient), []
+                for name, power in ((value.ring.names[i], e) for i, e in monomial):
+                    if name in self.moving_names:
+                        moving.append((name, power))
+                    else:
+                        term *= values[name] ** power
+                found[tuple(moving)] = found.get(tuple(moving), ZERO) + term
+            if len(found) == 1:
+                ((alone, term),) = found.items()
+                constant *= term**exponent
+                powers += [(name, power * exponent) for name, power in alone]
+            else:
+                sums.append((id(factor), [(term, of) for of, term in found.items()], exponent))
+        # While the value is kept, no other has its id.
+        self._plans[key] = value, (constant, powers, sums)
+        return self._plans[key][1]
 
     def _eliminated(self, rows: list[dict[int, acb]], size: int) -> tuple[acb, acb]:
         """Return the determinant of so many rows and columns, and what is left of the entry after the last.

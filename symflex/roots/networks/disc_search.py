@@ -7,7 +7,7 @@ and proved.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from math import ceil, exp, inf, log, pi
 from typing import TYPE_CHECKING
@@ -134,7 +134,6 @@ class DiscSearch:
     symmetric: tuple[bool, bool]  # whether roots of den and num mirror each other in the imaginary axis
     series_bits: int = SERIES_BITS  # to which a series tells the function where it is least
     most_zeros: int | None = None  # where there are not infinitely many
-    _sizes: dict[float, tuple[float, float]] = field(default_factory=dict)
     _lost: int = 0  # bits that elimination lost where it lost most
 
     def radius_of(self, count: int) -> float:
@@ -192,15 +191,16 @@ class DiscSearch:
 
     def _grown(self, radius: float) -> tuple[float, float]:
         """Return the mean of ln abs of denominator and numerator on a circle."""
-        if radius not in self._sizes:
+        sizes = self.equations.sizes
+        if radius not in sizes:
             spend()
             totals = [0.0, 0.0]
             for k in range(SAMPLES):
                 value = self._value((acb(0, pi * (k + 0.5) / SAMPLES).exp() * radius).mid(), ROUGH_BITS)
                 for i, x in enumerate((value.den, value.num)):
                     totals[i] += _log(x) / SAMPLES
-            self._sizes[radius] = (totals[0], totals[1])
-        return self._sizes[radius]
+            sizes[radius] = (totals[0], totals[1])
+        return sizes[radius]
 
     def _value(self, s: acb, bits: int) -> CramerValue:
         """Return both at a point, right to so many bits: elimination loses some with every member."""
