@@ -17,6 +17,7 @@ from symflex.data.measurement.array_files import (
     read_archive,
     read_array,
     read_variables,
+    require,
 )
 from symflex.data.measurement.columns import (
     Assembled,
@@ -39,6 +40,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
+from symflex.data.measurement.text_table import number
 from symflex.errors import DataError, Diagnostic, UsageError
 
 Array = npt.NDArray[Any]
@@ -75,10 +77,32 @@ def read_mat(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Measur
     return responses_of(arrays_in(name, data, ".mat"), name, stem, asked)
 
 
+OCTAVE: Final = b"# Created by Octave"
+"""How files begin that Octave saves unless another format is asked for, whatever they are called."""
+_OCTAVE_VARIABLE: Final = re.compile(
+    r"^# name: (.+)\n# type: (?:complex )?(?:matrix|scalar)\n(?:# rows: \d+\n# columns: (\d+)\n)?"
+    r"((?:[^#\n].*\n)*)",
+    re.M,
+)
+
+
+def _octave_variables(data: bytes) -> Arrays:
+    """Return the scalars, vectors and matrices of a text; ValueError where one is cut short."""
+    text, found = data.decode("utf-8", "replace").replace("\r\n", "\n") + "\n", {}
+    for name, columns, body in _OCTAVE_VARIABLE.findall(text):
+        numbers = [number(cell) for cell in body.split()]
+        require(None not in numbers, f"{name[:40]} holds what is not a number")
+        width = int(columns or 1)
+        require(width > 0 and len(numbers) % width == 0, f"{name[:40]} is cut short")
+        found[name] = np.array(numbers).reshape(-1, width).squeeze()
+    return found
+
+
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
     ".npz": ("a numpy archive (.npz)", lambda data: read_archive(data, MAX_BYTES, MAX_RESPONSES)),
     ".npy": ("a numpy array (.npy)", lambda data: {"array": read_array(data)}),
     ".mat": ("a MATLAB file (.mat)", lambda data: read_variables(data, MAX_BYTES)),
+    "octave": ("a text file of Octave", _octave_variables),
 }
 """What files of arrays are, and how they are read, by the end of their names."""
 
@@ -88,7 +112,7 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
 
     SF601 no such file, a MATLAB file of version 7.3, or one of objects alone; SF607 too large.
     """
-    kind, read = _FILES[suffix]
+    kind, read = _FILES["octave" if data.startswith(OCTAVE) else suffix]
     try:
         arrays = read(data)
     except NewerFileError:

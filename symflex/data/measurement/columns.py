@@ -38,7 +38,7 @@ _WORDS: Final = {
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
     "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
-    "verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
+    "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
@@ -79,7 +79,8 @@ _LETTERS: Final = {
 """Letters that mean something as a pair alone."""
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
 _SUFFIX = re.compile(
-    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|град)\s*$"
+    r"(?:[\s_/,:.]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|град)"
+    r"\s*$"
     r"|(?<=\S)\s+/\s+(\S+)\s*$",
     re.I,
 )
@@ -177,18 +178,20 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     for bracket in _BRACKET.finditer(text):
         inside = bracket[1].strip()
         parts = re.findall(_PARTS, inside.lower())
-        is_unit = inside.lower() in UNITS
+        is_unit = inside.lower() in UNITS or inside == "F"  # farad
         is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(
-            r"[\w .]*(?:\([\w .,]*\))?[\w .]*", inside
+            r"/?[\w .]*(?:\([\w .,]*\))?[\w .]*", inside
         )
         if (
             is_unit
-            or "/" in inside
+            or "/" in inside[1:]
             or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
         ):
             unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
     if not unit and (match := _SUFFIX.search(text)):
         unit, text = match[1] or match[2], text[: match.start()]
+    if not unit and (match := re.match(r"deg(?=[:(])", text, re.I)):
+        unit, text = match[0], text[match.end() :]
     low = text.lower().replace("in-phase", "inphase")
     words = re.findall(_PARTS, low)
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
@@ -200,9 +203,12 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
             if unit.lower() in (*_DEGREES[:-2], low)
             else ""
         )
-        kind = "magnitude" if unit.lower() in _LEVELS else kind
+        is_impedance = unit.lower() in _OHMS and low.startswith("z")
+        kind = "magnitude" if unit.lower() in _LEVELS or is_impedance else kind
     if not kind and text.strip().lower() in _OHMS:
         kind, unit = "magnitude", text.strip()
+    if unit.lower() in _FREQUENCY_UNITS and {"frequency", "freq"} & set(words):
+        kind = "frequency"  # "Frequency - Phase (Hz)", beside the phase
     if kind == "phase" and unit.lower() not in _PHASE_UNITS and set(_DEGREES) & set(words):
         unit = "deg"
     is_of_other = kind in ("frequency", "omega") and {"response", "function"} & set(words)
@@ -552,9 +558,10 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
         return [{"complex": c} for c in by_kind["complex"]]
     sizes, phases = by_kind.get("magnitude", []), _in_one_unit(by_kind.get("phase", []))
     if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
-        sizes = sorted(sizes, key=lambda c: (c.meaning.scale != "decibel", c.meaning.word.startswith("amp")))[
-            :1
-        ]
+        own = [c for c in sizes if c.meaning.label and phases[0].meaning.label.startswith(c.meaning.label)]
+        sizes = sorted(
+            own or sizes, key=lambda c: (c.meaning.scale != "decibel", c.meaning.word.startswith("amp"))
+        )[:1]
     first, second = ("real", "imaginary"), ("magnitude", "phase")
     for (a, b), one, two in (
         (first, by_kind.get("real", []), by_kind.get("imaginary", [])),

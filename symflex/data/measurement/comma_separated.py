@@ -7,7 +7,7 @@ What stands above the numbers names the columns, and comment lines may hold what
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -49,6 +49,8 @@ _IMPLIED: Final = {
 """Columns of files without a header, by the end of their names (loudspeaker programs)."""
 MOST_TURNED: Final = 12
 """Lines of a table that are columns."""
+MOST_UNNAMED: Final = 4
+"""Of these, without names: the frequency, two parts of values, and coherence."""
 NEAR: Final = 60
 """Lines above the numbers among which the names of columns are looked for."""
 
@@ -61,10 +63,12 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     """
     table = TextTable.of(name, data)
     if (turned := _turned(table)) is not None:
-        said = ("each line is taken as a column",)
-        return tuple(
-            replace(one, guesses=said + one.guesses) for one in read_columns(name, turned, stem, asked)
-        )
+        said, (text, origin) = ("each line is taken as a column",), turned
+        try:
+            made_of_lines = read_columns(name, text, stem, asked)
+        except DataError as error:
+            raise DataError(*(replace(d, span=origin(d.span)) for d in error.diagnostics)) from None
+        return tuple(replace(one, guesses=said + one.guesses) for one in made_of_lines)
     fields = _comment_fields(table.source)
     blocks = table.blocks()
     if not blocks:
@@ -103,20 +107,33 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     return tuple(responses)
 
 
-def _turned(table: TextTable) -> bytes | None:
-    """Return the text with columns of a table whose lines are a name and many numbers; None if it is none."""
-    lines = [line for line in table.lines if line.strip()][: MOST_TURNED + 1]
-    rows = [cut(line, table.delimiter) for line in lines]
+def _turned(table: TextTable) -> tuple[bytes, Callable[[Span | None], Span | None]] | None:
+    """Return the text with columns of a table whose lines are many numbers, after a name if more than a few.
+
+    The function with it says where what stands in that text comes from. None if it is no such table.
+    """
+    places = [i for i, line in enumerate(table.lines) if line.strip()][: MOST_TURNED + 1]
+    rows = [cut(table.lines[i], table.delimiter) for i in places]
     if (
         not 1 < len(rows) <= MOST_TURNED
         or len({len(row) for row in rows}) > 1
         or len(rows[0]) < 2 * len(rows)
     ):
         return None
-    if any((number(c, table.decimal) is None) == (i > 0) for row in rows for i, c in enumerate(row)):
+    are_texts = [[number(c, table.decimal) is None for c in row] for row in rows]
+    are_named = all(row[0] for row in are_texts)
+    if any(any(row[are_named:]) for row in are_texts) or (not are_named and len(rows) > MOST_UNNAMED):
         return None
     delimiter = "\t" if table.delimiter == " " else table.delimiter
-    return "".join(delimiter.join(column) + "\n" for column in zip(*rows, strict=True)).encode()
+
+    def origin(span: Span | None) -> Span | None:
+        if span is None:
+            return None
+        above, _, before = ("\n" + span.source.text[: span.start]).rpartition("\n")
+        row = before.count(delimiter)
+        return table.cell(places[row], rows[row], above.count("\n"))
+
+    return "".join(delimiter.join(column) + "\n" for column in zip(*rows, strict=True)).encode(), origin
 
 
 def _responses(
@@ -270,6 +287,8 @@ def _units(table: TextTable, line: int, width: int) -> list[str]:
     text = table.lines[line].strip()
     units = cut(text, table.delimiter)
     units = units if len(units) == width else cut(text.lstrip("#%!/*"), table.delimiter)
+    if len(units) == width - 1 and table.lines[line].startswith("\t") and table.delimiter == "\t":
+        units = ["", *units]
     is_row = 2 <= len(units) <= width and any(  # noqa: PLR2004
         u.strip("[]()").lower() in UNITS or ratio_unit(u.strip("[]"), "") for u in units
     )

@@ -22,7 +22,7 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import Arrays, arrays_in, matrix_of
+from symflex.data.measurement.arrays import OCTAVE, Arrays, arrays_in, matrix_of
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES, listed_names
 from symflex.data.measurement.text_table import SIGNS, TextTable, cut
 from symflex.errors import DataError, Diagnostic
@@ -49,6 +49,10 @@ _TIME = re.compile(
 )
 _AXIS = re.compile(r"x|x[- _]?axis", re.I)
 """Names of a column that the unit below shows to be the time."""
+_COUNTED = re.compile(r"^X,.*Start,Increment,?\nSequence,.*?,([^,\n]+),([^,\n]+),?$", re.M)
+"""Above rows that are numbered, and begin at a time, with a distance (oscilloscopes)."""
+BESIDE: Final = 3
+"""Column of the time where what is known of a record stands in those before it (oscilloscopes)."""
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400
@@ -83,7 +87,8 @@ def read_signal(path: str | Path) -> InputSignal:
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     suffix = Path(name).suffix.lower()
-    return _of_arrays(name, arrays_in(name, data, suffix)) if suffix in ARRAYS else _signal(name, data)
+    has_arrays = suffix in ARRAYS or data.startswith(OCTAVE)
+    return _of_arrays(name, arrays_in(name, data, suffix)) if has_arrays else _signal(name, data)
 
 
 def _signal(name: str, data: bytes) -> InputSignal:
@@ -92,17 +97,22 @@ def _signal(name: str, data: bytes) -> InputSignal:
         i for i, line in enumerate(table.lines) if line.strip() and not line.strip().startswith(COMMENTS)
     ]
     first = next((i for i in written if _is_row(table, i)), None)
+    is_beside = first is None and all(_is_beside(table, i) for i in written)
+    first = written[0] if is_beside and written else first
     if first is None:
         raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
     lines = [i for i in written if i >= first]
     if len(lines) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    names, at, unit = _named_time(table, first)
+    names, at, unit, start = _named_time(table, first)
+    at = BESIDE if is_beside else at
     if not names and written[0] < first:
         above = table.line(written[written.index(first) - 1])
         raise DataError(Diagnostic("SF602", "the first column is not the time", above, HINT))
     width = max(len(table.cells(first)), len(names))
     others = [f"'{word[:30]}'" for i, word in enumerate(names) if word and not at <= i <= at + 1]
+    last = 0 if names else len(cut(table.lines[first], table.delimiter))
+    others = others or [f"column {i + 1}" for i in range(at + 2, last)]
     guesses = list(table.guesses) + ([f"not used: {', '.join(others[:6])}"] if others else [])
     times: list[Fraction] = []
     values: list[Fraction] = []
@@ -125,7 +135,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
                 problems.append(Diagnostic("SF603", said, cell if cell.text else line))
         if numbers[0] is None or numbers[1] is None:
             continue
-        time = numbers[0] * unit
+        time = start + numbers[0] * unit
         if times and time <= times[-1]:
             problems.append(Diagnostic("SF604", "times do not increase", cells[at]))
         times.append(time)
@@ -144,8 +154,17 @@ def _is_row(table: TextTable, index: int) -> bool:
     return len(cells) > 1 and _decimal(cells[0], table.decimal) is not None
 
 
-def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction]:
-    """Return the names of columns above the first row, where the time is among them, and its unit [s]."""
+def _is_beside(table: TextTable, index: int) -> bool:
+    cells = cut(table.lines[index], table.delimiter)
+    return len(cells) == BESIDE + 2 and not cells[BESIDE - 1] and _decimal(cells[BESIDE]) is not None
+
+
+def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, Fraction]:
+    """Return the names of columns above the first row, which is the time, its unit and what to add [s]."""
+    if counted := _COUNTED.search(table.source.text):
+        start, step = (_decimal(text) for text in counted.groups())
+        if start is not None and step:
+            return ["X", "CH1"], 0, step, start
     below: list[str] = []
     for line in reversed(table.lines[:first]):
         text = line.strip().lstrip(SIGNS) if line.strip().startswith(COMMENTS) else line
@@ -156,9 +175,9 @@ def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction]
                 match = _TIME.fullmatch(name.strip("\"' "))
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):
                     said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
-                    return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1))
+                    return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1)), Fraction(0)
         below = cut(text, table.delimiter) if text.strip() else below
-    return [], 0, Fraction(1)
+    return [], 0, Fraction(1), Fraction(0)
 
 
 def _of_arrays(name: str, arrays: Arrays) -> InputSignal:

@@ -40,7 +40,7 @@ _WITH_UNIT = re.compile(rf"({_NUMBER})\s*(?:([kMG]?)(?:Hz)?|dB|deg|°|Ohm|\u03a9
 _PREFIXES: Final = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 _APART = re.compile(r"(?<=\d),\s+(?=[-+.\d])")
 """Between real and imaginary part, where blanks are between columns: ngspice."""
-_SPACED = re.compile(r"(?<!\s)\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]m?\b)", re.I)
+_SPACED = re.compile(r"(?<!\s)\s*([-+])\s*(?=[\d.]+(?:e[-+]?\d+)?[ij]m?\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
 _CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
 _CANDIDATES: Final = (

@@ -506,6 +506,54 @@ def wild_files():
     yield Saved("padded.txt", universal(F, H).encode(), tolerance=1e-4, frequency=(F,))
 
 
+def simulated_files():
+    """Return files of text that programs of mathematics, simulators and boards write."""
+    for name, shape in (("octave.mat", (F.size, 1)), ("octave_rows.txt", (1, F.size))):
+        head = "# Created by Octave 8.4.0\n" if shape[0] > 1 else "# Created by Octave 6.1.0, x\r\n"
+        end = "\n " if shape[0] > 1 else " "
+        variables = (
+            f"# name: {word}\n# type: {kind}\n# rows: {shape[0]}\n# columns: {shape[1]}\n {end.join(cells)}\n\n\n"
+            for word, kind, cells in (
+                ("f", "matrix", [f"{f:.12g}" for f in F]),
+                ("H", "complex matrix", [f"({z.real:.9g},{z.imag:.9g})" for z in H]),
+            )
+        )
+        text = "# name: note\n# type: string\n# elements: 1\n# length: 3\nrig\n\n\n"
+        yield Saved(name, (head + text + "".join(variables)).encode())
+    yield Saved(
+        "controller.txt",
+        (
+            "Freq [rad/s]  Response\n------------  ---------------------\n"
+            + "".join(
+                f"{2 * np.pi * f:12.7f} {z.real:12.6g}{z.imag:+12.6g}j\n" for f, z in zip(F, H, strict=True)
+            )
+        ).encode(),
+    )
+    yield Saved(
+        "unit_row_apart.txt", ("Hz\tAmplitude\tPhase\n\tg/N\t°\n" + rows(F, SIZE, DEG, sep="\t")).encode()
+    )
+    yield Saved("board.csv", ('"Frequency","V(/out) (gain)","V(/out) (phase)"\n' + rows(F, DB, DEG)).encode())
+    yield Saved("prefixed.csv", ("freq[Hz];db:Trc1_S21;deg:Trc1_S21;\n" + rows(F, DB, DEG, sep=";")).encode())
+    yield Saved("dotted.csv", ("PNT,FREQ1.GHZ,LOGMAG1,PHASE1\n" + rows(POINT, F / 1e9, DB, DEG)).encode())
+    yield Saved(
+        "bridge.csv", ("f [Hz],|Z| [Ohm],P [deg],Ls [H],Cs [F]\n" + rows(F, SIZE, DEG, TEN, TEN)).encode()
+    )
+    yield Saved(
+        "horn.txt", ("Freq (hertz),SPL (dB),Ze (ohms),ZePhase (deg)\n" + rows(F, DB + 90, SIZE, DEG)).encode()
+    )
+    yield Saved(
+        "shaker.csv", ("Frequency (Hz),Transmissibility (G/G),Phase (deg)\n" + rows(F, SIZE, DEG)).encode()
+    )
+    yield Saved(
+        "express.txt",
+        (
+            "Frequency - mag (Hz),FRF mag (dB),Frequency - phase (Hz),FRF phase (deg)\n" + rows(F, DB, F, DEG)
+        ).encode(),
+    )
+    parts = "\n".join(",".join(f"{x:.9e}" for x in row) for row in (F, RE, IM))
+    yield Saved("bare_rows.csv", parts.encode(), columns="f,re,im")
+
+
 def universal(f, h):
     """Return a universal file of one dataset 58 with single precision, blanks behind its marks."""
     ends = f"{4:5d}{1:10d}{1:5d}{0:10d} {'NONE':<10}{1:10d}{3:4d} {'NONE':<10}{2:10d}{3:4d}"
@@ -586,4 +634,4 @@ def array_files():
 
 def all_files():
     """Return all of them."""
-    return [*text_files(), *wild_files(), *network_files(), *array_files()]
+    return [*text_files(), *wild_files(), *simulated_files(), *network_files(), *array_files()]

@@ -34,6 +34,12 @@ FILES = {
     "unit_apart.dat": "# time [ms] force\n" + rows(" ", 1000),
     "unit_apart_too.dat": "# t ms u\n" + rows(" ", 1000),
     "savetxt.txt": rows(" ", form="{:.18e}"),
+    "numbered.csv": "X,CH1,Start,Increment,\nSequence,Volt,0,1e-2,\n"
+    + "".join(f"{i},{u},\n" for i, u in enumerate(VALUES)),
+    "beside.csv": "".join(
+        f"{told},{line},\n"
+        for told, line in zip(("Length,4,", "Interval,1e-2,", ",,", ",,"), rows(",").split(), strict=True)
+    ),
     "pandas.csv": ",t,u\n" + "".join(f"{i},{line}\n" for i, line in enumerate(rows(",").split())),
 }
 
@@ -55,13 +61,16 @@ def test_inputs_are_read_from_arrays(tmp_path):
     for name in ("rows.npy", "ms.npz", "nested.mat"):
         signal = read_signal(tmp_path / name)
         assert (signal.times, tuple(map(float, signal.values))) == (TIMES, VALUES), name
+    head = "# Created by Octave 8.4.0\n# name: A\n# type: matrix\n# rows: 4\n# columns: 2\n"
+    (tmp_path / "octave.txt").write_text(head + rows(" "), encoding="utf-8")
+    assert read_signal(tmp_path / "octave.txt").times == TIMES
     savemat(tmp_path / "two.mat", {"t": t, "u": u, "y": u})
     with pytest.raises(DataError, match="one other as long"):
         read_signal(tmp_path / "two.mat")
 
 
 @pytest.mark.parametrize(
-    "head", ["X,CH1,Start,Increment\nSequence,Volt,0,1e-2\n", "time [h],u\n", "sample,u\n", "f (Hz),H\n"]
+    "head", ["X,CH1,Start\nSequence,Volt,0\n", "time [h],u\n", "sample,u\n", "f (Hz),H\n"]
 )
 def test_what_is_not_seen_to_be_a_time_is_refused(tmp_path, head):
     (tmp_path / "u.csv").write_text(head + rows(","), encoding="utf-8")
@@ -72,3 +81,5 @@ def test_what_is_not_seen_to_be_a_time_is_refused(tmp_path, head):
 def test_columns_that_are_not_used_are_named(tmp_path):
     (tmp_path / "u.csv").write_text("Time,Force,Temp\n0,1,2\n1,2,3\n", encoding="utf-8")
     assert read_signal(tmp_path / "u.csv").guesses == ("not used: 'Temp'",)
+    (tmp_path / "u.csv").write_text("0,1,2\n1,2,3\n", encoding="utf-8")
+    assert read_signal(tmp_path / "u.csv").guesses == ("not used: column 3",)

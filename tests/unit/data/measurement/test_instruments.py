@@ -134,6 +134,21 @@ HOSTILE = {
     "cross spectrum": ("f,Re(Sxy),Im(Sxy)\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:3"),
     "two axes": ("f,x,y\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:1"),
     "three axes": ("f,x,y,z\n1,2,-3,1\n2,2,3,1\n3,4,5,1\n", "SF602", "a.csv:1:3"),
+    "a row without a meaning": (
+        "f,1,2,3,4,5,6,7\n\nre,1,2,3,4,5,6,7\nx,0,0,0,0,0,1,0\n",
+        "SF602",
+        "a.csv:4:1",
+    ),
+    "a row that is too large": (
+        "f,1,2,3,4,5,6,7\nre,1,2,3,4,5,6,7\nim,0,0,1e200,0,0,1,0\n",
+        "SF603",
+        "a.csv:2:8",
+    ),
+    "a matrix cut short": (
+        "# Created by Octave 8.4.0\n# name: A\n# type: matrix\n# rows: 2\n# columns: 2\n 1 2\n 3\n",
+        "SF601",
+        "A is cut short",
+    ),
     "prose": ("Dear reader,\nthis is a letter.\n", "SF605", "a.csv"),
 }
 
