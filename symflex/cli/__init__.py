@@ -20,7 +20,7 @@ WATCHED = "watched"
 """What the context holds of a command line that was started as a program, not called from Python."""
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    "check": ("formulas", "Parse and resolve a specification; report every problem at once."),
+    "check": ("formulas", "Check a specification and report every problem at once."),
     "derive": ("formulas", "Print transfer functions in closed form."),
     "roots": ("analyses", "Print poles and zeros with proved enclosures."),
     "rational": ("analyses", "Print rational approximations and the frequencies where they hold."),

@@ -32,12 +32,12 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     Every root is proved to lie within its radius, with its multiplicity, and the list is proved complete. A
     distributed system has infinitely many roots; by default, the lowest are shown.
 
-        --explain names the constrained system whose poles are the zeros. --sensitivity adds the relative
-        change of each natural frequency, and the change of each damping ratio, per relative change of a
-        parameter. It takes the next word as the name of a parameter, so put it after SPEC.
+    --explain names the constrained system whose poles are the zeros. --sensitivity adds the relative change
+    of each natural frequency, and the change of each damping ratio, per relative change of a parameter. Put
+    it after SPEC: it takes the next word as the name of a parameter.
 
-        Exit code 4: some roots could not be told apart, or their number could not be proved. Exit code 5:
-        the budget was exceeded; the roots proved so far are shown.
+    Exit code 4: some roots could not be told apart, or their number could not be proved. Exit code 5: the
+    budget was exceeded; the roots proved so far are shown.
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
@@ -104,10 +104,10 @@ def roots(spec: Specification, given: RootsOptions) -> int:
 def rational(spec: Specification, given: RationalOptions) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
-        A distributed system keeps as many modes as --modes says. In product form they are poles and zeros,
-        in modal form residues and a static correction. symflex samples the frequencies up to which the
-        approximation is
-    within 1 % and 5 % of the exact function. A lumped system with all its modes is its own approximation.
+    A distributed system keeps as many modes as --modes says: in product form their poles and zeros, in modal
+    form their residues and a static correction. By sampling, symflex finds up to which frequencies the
+    approximation is within 1 % and 5 % of the exact function. A lumped system with all its modes is its own
+    approximation.
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate

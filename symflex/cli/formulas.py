@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @command_of("check", CheckOptions)
 def check(spec: Specification, given: CheckOptions) -> int:
-    """Parse and resolve SPEC; report every problem at once.
+    """Check SPEC and report every problem at once.
 
     This checks names, units, ports, linearity and solvability, and that everything that varies along x is
     analytic.

@@ -65,7 +65,7 @@ def new(template: str | None, *, output: str | None, is_list: bool) -> int:
         )
     from symflex.files.write import write_atomically
 
-    write_atomically(Path(output), text.encode())
+    write_atomically(Path(output), text.replace(f"{template}.toml", Path(output).name).encode())
     note(f"wrote {output}; try: symflex derive {output}, and read its comments")
     return 0
 

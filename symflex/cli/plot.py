@@ -49,24 +49,24 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Kinds are bode, impulse, locus, modes, nyquist, poles_zeros and step.
 
-        modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
-        --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros. For
-        a distributed system, these are the paths of the lowest modes. nyquist draws a transfer function, or
-        with --gain K the loop gain.
+    modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
+    --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; for a
+    distributed system, those of the lowest modes. nyquist draws a transfer function, or with --gain K the
+    loop gain.
 
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
 
-        --band limits the frequencies of the curves of bode and nyquist, and of the modes drawn. Figures in
-        the s plane show everything up to its end. --xlim, --ylim and --phase set the ends of axes.
-        Frequencies and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or
-        the end of --xlim [s], by default until the slowest motion has died away.
+    --band sets the frequencies of bode and nyquist curves, and which modes are drawn. Figures in the s plane
+    show everything up to the end of the band. --xlim, --ylim and --phase set the ends of axes. Frequencies
+    and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim
+    [s], by default until the slowest motion has died away.
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
     Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
-    paper's font; --font, for .pgf latex by default, only sets how much room it gets. Writing .pgf needs no
-    LaTeX installation.
+    paper's font, and --font (latex by default) only sets how much room it gets. You need no LaTeX to write
+    it.
     """
     from symflex import pipeline
     from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save

@@ -33,11 +33,11 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     An impulse that passes straight through to the output is printed separately, not among the values. The
     value at t = 0 is the limit from above.
 
-        For beams with controllers or imposed motions, and if too little is known of the modes, the
-        contribution of the modes beyond the lowest 25 is estimated. For a network, it is estimated beyond
-        the lowest 12 if it is small. The first line then says that the values are not certified.
+    Where no method proves the response, as for lossless beams with controllers, the lowest 25 modes are
+    summed (12 in a network where the rest is small) and the contribution of the others is estimated. The
+    first line then says that the values are not certified.
 
-    Exit code 4: the response could not be found, or with --strict, it is not certified.
+    Exit code 4: the response could not be found, or, with --strict, is not certified.
     """
     from symflex import pipeline
     from symflex.analysis.time_response import (
@@ -128,9 +128,9 @@ def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
 def shape(spec: Specification, given: ShapeOptions) -> int:
     """Print an input shaper for the lowest oscillating modes of SPEC.
 
-        A command convolved with the impulses of the shaper leaves these modes at rest when it ends. With zv
-        and zvd the rest is exact. With ei it is within 5 % of an unshaped impulse, but larger errors of the
-        frequency are tolerated. Times and amplitudes come from proved poles.
+    A command convolved with the impulses of the shaper leaves these modes at rest when it ends: exactly with
+    zv and zvd. ei leaves up to 5 % of the vibration of an unshaped impulse, and tolerates larger errors of
+    the frequency. Times and amplitudes come from proved poles.
 
     By default, shapers of several modes are convolved; --joint computes a single shorter one. -o draws the
     residual vibration of a mode whose frequency differs from the model's.

@@ -303,7 +303,7 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
     for entry in section.entries if section else ():
         what = f"published '{entry.key[:80]}'"
         tf = pick_tf(reader, entry.key, entry.key_span, known)
-        table = reader.table(entry, what)
+        table = reader.table(entry, what, 'for instance { expr = "1/(m*s^2 + k)" }')
         if table is None or tf is None:
             continue
         reader.keys(table, ("expr", "where", "scale", "source", "doc"), what)
