@@ -35,6 +35,7 @@ from symflex.figures.style import (
     title_lines,
 )
 from symflex.roots import Band
+from symflex.roots.loss_modes import NO_STABILITY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,12 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
         for bound, found in zip(bounds, maps, strict=True)
     ]
     width = canvas.width or COLUMN_INCHES
-    shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
+    # Loss factors decide nothing about stability, and whoever gives them knows that.
+    shaky = [
+        found
+        for found in maps
+        if found.verdict.word in ("unstable", "unknown") and found.verdict != NO_STABILITY
+    ]
     lines = [
         *title_lines(canvas.title, width),
         *(line for m in maps for line in title_lines(said_of_grid(m), width)),

@@ -29,6 +29,7 @@ from symflex.transfer.nested_form import bind_nested
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.algebra import KernelTable
     from symflex.equations import Equations
     from symflex.model import Model
     from symflex.transfer.bind import BoundTransferFunction
@@ -299,12 +300,17 @@ def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
 
 
 def derive_for_roots(
-    model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False
+    model: Model,
+    pairs: Sequence[tuple[str, str]],
+    *,
+    is_explained: bool = False,
+    is_named: bool = False,
 ) -> tuple[AnyBoundFunction, ...]:
     """Return transfer functions with the declared values, in the form in which roots are found.
 
     In nested form where beams, rods, shafts or strings are too large for the expanded one, or roots are found
-    faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
+    faster without it. With ``is_explained`` the expanded form is wanted for more than roots,
+    and with ``is_named`` in terms of the parameters.
     Raises what :func:`derive_bound` raises otherwise.
     """
     if not model.is_distributed or is_tapered(model):
@@ -313,7 +319,7 @@ def derive_for_roots(
     if is_small:
         found = _expanded_unless_large(model, pairs, None)
         if found is not None:
-            return found
+            return found if is_named else _with_wavenumbers(model, pairs, found)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
     # Modes with loss factors are found in the expanded form alone.
     is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
@@ -324,6 +330,27 @@ def derive_for_roots(
         if found is not None:
             return found
     return tuple(bind_nested(tf) for tf in nested_form.derive_nested(equations, pairs))
+
+
+def _with_wavenumbers(
+    model: Model, pairs: Sequence[tuple[str, str]], found: tuple[BoundTransferFunction, ...]
+) -> tuple[BoundTransferFunction, ...]:
+    """Return functions as they are, or with numbers where only so all wavenumbers have formulas.
+
+    Beams in a layer whose stiffnesses are as their masses by value alone have a law that splits.
+    """
+    if all(_is_named(bound.kernels) for bound in found):
+        return found
+    numbers = with_numbers(model, in_kernels=True)
+    propagation = assemble(numbers).propagation
+    if propagation is None or not _is_named(propagation.table):
+        return found
+    return _expanded_unless_large(numbers, pairs, None) or found
+
+
+def _is_named(table: KernelTable) -> bool:
+    """Tell whether all wavenumbers have formulas."""
+    return all(law.kind != "general" for law in table.dispersions)
 
 
 def _expanded_unless_large(

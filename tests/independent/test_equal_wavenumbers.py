@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ from scipy import linalg
 import symflex
 from benchmarks.generated import imported
 from symflex import pipeline
-from symflex.roots import Rectangle
+from symflex.roots import Modes, Rectangle
 from symflex.transfer.bind import is_degenerate
 from tests.independent.winding import count_inside
 
@@ -402,3 +403,37 @@ def test_exported_code_has_the_values_too(name):
             for s in (1e-3j, *POINTS, 60j)
         ]
     assert max(errors) < EXPORT_ERROR
+
+
+PROPORTIONAL = """
+symflex = 1
+[parameters]
+K = "3 N/m^2"
+e_1 = "2 N*m^2"
+e_2 = "4 N*m^2"
+m_1 = "0.5 kg/m"
+m_2 = "1 kg/m"
+[fields.w]
+unknowns = ["u", "v"]
+domain = ["0", "1 m"]
+equations = ["e_1*u'''' + m_1*s^2*u + K*(u - v) = 0", "e_2*v'''' + m_2*s^2*v + K*(v - u) = 0"]
+conditions = [
+  "u(0) = 0", "u''(0) = 0", "v(0) = 0", "v''(0) = 0",
+  "u(1 m) = 0", "e_1*u''(1 m) = M", "v(1 m) = 0", "v''(1 m) = 0",
+]
+[inputs]
+M = { unit = "N*m" }
+[outputs]
+U = "u(0.5 m)"
+"""
+
+
+@pytest.mark.slow
+def test_beams_that_are_proportional_by_value_alone_have_wavenumbers_with_formulas():
+    """Of both beams omega^2 = 4 (n pi)^4 + (0 or K (1/m_1 + 1/m_2)); at the middle, odd n are seen."""
+    model = pipeline.loads(PROPORTIONAL)
+    (bound,) = pipeline.derive_for_roots(model, model.transfer_functions)
+    assert all(law.kind == "bending" for law in bound.kernels.dispersions)
+    found = [float(r.im.mid()) for r in pipeline.roots(bound, Modes(4)).poles if r.im > 0]
+    wanted = sorted(sqrt(4 * (n * pi) ** 4 + layer) for n in (1, 3) for layer in (0, 9))
+    assert found == pytest.approx(wanted, rel=1e-12)

@@ -78,13 +78,15 @@ def _meant(name: str) -> str | None:
     if example := example_of(name):
         return f"'symflex examples copy {example}' writes a model of this name"
     folder, own = os.path.split(name)
-    suffix = os.path.splitext(own)[1]
+    stem, suffix = os.path.splitext(own)
     try:
         beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix))[:MOST_FILES]
     except OSError:
         return None
+    if meant := nearest(stem, [os.path.splitext(f)[0] for f in beside]):
+        return f"{meant[:-2]}{suffix}'?"
     start = "'symflex new' writes a specification to start from, 'symflex examples' lists models to copy"
-    return nearest(own, beside) or (start if suffix == ".toml" else None)
+    return start if suffix == ".toml" else None
 
 
 def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:

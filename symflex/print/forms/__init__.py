@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.expressions import Name, Number, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
@@ -31,7 +32,7 @@ from symflex.print.forms.printed import (
     forms_of,
     require,
 )
-from symflex.print.forms.shapes import shaped
+from symflex.print.forms.shapes import S, shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
 
@@ -85,6 +86,8 @@ LONG = 200
 """Characters of a form from which sums of blocks are left as they are written, where that is much shorter."""
 SHORTER = 1.5
 """How many times as long a form of one fraction has to be."""
+READABLE = 10**20
+"""A whole number beyond which a function without parameters is printed in decimals, as zpk."""
 CLOSED = 1.1
 """How many times shorter a lumped form has to read with its definitions closed."""
 FEW = 60
@@ -129,6 +132,10 @@ def _arranged(
         made = _distributed(tf, form, digits, arranged or Arranged())
     else:
         made = _lumped(tf, form, digits, arranged)
+        parts = nodes(quotient(made.num, made.den)) if form is None else ()
+        longest = max((abs(n.value.numerator) for n in parts if isinstance(n, Number)), default=0)
+        if longest > READABLE and not any(isinstance(n, Name) and n != S for n in parts):
+            return _made(tf, "zpk", digits)
     if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made

@@ -128,6 +128,7 @@ class Arranger:
             if int(factor.leading_coefficient()) < 0:
                 positive, sign = -factor, sign * (-1) ** exponent
             pieces.append(power(self._flat(positive), exponent))
+        pieces.sort(key=lambda piece: {*names(piece)} != {Name("pi")})  # beside the number
         return product_of([number(constant * sign), *pieces])
 
     def _with_content(self, polynomial: fmpz_mpoly) -> Expression:
@@ -228,7 +229,7 @@ class Arranger:
         return [self._split(terms)]
 
     def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
-        if self._most_shared(terms) is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
+        if max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
             return self._sum(terms)
         parts = sorted(self._parts(terms), key=lambda p: p[0])
         nested = sum_of(_share_sums([part for _, part in parts]))
@@ -238,10 +239,27 @@ class Arranger:
         """Return the groups of a sum with their places in print."""
         shared = self._most_shared(terms)
         if shared is None:
-            return [(self._rank({m: c}), self._sum({m: c})) for m, c in terms.items()]
+            return [(self._rank(alike), self._coefficient_and_power(alike)) for alike in self._by_s(terms)]
         chosen = {m: c for m, c in terms.items() if m[shared]}
         others = {m: c for m, c in terms.items() if not m[shared]}
         return [(self._rank(chosen), self._group(chosen)), *(self._parts(others) if others else [])]
+
+    def _coefficient_and_power(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        """Return ``(m_1 + m_2)*s^2``, or a single term."""
+        if len(terms) == 1:
+            return self._sum(terms)
+        degree = next(iter(terms))[0]
+        return product_of([self._group({(0, *m[1:]): c for m, c in terms.items()}), self._powers(0, degree)])
+
+    def _by_s(self, terms: dict[tuple[int, ...], int]) -> Iterable[dict[tuple[int, ...], int]]:
+        """Return terms by powers of s; what holds no s, or a function or a closed sum, stands alone."""
+        found: dict[object, dict[tuple[int, ...], int]] = {}
+        for m, c in terms.items():
+            is_plain = m[0] and not any(
+                e and (f or g) for e, f, g in zip(m, self._is_apart, self._is_sum, strict=True)
+            )
+            found.setdefault(m[0] if is_plain else m, {})[m] = c
+        return found.values()
 
     def _most_shared(self, terms: dict[tuple[int, ...], int]) -> int | None:
         """Return the generator to take out of a sum: closed sums first, then parameters; never s alone."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
-from symflex.expressions import Expression, Name, Product, Sum, names, power, product_of, sum_of
-from symflex.print.forms.arrange import Arranger, reading
+from symflex.expressions import Expression, Name, Product, Sum, fold, names, nodes, power, product_of, sum_of
+from symflex.print.forms.arrange import Arranger, length, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -38,10 +39,12 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     if tf.closed is not None and _is_large(tf):
         return PrintedForm("definitions", *_from_closure(tf, tf.closed))
 
-    def tidied(part: Expression) -> Expression:
-        return _tidied(part, tf.base.index)
+    arranger = Arranger.plain(tf.base, constant_symbols(tf))
 
-    num, den = (rebuilt(e, tidied) for e in _rewritten(tf))
+    def tidied(part: Expression) -> Expression:
+        return _collected(_tidied(part, tf.base.index), arranger)
+
+    num, den = (rebuilt(e, tidied) for e in _rewritten(tf, arranger))
     if tf.closed is not None:
         closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, tf.closed))
         # A rational factor may stand differently in the two: take both parts from one of them then.
@@ -78,6 +81,29 @@ def _tidied(part: Expression, order: Mapping[str, int]) -> Expression:
         of_powers(x, {b: n - shared.get(b, 0) for b, n in p.items() if n != shared.get(b)}) for x, p in terms
     )
     return product_of([of_powers(Fraction(1), shared), sum_of(rest)])
+
+
+def _collected(part: Expression, arranger: Arranger) -> Expression:
+    """Return a nested sum by powers of s if that reads as easily: ``a*b*s^2 + K*(a + b)*s + c``."""
+    if not isinstance(part, Sum) or length(part) > SMALL or not any(_nests_s(t) for t in part.terms):
+        return part
+    if any(n.name not in arranger.ring.index for n in names(part)):
+        return part
+
+    value = fold(
+        part,
+        number=partial(Factored.number, arranger.ring),
+        name=partial(Factored.generator, arranger.ring),
+        power=lambda base, exponent: base ** powers_of(exponent)[0].numerator,
+        call=lambda _, argument: argument,
+    )
+    return min(part, arranger.grouped_by_s(value.expand()), key=reading) if is_divisor(value) else part
+
+
+def _nests_s(term: Expression) -> bool:
+    """Tell whether a term is a product with a sum that holds another one with s."""
+    sums = [f for f in term.factors if isinstance(f, Sum)] if isinstance(term, Product) else []
+    return any(isinstance(n, Sum) and n not in sums and S in names(n) for f in sums for n in nodes(f))
 
 
 def _by_powers(total: Sum, order: Mapping[str, int]) -> Expression:
@@ -143,12 +169,11 @@ def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]
     return found
 
 
-def _rewritten(tf: TransferFunction) -> tuple[Expression, Expression]:
+def _rewritten(tf: TransferFunction, arranger: Arranger) -> tuple[Expression, Expression]:
     """Return the expanded form, divided by every definition that makes it shorter."""
     ring = tf.base
     above = _embed(tf.ratio.numerator(), ring)
     below = _embed(tf.ratio.denominator(), ring)
-    arranger = Arranger.plain(ring, constant_symbols(tf))
     if max(len(above), len(below)) <= REWRITE_LIMIT:
         divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
         above, below = (in_definitions(p, divisors, ring) for p in (above, below))

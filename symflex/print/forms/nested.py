@@ -31,9 +31,11 @@ from symflex.expressions import (
     Quotient,
     Sum,
     number,
+    quotient,
 )
-from symflex.print.forms.notation import free_names, names_of
+from symflex.print.forms.notation import free_names, names_of, reachable
 from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.shapes import of_powers, powers_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -183,6 +185,14 @@ class _Printer:
             num, den = _negated(num), den.operand
         if tf.den == ONE and isinstance(num, Quotient):
             return PrintedForm("nested", num.numerator, num.denominator, where, laws)
+        if (
+            isinstance(den, Quotient) or den in powers_of(num)[1]
+        ):  # they share factors, as with imposed motion
+            whole = of_powers(*powers_of(quotient(num, den)))
+            num, den = (
+                (whole.numerator, whole.denominator) if isinstance(whole, Quotient) else (whole, number(1))
+            )
+            where = reachable((num, den, *(law for _, law in laws)), where)
         return PrintedForm("nested", num, den, where, laws)
 
     def _law(self, function: tuple[str, Waves]) -> tuple[str, Equation]:

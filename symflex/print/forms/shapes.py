@@ -14,6 +14,7 @@ is turned, and its minus sign travels outwards. A wrong choice here is only ugly
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -126,7 +127,9 @@ class _Signs:
     def _oriented(self, part: Expression) -> Expression:
         match part:
             case Sum(terms):
-                return self._with_loss_factor(self._sum(terms))
+                # Closed sums side by side may share a term: (c*s + k_1) + (c*s + k_2).
+                merged = sum_of(product_of([number(n), t]) for t, n in Counter(terms).items())
+                return self._with_loss_factor(self._sum(merged.terms) if isinstance(merged, Sum) else merged)
             case Negative(Product() as product):
                 return negative(self._oriented(product))
             case Product(factors):

@@ -11,6 +11,7 @@ import matplotlib
 import numpy as np
 import pytest
 
+from symflex import pipeline
 from symflex.errors import ModelError, UsageError
 from symflex.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
 from symflex.figures.s_plane import RootMark, choose_view, leaving
@@ -303,6 +304,18 @@ def test_roots_outside_the_limits_asked_for_are_counted():
     said = [text.get_text() for text in figure.texts]
     assert "unstable: 1 pole in the right half plane" in said
     assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
+
+
+def test_a_bode_plot_with_loss_factors_says_nothing_of_stability():
+    model = pipeline.loads("""symflex = 1
+parameters = { m = "1 kg", k = "1 kN/m" }
+elements.a = { type = "mass", at = "x", m = "m" }
+elements.b = { type = "spring", between = ["x", "ground"], k = "k", eta_s = 0.1 }
+inputs.F = { force = "x" }
+outputs.X = "x"
+""")
+    texts = drawn("bode", pipeline.derive_all(model)).findobj(matplotlib.text.Text)
+    assert not any("stability" in text.get_text() for text in texts)
 
 
 def test_limits_of_an_axis_that_a_figure_has_not_are_refused(tfs):

@@ -455,3 +455,97 @@ inputs.r = {}
 outputs.y = "phi + C*(r - phi)"
 """
     assert "/" not in "".join(printed(tf_of(text, "y", "r")))
+
+
+def test_a_nested_closed_sum_is_printed_by_powers_of_s():
+    # Two oil volumes: (V_1*s + B*(K_c + C))*(V_2*s + B*(K_c + C)) - B^2*C^2, multiplied out by hand.
+    text = """symflex = 1
+parameters = { A = {}, V_1 = {}, V_2 = {}, B = {}, K = {}, K_c = {}, C = {}, m = {}, b = {} }
+[elements]
+left  = { type = "piston", mover = "x", chamber = ["ground", "p1"], A = "A" }
+right = { type = "piston", mover = "x", chamber = ["p2", "ground"], A = "A" }
+oil1  = { type = "acoustic_compliance", at = "p1", C = "V_1/B" }
+oil2  = { type = "acoustic_compliance", at = "p2", C = "V_2/B" }
+out1  = { type = "flow_source", at = "p1", q = "K*(r - x) - K_c*p1" }
+out2  = { type = "flow_source", at = "p2", q = "K*(x - r) - K_c*p2" }
+leak  = { type = "acoustic_resistance", between = ["p1", "p2"], R = "1/C" }
+load  = { type = "mass", at = "x", m = "m" }
+loss  = { type = "damper", between = ["x", "ground"], b = "b" }
+[inputs]
+r = { unit = "m" }
+[outputs]
+X = "x"
+"""
+    _, den = printed(tf_of(text, "X", "r"))
+    oil = "(V_1*V_2*s^2 + B*(V_1 + V_2)*(K_c + C)*s + B^2*K_c*(K_c + 2*C))"
+    assert den.startswith(f"s*(m*s + b)*{oil} + ")
+
+
+def test_powers_of_s_are_collected_beside_functions():
+    text = """symflex = 1
+parameters = { J_1 = {}, J_2 = {}, c = {}, K = {}, GJ = {}, rhoJ = {}, l = {} }
+elements.pipe  = { type = "shaft", between = ["a", "b"], GJ = "GJ", rhoJ = "rhoJ", l = "l" }
+elements.top   = { type = "inertia", at = "a", J = "J_1" }
+elements.bit   = { type = "inertia", at = "b", J = "J_2" }
+elements.loss  = { type = "rotary_damper", between = ["b", "ground"], b = "c" }
+elements.drive = { type = "rotary_damper", between = ["a", "ground"], b = "K" }
+inputs.T = { torque = "b" }
+outputs.W = "s*a"
+"""
+    # A rigid pipe (cosh = 1) leaves the sum of both inertias and both dampers.
+    assert "((J_1 + J_2)*s + c + K)" in printed(tf_of(text, "W", "T"))[1]
+
+
+def test_terms_that_closed_sums_share_are_printed_once():
+    storeys = "".join(
+        f"""
+m{n} = {{ type = "mass", at = "x{n}", m = "m" }}
+k{n} = {{ type = "spring", between = ["{below}", "x{n}"], k = "k_{n}" }}
+c{n} = {{ type = "damper", between = ["{below}", "x{n}"], b = "c" }}"""
+        for n, below in ((1, "z"), (2, "x1"), (3, "x2"))
+    )
+    text = f"""symflex = 1
+inputs  = {{ a = {{ acceleration = "z" }} }}
+outputs = {{ A_3 = "s^2*x3" }}
+[parameters]
+{"".join(f"{name} = {{}}" + chr(10) for name in "m k_1 k_2 k_3 c m_d k_d c_d g T".split())}
+[elements]{storeys}
+mover = {{ type = "mass", at = "d", m = "m_d" }}
+soft  = {{ type = "spring", between = ["x3", "d"], k = "k_d" }}
+loss  = {{ type = "damper", between = ["x3", "d"], b = "c_d" }}
+push  = {{ type = "force_source", between = ["d", "x3"], f = "g*s^2*x3/(1 + T*s)" }}
+"""
+    _, den = printed(tf_of(text, "A_3", "a"))
+    assert "(1 + 1)" not in den
+    assert "(m*s^2 + 2*c*s + k_2 + k_3)" in den
+
+
+def test_an_imposed_motion_leaves_the_product_of_transmissibilities():
+    text = """symflex = 1
+parameters = { m_1 = {}, m_2 = {}, k_1 = {}, k_2 = {} }
+elements.a = { type = "mass", at = "x", m = "m_1" }
+elements.b = { type = "mass", at = "y", m = "m_2" }
+elements.k = { type = "spring", between = ["w", "x"], k = "k_1" }
+elements.c = { type = "spring", between = ["x", "y"], k = "k_2" }
+inputs.w = { acceleration = "w" }
+outputs.Y = "s^2*y"
+"""
+    form = print_form(pipeline.derive_nested(pipeline.loads(text))[0])
+    # y/x = k_2/(m_2*s^2 + k_2), and x/w = k_1/(k_1 + m_1*s^2 + m_2*s^2*y/x).
+    assert format_expression(quotient(form.num, form.den)) == "T_1*T_2"
+    assert [name for name, _ in form.where] == ["Z_1", "T_1", "Z_2", "T_2"]
+
+
+def test_pi_stands_beside_the_number_in_a_coefficient():
+    head = "symflex = 1\nparameters = { f = {}, a = {}, b = {} }\ninputs.u = {}\n"
+    text = head + 'outputs.y = "u/(s + 2*pi*f*(a + b))"'
+    assert printed(tf_of(text, "y", "u"), "polynomial")[1] == "s + 2*pi*f*(a + b)"
+
+
+def test_numbers_nobody_can_read_are_printed_as_decimals():
+    long = "(0.123456789012345*s + 1.000000000000017)*(s^2 + 0.3333333333333333*s + 0.1414213562373095)"
+    text = f'symflex = 1\ninputs.u = {{}}\noutputs.y = "u/({long})"'
+    form = print_form(tf_of(text, "y", "u"))
+    assert form.name == "zpk"
+    # 1/0.123456789012345 and their ratio, to six digits
+    assert printed(tf_of(text, "y", "u")) == ("8.1", "(s^2 + 0.333333*s + 0.141421)*(s + 8.1)")
