@@ -389,6 +389,11 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         if not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
             where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
             reasons.append(f"the damping of {where} is lost in its error")
+    if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(found.gain)):
+        is_beyond = (found.omega_z > fit.problem.band[1]) & (found.zeta_z < 0)
+        is_lag = not fit.problem.free.delay and bool(np.any(found.real_z < 0) or np.any(is_beyond))
+        advice = ": zeros on the right above the band may stand for a dead time, try --delay"
+        reasons.append("the gain is lost in its error" + advice * is_lag)
     return tuple(reasons)
 
 

@@ -27,7 +27,7 @@ from symflex.budget import TIME_OVER, entered_budget
 from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined, refine, refine_directly
 from symflex.data.fitting.numerator import STRANGE, over_poles, strange
 from symflex.data.fitting.problem import FitProblem, estimated
-from symflex.data.fitting.resonances import Complex, Resonances
+from symflex.data.fitting.resonances import Complex, Resonances, Whole
 from symflex.data.fitting.starts import (
     poles_from_aaa,
     poles_from_vector_fitting,
@@ -356,8 +356,19 @@ def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate
     """
     near = [one for one in tried if one.order <= best.order] + [best]
     rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
-    slope, limit = best.refined.resonances.slope, _merit(problem, best.refined) + CLEAR
-    return any(np.any(rival.resonances.slope != slope) and _merit(problem, rival) < limit for rival in rivals)
+    slope, limit = _slope_in_band(problem, best.refined.resonances), _merit(problem, best.refined) + CLEAR
+    return any(
+        np.any(_slope_in_band(problem, rival.resonances) != slope) and _merit(problem, rival) < limit
+        for rival in rivals
+    )
+
+
+def _slope_in_band(problem: FitProblem, found: Resonances) -> Whole:
+    """Return the powers of s that the band shows: poles and zeros far below it are such powers."""
+    low = problem.band[0] / FAR_OUTSIDE
+    poles = 2 * np.sum(found.omega_p < low) + np.sum(found.real_p < low)
+    zeros = 2 * np.sum(np.abs(found.omega_z) < low, axis=1) + (np.abs(found.real_z) < low)
+    return np.asarray(found.slope + zeros - poles, np.int64)
 
 
 def _continued(
@@ -593,13 +604,17 @@ def refitted(candidate: Candidate, problem: FitProblem) -> Candidate:
 
 
 def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
-    """Return how likely noise alone leaves so much more than a function without structure does."""
+    """Return how likely noise alone leaves so much more than a function without structure does.
+
+    What neighbouring lines share, as rounded numbers do, counts once: the ratio is over their correlation.
+    """
     reference = problem.reference
     if reference is None:
         return 1.0
     spare = max(reference.parameters - refined.parameters, 1)
     freedom = max(2 * problem.count - reference.parameters, 1)
     ratio = (refined.cost - reference.cost) / spare / (reference.cost / freedom)
+    ratio /= max(refined.correlation, 1.0)
     return float(fdtrc(spare, freedom, ratio)) if ratio > 0 else 1.0
 
 

@@ -245,9 +245,13 @@ class TextTable:
 
     def cells(self, index: int) -> list[Span]:
         """Return where the cells of a line stand, empty ones with an empty range."""
-        words, start = cut(self.lines[index], self.delimiter, are_all_kept=True), self.starts[index]
-        empty = Span(self.source, start, start)
-        return [self.cell(index, words, i) if word else empty for i, word in enumerate(words)]
+        text, start, end, found = self.lines[index], self.starts[index], 0, []
+        for word in cut(text, self.delimiter, are_all_kept=True):
+            at = text.find(word, end) if word else 0
+            end = max(at, end) + len(word)
+            place = Span(self.source, start + at, start + at + len(word))
+            found.append(place if at >= 0 else self.line(index))
+        return found
 
     def blocks(self) -> list[NumberBlock]:
         """Return the blocks of numbers; where no line begins with a number, of those with text in front."""

@@ -92,6 +92,47 @@ def test_real_poles_and_zeros_far_below_the_band_are_powers_of_s(number, slope):
     assert off.max() < 3
 
 
+def written(number, digits):
+    return float(f"{number:.{digits}}")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_cartesian", [True, False])
+def test_rounded_numbers_of_a_ladder_filter_are_no_reason_to_call_a_fit_poor(is_cartesian):
+    # Four digits of real and imaginary part, or five of the level and tenths of a degree, over four decades.
+    frequency = np.geomspace(10, 1e5, 401).round(6)
+    s = OMEGA * 1j * frequency
+    exact = 1 / (pair(s, OMEGA * 1e3, 0.3) * pair(s, OMEGA * 2.5e3, 0.05) * pair(s, OMEGA * 6e3, 0.02))
+    if is_cartesian:
+        values = [complex(written(h.real, "4g"), written(h.imag, "4g")) for h in exact]
+    else:
+        level = [written(x, "5g") for x in 20 * np.log10(abs(exact))]
+        turn = [written(x, "1f") for x in np.degrees(np.angle(exact))]
+        values = 10 ** (np.array(level) / 20) * np.exp(1j * np.radians(turn))
+    fit = fit_resonances([MeasuredResponse("y/u", frequency, values)])
+    assert fit.poor == ()
+    assert fit.resonances.omega_p / OMEGA == pytest.approx([1e3, 2.5e3, 6e3], rel=1e-3)
+
+
+@pytest.mark.slow
+def test_a_dead_time_that_is_not_asked_for_and_spoils_the_gain_is_a_reason():
+    frequency = np.array([written(f, "4g") for f in np.geomspace(1, 1000, 601)])
+    s = OMEGA * 1j * frequency
+    exact = 200 / s**2 * np.exp(-1e-4 * s)
+    for zero, pole, zeta_z, zeta_p in ((40, 55, 0.02, 0.02), (130, 140, 0.01, 0.01)):
+        exact = exact * pair(s, OMEGA * zero, zeta_z) / pair(s, OMEGA * pole, zeta_p)
+    level = [written(x, "4g") for x in 20 * np.log10(abs(exact))]
+    turn = [written(x, "4g") for x in np.degrees(np.angle(exact))]
+    values = 10 ** (np.array(level) / 20) * np.exp(1j * np.radians(turn))
+    data = [MeasuredResponse("y/u", frequency, values)]
+    plain = fit_resonances(data)
+    is_right = plain.resonances.gain[0] == pytest.approx(200, rel=0.01)
+    assert is_right or any("try --delay" in reason for reason in plain.poor)
+    delayed = fit_resonances(data, None, FitOptions(is_delay_free=True))
+    assert delayed.resonances.gain[0] == pytest.approx(200, rel=0.01)
+    assert delayed.resonances.delay[0] == pytest.approx(1e-4, rel=0.01)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seconds", [0.0, 0.3, 1.0])
 def test_whatever_the_time_the_best_fit_so_far_is_returned(seconds):
