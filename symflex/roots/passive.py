@@ -104,6 +104,9 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
     empty then, the loop is as they say.
     """
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
+    known.pop(gain, None)  # elements, too, shall be passive whatever positive value it has
+    free = (replace(p, value=None, assume="positive") if p.name == gain else p for p in model.parameters)
+    model = replace(model, parameters=tuple(free))
     line = line_of(model, known.items())
     inputs = {each.name for each in model.inputs}
     sources = [e for e in model.elements if e.element.is_source and not follows_inputs(e, line, inputs)]

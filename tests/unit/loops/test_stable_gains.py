@@ -276,3 +276,20 @@ motor = { type = "torque_source", at = "phi", tau = "K*(r - (1 + T*s)*phi)" }
     found = symflex.loads(text).stability("K", (0, 5))
     assert not any(interval.poles.is_stable for interval in found.proved.intervals)
     assert not found.is_stable
+
+
+def test_a_stiffness_that_a_gain_makes_negative_is_not_passive():
+    # A shaft of GJ = l = 1 holds its end as a spring of 1 N m: with k_0 - K it is stable up to K = k_0 + 1.
+    text = """
+symflex = 1
+parameters = { K = "1 N*m", k_0 = "3 N*m" }
+inputs.T = { torque = "phi" }
+outputs.y = "phi"
+[elements]
+rod = { type = "shaft", between = ["ground", "phi"], GJ = 1, rhoJ = 1, l = 1 }
+loss = { type = "rotary_damper", between = ["phi", "ground"], b = 0.5 }
+spring = { type = "torsion_spring", between = ["phi", "ground"], k = "k_0 - K" }
+"""
+    found = symflex.loads(text).stability("K", (0, 20)).proved
+    assert [i.poles.right for i in found.intervals] == [0, 1]
+    assert abs(float(found.boundaries[0].gain.mid()) - 4) < 1e-9
