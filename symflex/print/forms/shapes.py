@@ -133,7 +133,12 @@ class _Signs:
             case Negative(Product() as product):
                 return negative(self._oriented(product))
             case Product(factors):
-                return self._rejoined(product_of(_joined(factors)))
+                joined = _joined(factors)
+                if any(
+                    map(_is_decay, joined)
+                ):  # behind plain factors, before functions, above as below the bar
+                    joined = sorted(joined, key=lambda f: (_holds_call(f), not _is_decay(f)))
+                return self._rejoined(product_of(joined))
             case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
                 return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=length))
             case Call("sqrt", Negative(Sum(terms))):
@@ -306,7 +311,7 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
     )
     if is_squared or len({*bases}) < len(bases):
         factors = (of_powers(*powers_of(product_of(factors))),)
-    decays = [f for f in factors if isinstance(f, Call) and f.name == "exp"]
+    decays = [f for f in factors if isinstance(f, Call) and _is_decay(f)]
     times = [powers_of(f.argument) for f in decays]
     if len(decays) < 2:  # noqa: PLR2004
         return factors
@@ -327,6 +332,14 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
         merged = [Call("exp", of_powers(x, alike[wave])) for wave, x in fronts.items() if x]
     first = factors.index(decays[0])
     return [*factors[:first], *merged, *(f for f in factors[first:] if f not in decays)]
+
+
+def _is_decay(factor: Expression) -> bool:
+    return isinstance(factor, Call) and factor.name == "exp"
+
+
+def _holds_call(factor: Expression) -> bool:
+    return any(isinstance(n, Call) for n in nodes(factor))
 
 
 def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:

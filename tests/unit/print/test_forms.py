@@ -432,6 +432,20 @@ def test_dead_times_are_one_and_decay_below_one():
     assert shaped(names, "(1 - A)/(s*T_1)*B*u", DELAYS).startswith("exp(-T_2*s)*(1 - exp(-T_1*s))")
 
 
+def test_a_dead_time_stands_behind_the_same_factors_above_and_below():
+    # A loop with the block (T_n*s + 1)/s and a dead time has numerator and denominator N and s*D + N.
+    text = """symflex = 1
+parameters = { K = {}, T_n = {}, T = {}, R = {}, L = {} }
+blocks.D = { type = "delay", T = "T" }
+signals.i = "D*K*(T_n*s + 1)/s*(r - i)/(L*s + R)"
+inputs.r = {}
+outputs.y = "i"
+"""
+    num, den = printed(tf_of(text, "y", "r"))
+    assert num == "K*(T_n*s + 1)*exp(-T*s)"
+    assert den == f"L*s^2 + R*s + {num}"
+
+
 MODES = """[blocks]
 A = { type = "tf", num = "a_1", den = "s^2 + 2*zeta*w_1*s + w_1^2" }
 B = { type = "tf", num = "a_2", den = "s^2 + 2*zeta*w_2*s + w_2^2" }
