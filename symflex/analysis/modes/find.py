@@ -207,7 +207,9 @@ class _ModeSearch:
         if root.is_zero or any(p is root for p in known):
             return root
         region: Region | None = None
-        if self.bound.is_distributed:
+        if isinstance(self.bound, BoundNested) and self._maps:
+            region = next(iter(self._maps))[0]  # a disc holds all roots below: one search serves them all
+        elif self.bound.is_distributed:
             frequency = Fraction(root.frequency_hz())
             region = Band(frequency * (1 - NEIGHBOURHOOD), frequency * (1 + NEIGHBOURHOOD))
         try:
