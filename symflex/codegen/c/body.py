@@ -376,10 +376,9 @@ WIDTH = 88
 STEP = "    "
 
 S = Term("s", Kind.COMPLEX, varies=True)
-AXIS = Term("w", Kind.IMAGINARY, varies=True)
 LANE = Term("w[j]", Kind.REAL, varies=True)
 AXIS_LANE = Term("w[j]", Kind.IMAGINARY, varies=True)
-"""What s is: complex; j w; the frequency w of a response in real arithmetic, one of several; j w likewise."""
+"""What s is: complex; one of several frequencies w of a response in real arithmetic; one of several j w."""
 
 _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 

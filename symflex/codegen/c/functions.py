@@ -13,7 +13,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import (
-    AXIS,
     AXIS_LANE,
     LANE,
     LANE_FUNCTIONS,
@@ -32,7 +31,7 @@ from symflex.codegen.c.body import (
 from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -98,7 +97,14 @@ class Functions:
 
     def _lumped_value(self, program: tree.Piecewise) -> list[str]:
         scope = Body.of(self.members, S)
-        _lumped(program, scope, lambda inner, term: inner.say("return", complex_term(term).text))
+        near, far = program.near, program.far
+        scope.assign((*near.constants, *near.assignments))
+        if far is not None:
+            block = scope.within()
+            block.assign(program.late)
+            block.say("return", complex_term(block.term(far.values[0])).text)
+            scope.enclose(f"if (cx_abs(s) > {program.limit!r}) {{", block.lines)
+        scope.say("return", complex_term(scope.term(near.values[0])).text)
         return self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}")))
 
     def _wrapped_value(self, lines: list[str]) -> list[str]:
@@ -141,51 +147,21 @@ class Functions:
     # -------------------------------------------------------------------------------- frequency response
 
     def _frequency_response(self) -> list[str]:
+        """Return the response: in lanes, else with calls of the function of s."""
         program = self.program
         if self.axis is not None:
-            return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
-        if not program.is_lumped or has_losses(program):
-            return self._called()
-        if is_rational_in_lanes(program):
-            return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
-        outer = Body.of(self.members, AXIS)
-        # Names are unique in the whole function; the loop's statements come after all constants.
-        inner = outer.within()
-        _lumped(program, outer, self._store, inner)
-        varies = any(_mentions(line, "w") for line in inner.lines)
-        loop = [f"{STEP}for (size_t i = 0; i < n; i++) {{"]
-        loop += [f"{STEP * 2}const double w = omega[i];"] if varies else []
-        unused = [] if varies else [f"{STEP}(void)omega;"]
-        return [
-            *self.freq_prototype.split("\n"),
-            "{",
-            *outer.opening(self.members),
-            *unused,
-            *outer.lines,
-            *loop,
-            *inner.lines,
-            f"{STEP}}}",
-            "}",
-        ]
-
-    def _called(self) -> list[str]:
-        """Return a response that calls the function of s."""
-        return [
-            *self.freq_prototype.split("\n"),
-            "{",
-            f"{STEP}for (size_t i = 0; i < n; i++) {{",
-            f"{STEP * 2}const cx g = value_of_{self.name}(cx_of(0.0, omega[i]), p);",
-            f"{STEP * 2}real[i] = g.re;",
-            f"{STEP * 2}imag[i] = g.im;",
-            f"{STEP}}}",
-            "}",
-        ]
-
-    def _store(self, scope: Body, value: Term) -> None:
-        """Write a value into the arrays."""
-        real, imag = _parts(scope, value)
-        scope.say("real[i] =", real)
-        scope.say("imag[i] =", imag)
+            body = lanes(self.axis, self.members)
+        elif program.is_lumped and not has_losses(program) and is_rational_in_lanes(program):
+            body = rational_lanes(program, self.members)
+        else:
+            body = [
+                f"{STEP}for (size_t i = 0; i < n; i++) {{",
+                f"{STEP * 2}const cx g = value_of_{self.name}(cx_of(0.0, omega[i]), p);",
+                f"{STEP * 2}real[i] = g.re;",
+                f"{STEP * 2}imag[i] = g.im;",
+                f"{STEP}}}",
+            ]
+        return [*self.freq_prototype.split("\n"), "{", *body, "}"]
 
 
 def _parts(scope: Body, value: Term) -> tuple[str, str]:
@@ -205,34 +181,6 @@ def _mentions(line: str, name: str) -> bool:
             return True
         at = line.find(name, at + 1)
     return False
-
-
-def _lumped(
-    program: tree.Piecewise, scope: Body, store: Callable[[Body, Term], None], varying: Body | None = None
-) -> None:
-    """Print a program of one or two branches; what varies goes to a scope of its own if there is one."""
-    inner = varying or scope
-    near = program.near
-    far = program.far
-    scope.assign(near.constants)
-    if varying is not None:
-        inner.known = dict(scope.known)
-    inner.assign(near.assignments)
-    if far is None:
-        store(inner, inner.term(near.values[0]))
-        return
-    size = "cx_abs(s)" if inner.s.kind is Kind.COMPLEX else f"fabs({inner.s.text})"
-    opening = f"if ({size} > {program.limit!r}) {{"
-    block = inner.within()
-    block.assign(program.late)
-    store(block, block.term(far.values[0]))
-    if varying is None:
-        inner.enclose(opening, block.lines)
-        store(inner, inner.term(near.values[0]))
-        return
-    other = inner.within()
-    store(other, other.term(near.values[0]))
-    inner.enclose(opening, [*block.lines, f"{STEP * inner.depth}}} else {{", *other.lines])
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"
