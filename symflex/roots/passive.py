@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from math import atan2, pi, prod
 from typing import TYPE_CHECKING
 
@@ -304,7 +305,7 @@ class _Structure:
         signs = {use.name: parameter_signs(use, self.line) for use in self.rest}
         damped = list(damped)
         resting: set[Variable] = set()
-        members: list[tuple[Ends, Ends]] = []
+        members: list[tuple[tuple[Ends, Ends], int]] = []  # and how much of an end, at rest, stops them
         beams: list[tuple[Ends, Ends]] = []
         for use in self.rest:
             given, law = signs[use.name], use.element.damping
@@ -314,21 +315,26 @@ class _Structure:
                 resting.add(Variable("through", use.name, use.element.through[0]))
             if isinstance(use.element, LineElement):
                 states = self._states(use, use.element)
-                members.append(states)
+                # Whatever loses no energy bends, twists and shears nowhere, or nowhere leaves its place.
+                is_lossy = 1 in (given.get("eta"), given["c_f"])
+                members.append((states, len(use.element.ends) if is_lossy else len(states[0])))
                 if _grows(use, given):
                     beams.append(states)
                 if _loses(use, given, self.line):
                     resting.update(v for state in states for v in state if v is not None)
-        forms = [form for _, form in self._forms]
-        forms += [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
+        own = forms = [form for _, form in self._forms]
+        together = [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
+        for pair in together:
+            forms = _without(next(reversed(pair)), [pair, *forms]) if len(pair) > 1 else forms
+        forms = [*own, *forms, *together]
         known = -1
         while len(resting) > known:
             known = len(resting)
             resting = _followed(resting, forms, self._turn)
-            for states in members:
-                for here, there in (states, states[::-1]):
-                    if all(v is None or v in resting for v in here):
-                        resting.update(v for v in there if v is not None)
+            for states, count in members:
+                for here in states:
+                    if all(v is None or v in resting for v in here[:count]):
+                        resting.update(v for v in chain(*states) if v is not None)
             resting |= self._unable_to_grow(beams, resting, forms)
         return resting.issuperset(self.equations.unknowns)
 

@@ -204,6 +204,47 @@ def beam_matrices(count, depth):
     return mass, stiffness
 
 
+HELD = """
+symflex = 1
+inputs.F = { force = "tip" }
+outputs.X = "tip"
+elements.arm = { type = "beam", between = ["ground", "tip"], E = 1, I = 1, rho = 1, A = 1, l = 1, $section }
+"""
+TURNING = 'theory = "timoshenko", G = 1, kappa = 1, c_f = 0.1'
+ABSORBER = """
+elements.load = { type = "mass", at = "a", m = 0.1 }
+elements.hold = { type = "spring", between = ["tip", "a"], k = 0.2 }
+elements.loss = { type = "damper", between = ["tip", "a"], b = 0.05 }
+"""
+STRUNG = """
+symflex = 1
+inputs.F = { force = "tip" }
+outputs.X = "tip"
+elements.one = { type = "string", between = ["ground", "tip"], N = 1, rhoA = 1, l = 1 }
+elements.two = { type = "string", between = ["tip", "ground"], N = 1, rhoA = 1, l = 1 }
+"""
+
+
+def all_rests(text, section="eta = 0"):
+    return passive_loop(pipeline.loads(Template(text).substitute(section=section)), "", ()).rests
+
+
+def test_what_loses_energy_rests_on_the_axis_if_an_end_is_held():
+    # Without strain a beam moves as a rigid body; without deflection its sections turn as the shear force
+    # says, which is one number. A clamp allows neither, a pin both.
+    for section in ('theory = "rayleigh", eta = 0.01', "k_f = 1, eta = 0.01", TURNING):
+        assert all_rests(HELD, section), section
+        pinned = HELD.replace("ground", "base") + 'elements.pin = { type = "pin", at = "base" }'
+        assert not all_rests(pinned, section), section
+
+
+def test_an_absorber_without_strain_moves_with_the_tip_and_holds_it():
+    # Its mass alone is left, m s^2 x = 0. A cantilever rests if three of four quantities do at its tip.
+    assert all_rests(HELD + ABSORBER)
+    # In the middle of a string it does not feel every other mode.
+    assert not all_rests(STRUNG + ABSORBER)
+
+
 def test_finite_elements_are_stable_too():
     for taper, gain in ((0.0, 0.01), (0.5, 3.0), (0.5, 250.0)):
         mass, stiffness = beam_matrices(12, lambda x, taper=taper: 1 - taper * x)
