@@ -13,11 +13,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from symflex.algebra import LAPLACE, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Sequence
+    from collections.abc import Sequence
 
     from symflex.algebra import Factored
     from symflex.roots.networks.cramer import CramerEquations
@@ -28,92 +30,47 @@ NONE = -1e6
 
 def most_zeros(cramer: CramerEquations) -> int | None:
     """Return how many zeros the numerator has at most; ``None`` where there may be infinitely many."""
+    from scipy.sparse import csr_array  # takes 0.2 s, and only functions of networks need it
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
     entries = cramer.entries
-    matched = _matched(entries)
-    if matched is None:
+    rows = [i for i, row in enumerate(entries) for _ in row]
+    columns = [j for row in entries for j in row]
+    pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(entries), len(entries)))
+    matched = maximum_bipartite_matching(pattern, perm_type="column")
+    if (matched < 0).any():
         return None
+    # Row i needs the unknowns of its columns, which the rows matched to them give.
+    _, block_of = connected_components(pattern[:, matched], directed=True, connection="strong")
     total = 0
-    for block in _blocks(entries, matched):
-        degree = _degree_of_block(cramer, block, [matched[i] for i in block])
+    for block in range(max(block_of) + 1):
+        own = np.flatnonzero(block_of == block).tolist()
+        degree = _degree_of_block(cramer, own, [int(matched[i]) for i in own])
         if degree is None:
             return None
         total += degree
     return total
 
 
-def _matched(entries: Sequence[Collection[int]]) -> list[int] | None:
-    """Return a column for every row, no two the same (Kuhn 1955); ``None`` where there is no such choice."""
-    columns = [-1] * len(entries)
-    row_of: dict[int, int] = {}
-    for start in range(len(entries)):
-        came: dict[int, int] = {}  # from which row a column was reached
-        pending = [start]
-        while pending:
-            i = pending.pop()
-            came |= {j: i for j in entries[i] if j not in came}
-            free = next((j for j in entries[i] if j not in row_of), None)
-            if free is not None:
-                break
-            pending += [row_of[j] for j in entries[i] if came[j] == i and row_of[j] != i]
-        else:
-            return None
-        while free >= 0:
-            i = came[free]
-            row_of[free] = i
-            free, columns[i] = columns[i], free
-    return columns
-
-
-def _blocks(entries: Sequence[Collection[int]], matched: Sequence[int]) -> list[list[int]]:
-    """Return the rows that need each other: a row needs the unknowns of its columns, which others give."""
-    row_of = {j: i for i, j in enumerate(matched)}
-    needs = [[row_of[j] for j in row] for row in entries]
-    needed: list[list[int]] = [[] for _ in entries]
-    for i, others in enumerate(needs):
-        for k in others:
-            needed[k].append(i)
-    ended = [i for tree in _trees(needs, range(len(needs))) for i in tree]
-    return list(_trees(needed, reversed(ended)))  # Kosaraju's (1978) algorithm
-
-
-def _trees(graph: Sequence[Sequence[int]], starts: Iterable[int]) -> Iterator[list[int]]:
-    """Yield what is reached from each start and was not before, in the order in which a search ends it."""
-    seen: set[int] = set()
-    for start in starts:
-        ended: list[int] = []
-        path = [] if start in seen else [(start, iter(graph[start]))]
-        seen.add(start)
-        while path:
-            node, others = path[-1]
-            following = next((k for k in others if k not in seen), None)
-            if following is None:
-                ended.append(node)
-                path.pop()
-            else:
-                seen.add(following)
-                path.append((following, iter(graph[following])))
-        if ended:
-            yield ended
-
-
 def _degree_of_block(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> int | None:
     """Return how many roots the determinant of a block has at most."""
     if _is_of_member(cramer, rows, columns):
         return 0
-    degrees = []
-    for i in rows:
-        row = cramer.entries[i]
-        known = {j: _degree(cramer, row[j], is_alone=len(rows) == 1) for j in columns if j in row}
-        if None in known.values():
-            return None
-        degrees.append([known.get(j) for j in columns])
     if len(rows) == 1:
-        return degrees[0][0]
-    from scipy.optimize import linear_sum_assignment  # takes 0.5 s, and most models have no such block
+        entry = cramer.entries[rows[0]][columns[0]]
+        return _degree(cramer, entry, is_alone=True)
+    from scipy.optimize import linear_sum_assignment  # takes as long again, and few networks need it
 
-    weights = [[NONE if degree is None else degree for degree in row] for row in degrees]
-    best = linear_sum_assignment(weights, maximize=True)
-    return int(sum(weights[i][k] for i, k in zip(*best, strict=True)))
+    degrees = np.full((len(rows), len(columns)), NONE)
+    for k, i in enumerate(rows):
+        for m, j in enumerate(columns):
+            if j in cramer.entries[i]:
+                degree = _degree(cramer, cramer.entries[i][j], is_alone=False)
+                if degree is None:
+                    return None
+                degrees[k, m] = degree
+    best = linear_sum_assignment(degrees, maximize=True)
+    return int(degrees[best].sum())
 
 
 def _is_of_member(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> bool:
