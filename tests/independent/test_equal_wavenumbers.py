@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from mpmath import expm, eye, lu_solve, matrix, mp, mpc, mpf
+from mpmath import expm, eye, findroot, lu_solve, matrix, mp, mpc, mpf
 from scipy import linalg
 
 import symflex
@@ -437,3 +437,40 @@ def test_beams_that_are_proportional_by_value_alone_have_wavenumbers_with_formul
     found = [float(r.im.mid()) for r in pipeline.roots(bound, Modes(4)).poles if r.im > 0]
     wanted = sorted(sqrt(4 * (n * pi) ** 4 + layer) for n in (1, 3) for layer in (0, 9))
     assert found == pytest.approx(wanted, rel=1e-12)
+
+
+SHEARED = """
+symflex = 1
+inputs.F = { force = "tip" }
+outputs.X = "tip"
+[elements.arm]
+type = "beam"
+theory = "timoshenko"
+between = ["ground", "tip"]
+E = 1
+I = 1
+rho = 1
+A = 1
+l = 1
+G = 1
+kappa = 1
+c_f = 0.1
+"""
+
+
+@pytest.mark.slow
+def test_waves_of_bending_and_of_shear_may_be_equally_fast():
+    # E = kappa G: for large s the wavenumbers differ by a constant, which is lost in what they are.
+    def free_end(s):
+        # The clamp leaves moment and shear, M' = rho I s^2 theta - V and V' = (rho A s^2 + c_f s) w.
+        slope = matrix([[0, 1, 0, 1], [0, 0, 1, 0], [0, s * s, 0, -1], [s * s + s / 10, 0, 0, 0]])
+        along = expm(slope, method="taylor")
+        return along[2, 2] * along[3, 3] - along[2, 3] * along[3, 2]
+
+    model = pipeline.loads(SHEARED)
+    (bound,) = pipeline.derive_for_roots(model, [("X", "F")])
+    found = pipeline.roots(bound, Modes(1), 15)
+    assert found.certificate.certified
+    for pole in found.poles:
+        near = mpc(float(pole.re.mid()), float(pole.im.mid()))
+        assert abs(findroot(free_end, near) - near) < 1e-12

@@ -321,10 +321,10 @@ class KernelFunction:
                 elif kernel.function == "entry" and evaluator.matrices is not None:
                     sizes.append(arb(evaluator.matrices.reach(kernel.dispersion, kernel.length, acb(s))))
                     continue
-                elif kernel.function == "fundamental":
-                    rate = _spectral_size([at_centre(evaluator.value(c, values)) for c in law.characteristic])
-                else:
+                elif kernel.function != "fundamental" and values[kernel.wavenumber].is_finite():
                     rate = at_centre(values[kernel.wavenumber])
+                else:  # there is no wavenumber, or two of them are too close together
+                    rate = _spectral_size([at_centre(evaluator.value(c, values)) for c in law.characteristic])
                 sizes.append(abs(rate * length).mid())
             return max(float(size) if size.is_finite() else 0.0 for size in sizes)
 
