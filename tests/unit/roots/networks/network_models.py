@@ -8,6 +8,7 @@ from symflex.model.signs import is_passive
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.network import network_of
 from symflex.roots.networks.poles_zeros import locate_in_network
+from symflex.roots.passive import passive_loop
 from symflex.roots.region import Modes
 
 BEAM = 'type = "beam", E = "70 GPa", I = "1e-8 m^4", rho = "2700 kg/m^3", A = "1e-4 m^2"'
@@ -40,8 +41,17 @@ def located(text, region=None, digits=12, output="X", source="F"):
     pair = (output, source)
     where = region or Modes(4)
     equations = equations_of(text)
-    proof = "passive" if is_passive(equations.model) else ""
-    return locate_in_network(equations, "/".join(pair), pair, where, digits, is_default=False, proof=proof)
+    loop = passive_loop(equations.model, "", ())
+    return locate_in_network(
+        equations,
+        "/".join(pair),
+        pair,
+        where,
+        digits,
+        is_default=False,
+        proof="passive" if is_passive(equations.model) else "",
+        rests=loop is not None and loop.rests,
+    )
 
 
 def omegas(roots):
