@@ -321,10 +321,13 @@ class KernelFunction:
                 elif kernel.function == "entry" and evaluator.matrices is not None:
                     sizes.append(arb(evaluator.matrices.reach(kernel.dispersion, kernel.length, acb(s))))
                     continue
-                elif kernel.function != "fundamental" and values[kernel.wavenumber].is_finite():
-                    rate = at_centre(values[kernel.wavenumber])
-                else:  # there is no wavenumber, or two of them are too close together
-                    rate = _spectral_size([at_centre(evaluator.value(c, values)) for c in law.characteristic])
+                else:
+                    rate = acb("nan")
+                    if kernel.function != "fundamental":
+                        rate = at_centre(values[kernel.wavenumber])
+                    if not rate.is_finite():  # two wavenumbers are too close together, or there are none
+                        given = [at_centre(evaluator.value(c, values)) for c in law.characteristic]
+                        rate = _spectral_size(given)
                 sizes.append(abs(rate * length).mid())
             return max(float(size) if size.is_finite() else 0.0 for size in sizes)
 
