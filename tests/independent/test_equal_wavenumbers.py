@@ -430,7 +430,7 @@ U = "u(0.5 m)"
 
 @pytest.mark.slow
 def test_beams_that_are_proportional_by_value_alone_have_wavenumbers_with_formulas():
-    """Of both beams omega^2 = 4 (n pi)^4 + (0 or K (1/m_1 + 1/m_2)); at the middle, odd n are seen."""
+    """At the middle modes of odd n are seen: omega^2 = 4 (n pi)^4, or that and K (1/m_1 + 1/m_2) more."""
     model = pipeline.loads(PROPORTIONAL)
     (bound,) = pipeline.derive_for_roots(model, model.transfer_functions)
     assert all(law.kind == "bending" for law in bound.kernels.dispersions)

@@ -50,7 +50,7 @@ _IMPLIED: Final = {
 MOST_TURNED: Final = 12
 """Lines of a table that are columns."""
 MOST_UNNAMED: Final = 4
-"""Of these, without names: the frequency, two parts of values, and coherence."""
+"""Such lines that may lack names: they are the frequency, two parts of values, and coherence."""
 NEAR: Final = 60
 """Lines above the numbers among which the names of columns are looked for."""
 

@@ -68,9 +68,8 @@ class CramerEquations:
     divisor: Factored  # of the output
     _constants: dict[int, dict[str, acb]] = field(default_factory=dict)  # by bits
     _resting: dict[int, list[dict[int, acb]]] = field(default_factory=dict)  # by bits: entries free of s
-    _plans: dict[tuple[int, int], tuple[object, Plan]] = field(
-        default_factory=dict
-    )  # by bits and id of a value
+    # By bits and id of a value, which is kept so that no other has its id.
+    _plans: dict[tuple[int, int], tuple[object, Plan]] = field(default_factory=dict)
     # By size: pivots, and the bits they were chosen at.
     _orders: dict[int, tuple[list[tuple[int, int]], int]] = field(default_factory=dict)
     _least_bits: int = 0  # with fewer, elimination came to nothing
@@ -205,9 +204,10 @@ class CramerEquations:
             known = factors.get(number)
             if known is None:
                 known = ZERO
-                for term, of in terms:
+                for constant, of in terms:
+                    term = constant
                     for name, power in of:
-                        term *= values[name] if power == 1 else values[name] ** power  # noqa: PLW2901
+                        term = term * (values[name] if power == 1 else values[name] ** power)
                     known += term
                 factors[number] = known
             result = result * known if exponent == 1 else result * known**exponent
@@ -235,7 +235,6 @@ class CramerEquations:
                 powers += [(name, power * exponent) for name, power in alone]
             else:
                 sums.append((id(factor), [(term, of) for of, term in found.items()], exponent))
-        # While the value is kept, no other has its id.
         self._plans[key] = value, (constant, powers, sums)
         return self._plans[key][1]
 

@@ -208,7 +208,7 @@ elements.loss = { type = "damper", between = ["a", "ground"], b = 0.5 }
 
 
 def test_a_mode_above_those_shown_that_no_damper_feels_keeps_a_passive_structure_from_being_stable():
-    # Of a string of length 1 mode n is sin(n pi x): at x = 0.3 the tenth rests, at x = 0.45 it moves.
+    # The modes of a string of length 1 are sin(n pi x): the tenth rests at x = 0.3, and moves at x = 0.45.
     verdict = found(STRINGS, Modes(2)).verdict
     assert (verdict.word, verdict.right, verdict.certified) == ("unknown", 0, False)
     # At the end of a rod every mode feels it.
