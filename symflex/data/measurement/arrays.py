@@ -6,6 +6,7 @@ import re
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -84,6 +85,11 @@ _OCTAVE_VARIABLE: Final = re.compile(
     r"((?:[^#\n].*\n)*)",
     re.M,
 )
+
+
+def format_of(name: str, data: bytes) -> str:
+    """Return the end of a file's name, or that of MATLAB's for what Octave saves as text."""
+    return ".mat" if data.startswith(OCTAVE) else Path(name).suffix.lower()
 
 
 def _octave_variables(data: bytes) -> Arrays:

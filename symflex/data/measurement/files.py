@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import OCTAVE, read_mat, read_npy, read_npz
+from symflex.data.measurement.arrays import format_of, read_mat, read_npy, read_npz
 from symflex.data.measurement.comma_separated import read_columns
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
 from symflex.data.measurement.touchstone import read_touchstone
@@ -110,9 +110,9 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
+    suffix = format_of(name, data)
     if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
         suffix = ".uff"  # whatever the file is called, no table begins so
-    suffix = ".mat" if data.startswith(OCTAVE) else suffix
     if suffix in READERS:
         return READERS[suffix](name, data, Path(name).stem, columns)
     try:

@@ -22,7 +22,7 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import OCTAVE, Arrays, arrays_in, matrix_of
+from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, matrix_of
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES, listed_names
 from symflex.data.measurement.text_table import SIGNS, TextTable, cut
 from symflex.errors import DataError, Diagnostic
@@ -86,9 +86,8 @@ def read_signal(path: str | Path) -> InputSignal:
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
-    suffix = Path(name).suffix.lower()
-    has_arrays = suffix in ARRAYS or data.startswith(OCTAVE)
-    return _of_arrays(name, arrays_in(name, data, suffix)) if has_arrays else _signal(name, data)
+    suffix = format_of(name, data)
+    return _of_arrays(name, arrays_in(name, data, suffix)) if suffix in ARRAYS else _signal(name, data)
 
 
 def _signal(name: str, data: bytes) -> InputSignal:
