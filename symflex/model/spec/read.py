@@ -83,7 +83,7 @@ def _meant(name: str) -> str | None:
         beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix))[:MOST_FILES]
     except OSError:
         return None
-    if meant := nearest(stem, [os.path.splitext(f)[0] for f in beside]):
+    if meant := nearest(stem, [f.removesuffix(suffix) for f in beside]):
         return f"{meant[:-2]}{suffix}'?"
     start = "'symflex new' writes a specification to start from, 'symflex examples' lists models to copy"
     return start if suffix == ".toml" else None

@@ -97,3 +97,7 @@ def test_a_missing_file_has_a_hint_to_one_of_nearly_its_name(path: Path) -> None
     path.with_name("quarter_cars.toml").touch()
     assert refusal(path.with_name("quarter_crs.toml")).hint == "did you mean 'quarter_cars.toml'?"
     assert "symflex new" in str(refusal(path.with_name("nothing.toml")).hint)
+    # Without a suffix the whole names are compared, and the hint is a name that is there.
+    assert refusal(path.with_name("quarter_cars")).hint == "did you mean 'quarter_cars.toml'?"
+    path.with_name("broken.toml").touch()
+    assert refusal(path.with_name("bode")).hint is None
