@@ -62,13 +62,17 @@ def differing(name, kind):
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(k, id=k["what"], marks=[pytest.mark.slow] * k.get("slow", False)) for k in KINDS]
+    ("kind", "name"),
+    [
+        pytest.param(
+            kind, name, id=f"{name}: {kind['what']}", marks=[pytest.mark.slow] * kind.get("slow", False)
+        )
+        for kind in KINDS
+        for name in kind["models"]
+    ],
 )
-def test_every_derivation_is_answered_by_whom_it_should(kind):
-    found = {}
-    for name in kind["models"]:
-        found |= differing(name, kind)
-    assert found == {}
+def test_every_derivation_is_answered_by_whom_it_should(kind, name):
+    assert differing(name, kind) == {}
 
 
 def test_every_derivation_is_in_the_table_and_says_where_it_comes_from():
