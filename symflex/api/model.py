@@ -177,8 +177,8 @@ class Model:
         """Names of the outputs."""
         return tuple(o.name for o in self.resolved.outputs)
 
-    def transfer_function(self, output: str, input: str) -> TransferFunction:
-        """Derive output over input.
+    def transfer_function(self, output: str, input: str | None = None) -> TransferFunction:
+        """Derive output over input, which may be one name as well: ``"X/F"``, as the command line has it.
 
         Raises
         ------
@@ -189,9 +189,12 @@ class Model:
         BudgetError
             SF501, SF502 when its expanded form is too large, as for frames; use :meth:`nested` then.
         """
-        return self._derived(pipeline.pick_pairs(self.resolved, [f"{output}/{input}"]))[0]
+        return self._derived(self._picked(output, input))[0]
 
-    def nested(self, output: str, input: str) -> NestedTransferFunction:
+    def _picked(self, output: str, input: str | None) -> Sequence[tuple[str, str]]:
+        return pipeline.pick_pairs(self.resolved, [output if input is None else f"{output}/{input}"])
+
+    def nested(self, output: str, input: str | None = None) -> NestedTransferFunction:
         """Derive output over input as a straight-line program, for models too large to expand.
 
         Raises
@@ -212,14 +215,13 @@ class Model:
         ... inputs.F = { force = "x" }
         ... outputs.X = "x"
         ... ''')
-        >>> G = model.nested("X", "F")
+        >>> G = model.nested("X/F")
         >>> G.num, G.den, G.where
         (1, Z_1*k/(Z_1 + k) + m_1*s**2, ((Z_1, m_2*s**2),))
         >>> G.bind(m_1=1, m_2=2, k=3)(1j) == 1 / (-2 * 3 / (-2 + 3) - 1)
         True
         """
-        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
-        return NestedTransferFunction(pipeline.derive_nested(self.resolved, [pair])[0])
+        return NestedTransferFunction(pipeline.derive_nested(self.resolved, self._picked(output, input))[0])
 
     def transfer_functions(self) -> tuple[TransferFunction, ...]:
         """Derive every output over every input, sharing one elimination."""

@@ -133,6 +133,8 @@ def test_every_problem_of_a_wrong_model_is_in_the_exception():
 def test_all_transfer_functions_are_those_of_outputs_over_inputs(model, colocated, tip):
     assert [G.name for G in model.transfer_functions()] == ["X_act/F", "V_tip/F", "None/F"]
     assert refusal(model.transfer_function, "X_act", "G") == "UsageError SF902"
+    assert refusal(model.transfer_function, "X_act") == "UsageError SF902"
+    assert model.transfer_function("X_act/F").name == model.transfer_function("X_act", "F").name
     assert (colocated.quantity, colocated.unit) == ("receptance", "m/N")
     assert (tip.quantity, tip.unit) == ("mobility", "m/(N*s)")
 
