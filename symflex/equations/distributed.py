@@ -26,12 +26,9 @@ from symflex.expressions import (
     Name,
     Negative,
     Number,
-    Product,
-    Quotient,
     Sum,
     format_expression,
     names,
-    nodes,
 )
 from symflex.library.elements import LinearForm, Variable
 from symflex.library.elements.line import LineElement
@@ -522,10 +519,9 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
         given, unknowns = named_brackets(written, unknowns)
     inside = replace(evaluator, scope=evaluator.scope.within(unknowns))
     equations = [read_equation(e, unknowns, inside) for e in given]
-    inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
+    inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads if isinstance(v, Variable)))
     zero = Factored.number(evaluator.ring, 0)
-    by_name = {str(v): v for v in inputs}
-    system = first_order(unknowns, list(by_name), [e.named() for e in equations], zero)
+    system = first_order(unknowns, inputs, equations, zero)
     if system is None:
         raise ModelError(
             Diagnostic(
@@ -644,92 +640,31 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
     return columns
 
 
-Key = tuple[str, int] | Variable
-Terms = dict[Key, "Factored"]
+def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> FieldEquation:
+    """Return the coefficients of an equation, linear in unknowns, their derivatives and loads.
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ReadEquation:
-    """``sum(terms[u, k] * d^k u/dx^k) + sum(loads[v] * v) = 0``."""
-
-    terms: Mapping[tuple[str, int], Factored]
-    loads: Mapping[Variable, Factored]
-
-    def named(self) -> FieldEquation:
-        """Return the equation with its loads under the variables' names."""
-        return FieldEquation(self.terms, {str(v): c for v, c in self.loads.items()})
-
-
-def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> ReadEquation:
-    """Return the coefficients of an equation, linear in unknowns, their derivatives and loads."""
-    terms: Terms = {}
+    The evaluator's scope is that within the field.
+    """
 
     def leaf(node: Expression) -> int:
         match node:
             case Name(name) if name in unknowns:
-                return at_random((name, 0), evaluator.prime)
+                return at_random(Variable("field", name), evaluator.prime)
             case Derivative(name, order):
-                return at_random((name, order), evaluator.prime)
+                return at_random(Variable("field", name, "'" * order), evaluator.prime)
         return evaluator.number_of_leaf(node)
 
-    for side, sign in ((equation.left, 1), (equation.right, -1)):
-        for key, value in _read(side, unknowns, evaluator).items():
-            terms[key] = terms[key] + value * sign if key in terms else value * sign
-    kept = {k: c for k, c in terms.items() if not c.is_zero}
+    one = evaluator.s**0
+    sides = [
+        evaluator.linear(term) * (one * sign)
+        for side, sign in ((equation.left, 1), (equation.right, -1))
+        for term in (side.terms if isinstance(side, Sum) else (side,))
+    ]
+    terms = LinearForm.total(sides).terms
     if evaluator.is_decided:
         difference = Sum((equation.left, Negative(equation.right)), span=equation.span)
-        compare(difference, number_of(kept.items(), evaluator.place), leaf, evaluator.prime)
-    return ReadEquation(
-        {k: c for k, c in kept.items() if not isinstance(k, Variable)},
-        {k: c for k, c in kept.items() if isinstance(k, Variable)},
+        compare(difference, number_of(terms, evaluator.place), leaf, evaluator.prime)
+    return FieldEquation(
+        {(v.owner, len(v.component)): c for v, c in terms if v.kind == "field"},
+        {v: c for v, c in terms if v.kind != "field"},
     )
-
-
-def _read(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> Terms:
-    one = evaluator.s**0
-    match expression:
-        case Name(name) if name in unknowns:
-            return {(name, 0): one}
-        case Derivative(name, order):
-            return {(name, order): one}
-        case Negative(operand):
-            return {k: -c for k, c in _read(operand, unknowns, evaluator).items()}
-        case Sum(terms):
-            total: Terms = {}
-            for term in terms:
-                for key, value in _read(term, unknowns, evaluator).items():
-                    total[key] = total[key] + value if key in total else value
-            return total
-        case Product(factors):
-            varying = [f for f in factors if _varies(f, unknowns, evaluator)]
-            scale = one
-            for factor in factors:
-                if factor not in varying:
-                    scale = scale * evaluator.constant(factor)
-            if len(varying) != 1:
-                return _constant(expression, scale)
-            return {k: c * scale for k, c in _read(varying[0], unknowns, evaluator).items()}
-        case Quotient(numerator, denominator):
-            below = evaluator.constant(denominator)
-            if evaluator.vanishes(below):
-                raise ModelError(Diagnostic("SF224", "division by zero", denominator.span))
-            return {k: c / below for k, c in _read(numerator, unknowns, evaluator).items()}
-    form = evaluator.linear(expression)
-    return dict(form.terms)
-
-
-def _constant(expression: Expression, value: Factored) -> Terms:
-    if value.is_zero:
-        return {}
-    raise ModelError(Diagnostic("SF221", "the equation has a term without an unknown", expression.span))
-
-
-def _varies(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> bool:
-    """Tell whether an expression holds an unknown, an input or a signal."""
-
-    def varies(node: Expression) -> bool:
-        if not isinstance(node, Name):
-            return isinstance(node, Derivative)
-        return node.name in unknowns or evaluator.scope.lookup(node, constant=False).variable is not None
-
-    return any(varies(node) for node in nodes(expression))

@@ -28,6 +28,7 @@ from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
     Call,
+    Derivative,
     Expression,
     Name,
     Negative,
@@ -183,6 +184,9 @@ class ExactEvaluator:
                 return self.states[expression]
             case Call(name, argument):
                 return self._call(expression, name, argument)
+            case Derivative(name, order):
+                derivative = Variable("field", name, "'" * order)
+                return LinearForm.of((derivative, Factored.number(self.ring, 1)))
         message = f"unexpected expression {type(expression).__name__}"
         raise TypeError(message)
 

@@ -25,7 +25,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.library.partial_fractions import Share, factors, shares, solve, squared
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 
     from symflex.algebra import Factored
     from symflex.library.partial_fractions import Matrix
@@ -117,11 +117,11 @@ class FieldEquation:
     """``sum(terms[u, k] * d^k u/dx^k) + sum(loads[i] * input_i) = 0``."""
 
     terms: Mapping[tuple[str, int], Factored]
-    loads: Mapping[str, Factored]
+    loads: Mapping[Hashable, Factored]
 
 
 def first_order(
-    unknowns: Sequence[str], inputs: Sequence[str], equations: Sequence[FieldEquation], zero: Factored
+    unknowns: Sequence[str], inputs: Sequence[Hashable], equations: Sequence[FieldEquation], zero: Factored
 ) -> FieldSystem | None:
     """Return the equations as a first-order system, ``None`` when the highest derivatives are not determined.
 
