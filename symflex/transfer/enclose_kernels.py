@@ -273,8 +273,6 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
     """
     n, given = len(coefficients), (*coefficients, length)
     terms = min((x.prec for x in given if isinstance(x, acb_series)), default=1)
-    if terms == PAIR and (found := _by_homogeneity(coefficients, length)) is not None:
-        return found
     *rows, reach = ([x[k] for k in range(terms)] if isinstance(x, acb_series) else [x] for x in given)
     block = acb_mat(n * terms, n * terms)
     for k in range(terms):
@@ -289,30 +287,6 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
     grown = block.exp()
     last = [[grown[i, n * k + n - 1] for k in range(terms)] for i in range(n)]
     return tuple(x[0] if terms == 1 else acb_series(x, terms) for x in last)
-
-
-def _by_homogeneity(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...] | None:
-    """Return fundamental functions of ``lambda^n + c_0`` to first order; None for others, and of few waves.
-
-    ``h^(j)(x)`` is ``x^(n-1-j)`` times a function of ``c_0 x^n``. So its derivative by c_0 follows from that
-    by x: ``n c_0 dh^(j)/dc_0 = x h^(j+1) - (n - 1 - j) h^(j)``, and ``h^(n) = -c_0 h``. Of few waves that is
-    a small difference.
-    """
-    first, *others = coefficients
-    if not isinstance(first, acb_series) or not all(at_centre(c) == 0 for c in others):
-        return None
-    if any(isinstance(c, acb_series) and c[1] != 0 for c in (*others, length)):
-        return None
-    n, c, x = len(coefficients), first[0], at_centre(length)
-    plain = fundamental_functions([c, *([ZERO] * (n - 1))], x)
-    beyond = (*(at_centre(h) for h in plain), -c * at_centre(plain[0]))
-    found = []
-    for j in range(n):
-        slope = (x * beyond[j + 1] - (n - 1 - j) * beyond[j]) / (n * c)
-        if not (slope.is_finite() and slope.rel_accuracy_bits() >= ctx.prec / 2):
-            return None
-        found.append(acb_series([beyond[j], slope * first[1]], 2))
-    return tuple(found)
 
 
 NOWHERE = acb("nan", "nan")
