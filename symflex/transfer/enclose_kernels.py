@@ -22,7 +22,7 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, expansion, raised
+from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, raised
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -72,7 +72,7 @@ class KernelValues:
             values.update(law.roots(found, root) if root else _wavenumbers(law, found, near))
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
         is_long = isinstance(s, acb_series) and s.prec > PAIR
-        roots = {} if is_long else self._roots(coefficients, values)
+        roots = {} if is_long else self._roots(coefficients)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
@@ -110,34 +110,17 @@ class KernelValues:
         used = {m.dispersion for m in self.sums.modes if not m.is_decay}
         return tuple((n, law) for n, law in enumerate(self.table.dispersions) if law in used)
 
-    def _roots(
-        self, coefficients: Mapping[Dispersion, Sequence[Value]], values: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _roots(self, coefficients: Mapping[Dispersion, Sequence[Value]]) -> dict[str, Value]:
         """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""
         found: dict[str, Value] = {}
         for number, law in self._laws:
-            centred = self._centred(law, values)
             # Where waves of both directions are alike, roots come in pairs x, -x.
             even = law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
-            roots = characteristic_roots(coefficients[law], centred, even=even)
+            roots = characteristic_roots(coefficients[law], even=even)
             if roots is None:
                 return {}
             found.update({_root_name(number, i): root for i, root in enumerate(roots)})
         return found
-
-    def _centred(self, law: Dispersion, values: Mapping[str, Value]) -> list[acb] | None:
-        """Return a law's coefficients in the middle of a wide ball of s, and how they move on it."""
-        s = values["s"]
-        ball = at_centre(s)
-        if ball.rad() < abs(ball).mid() * NARROW:
-            return None
-        middle = ball.mid()
-        there = {**values, "s": middle}
-        along = {**values, "s": expansion(ball)}
-        central = [at_centre(self.value(c, there)) for c in law.characteristic]
-        slopes = [self.value(c, along) for c in law.characteristic]
-        drift = [c[1] * (ball - middle) if isinstance(c, acb_series) else ZERO for c in slopes]
-        return [*central, *drift]
 
     def _modal_sum(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial in fundamental functions without the cancellation of what grows fastest."""
@@ -342,23 +325,13 @@ LITTLE = 7 / 8
 """Boxes that Newton's operator makes no smaller than this share are left."""
 
 
-def characteristic_roots(
-    coefficients: Sequence[Value], centred: Sequence[acb] | None = None, *, even: bool = False
-) -> tuple[Value, ...] | None:
+def characteristic_roots(coefficients: Sequence[Value], *, even: bool = False) -> tuple[Value, ...] | None:
     """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart.
 
-    ``c_0`` comes first. On a wide ball of s, ``centred`` has ``c_k(m)`` in its middle, and then
-    ``c_k'(S) (S - m)``: together they say how the coefficients move with each other. With ``even`` odd
-    coefficients are zero, and roots come in pairs x, -x, one after the other.
+    ``c_0`` comes first. With ``even`` odd coefficients are zero, and roots come in pairs x, -x, one after the
+    other.
     """
-    half = len(coefficients)
-    middle, drift = (None, None) if centred is None else (centred[:half], centred[half:])
-    step = 2 if even else 1
-    roots = _roots(
-        coefficients[::step],
-        None if middle is None else middle[::step],
-        None if drift is None else drift[::step],
-    )
+    roots = _roots(coefficients[:: 2 if even else 1])
     if roots is None:
         return None
     if even:
@@ -367,16 +340,13 @@ def characteristic_roots(
     return tuple(roots) if all(x.is_finite() for x in boxes) and _are_apart(boxes) else None
 
 
-def _roots(
-    coefficients: Sequence[Value], middle: Sequence[acb] | None, drift: Sequence[acb] | None
-) -> list[Value] | None:
+def _roots(coefficients: Sequence[Value]) -> list[Value] | None:
     base = [at_centre(c) for c in coefficients]
     if not all(c.is_finite() for c in base):
         return None
-    moving = None if middle is None or drift is None else (acb_poly([*middle, acb(1)]), acb_poly(list(drift)))
     polynomial = acb_poly([*base, acb(1)])
     slope = polynomial.derivative()
-    boxes = _isolated(polynomial, slope, moving)
+    boxes = _isolated(polynomial, slope)
     if boxes is None:
         return None
     found: list[Value] = []
@@ -386,9 +356,7 @@ def _roots(
     return found
 
 
-def _isolated(
-    polynomial: acb_poly, slope: acb_poly, moving: tuple[acb_poly, acb_poly] | None
-) -> list[acb] | None:
+def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:
     """Return disjoint boxes, each of which holds one root of every polynomial in the ball."""
     middle = acb_poly([c.mid() for c in polynomial.coeffs()])
     own = middle.derivative()
@@ -403,7 +371,7 @@ def _isolated(
         return None
     boxes = []
     for root in exact:
-        box = _boxed(polynomial, slope, root.mid(), moving)
+        box = _boxed(polynomial, slope, root.mid())
         if box is None:
             return None
         boxes.append(box)
@@ -424,14 +392,9 @@ def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb:
     return narrowed(disc, newton, ctx.prec.bit_length() + 2, HALF)
 
 
-def _boxed(
-    polynomial: acb_poly, slope: acb_poly, middle: acb, moving: tuple[acb_poly, acb_poly] | None
-) -> acb | None:
+def _boxed(polynomial: acb_poly, slope: acb_poly, middle: acb) -> acb | None:
     """Return a box that holds one root of every polynomial in a ball, next to a root of the middle one."""
     value = polynomial(middle)
-    if moving is not None:
-        together = moving[0](middle) + moving[1](middle)
-        value = together if together.rad() < value.rad() else value
     reach = ((value / slope(middle)).abs_upper() * ROOM).upper()
     for _ in range(WIDENINGS):
         if not reach.is_finite():
