@@ -70,7 +70,6 @@ def new(template: str | None, *, output: str | None, is_list: bool) -> int:
     return 0
 
 
-MODEL_BLOCK = "model"
 MODEL_SIGNATURE = "model(spec, tf)"
 MODEL_SUMMARY = "A transfer function of another specification"
 MODEL_DOC = (
@@ -87,7 +86,7 @@ DOMAIN_WORDS = {"any": "any domain", "plane": "in the plane", "whole": "planar o
 @reporting
 def elements(name: str | None, *, as_json: bool) -> int:
     """List the elements and blocks of the library, or describe the entry NAME."""
-    from symflex.library.blocks import BLOCKS
+    from symflex.library.blocks import BLOCKS, MODEL_BLOCK
     from symflex.library.elements import ELEMENTS
     from symflex.library.words import hint_of_type
 

@@ -103,11 +103,6 @@ class FieldSolution:
             for name in own.system.states
         )
 
-    def value(self, call: Call, length: Factored, propagation: Propagation) -> LinearForm:
-        """Return what a call names, at a distance from the start."""
-        own = self.medium, self.initial, self.inputs
-        return _value(*own, call.name, call.order, length, propagation, call.argument)
-
 
 def _value(
     medium: Medium,
@@ -255,14 +250,14 @@ class Distributed:
         ``states`` are those of line elements at their first ends.
         """
         owner, dot, _ = call.name.partition(".")
+        at, propagation = self.evaluator.constant(call.argument), self.propagation
         if dot:
             medium, _ = self.lines[owner]
-            at, state = medium.way(self.evaluator.constant(call.argument)), self.along[call.name]
-            own = medium, states[owner], ()
-            return _value(*own, state, call.order, at, self.propagation, call.argument)
-        solution = self.solutions[call.name]
-        length = self.evaluator.constant(call.argument) - solution.origin
-        return solution.value(call, length, self.propagation)
+            own = medium, states[owner], (), self.along[call.name]
+            return _value(*own, call.order, medium.way(at), propagation, call.argument)
+        found = self.solutions[call.name]
+        own_state = found.medium, found.initial, found.inputs, call.name
+        return _value(*own_state, call.order, at - found.origin, propagation, call.argument)
 
 
 class _Demands:
