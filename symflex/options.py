@@ -71,7 +71,7 @@ SHAPED_MODES: Final = {
     **SHOWN,
     "help": "Shape the N lowest modes.",
 }
-JOINT: Final = {"help": "One shaper for all modes together, shorter than one shaper after another."}
+JOINT: Final = {"help": "No longer changes anything: shapers of several modes are convolved."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
 WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5 mm, 170 mm or a number in mm."}

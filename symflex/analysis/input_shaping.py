@@ -9,10 +9,9 @@ the opposite sign and K times the size, so that two impulses cancel each other:
     zvd    1, 2 K, K^2     over (1 + K)^2    at 0, tau, 2 tau    nor does it grow linearly with an error of p
     ei     1 + W, 2 (1 - W) K, (1 + W) K^2   at 0, tau, 2 tau    V is left at p, and less on both sides
 
-Several modes take the convolution of their shapers, or one that is made for all of them jointly. ZV and ZVD
-are of Singer and Seering (1990, Preshaping command inputs to reduce system vibration), EI of Singhose,
-Seering and Singer (1990, Shaping inputs to reduce vibration: a vector diagram approach); without damping W is
-V, with it W is such that the residual at p is V.
+Several modes take the convolution of their shapers. ZV and ZVD are of Singer and Seering (1990, Preshaping
+command inputs to reduce system vibration), EI of Singhose, Seering and Singer (1990, Shaping inputs to reduce
+vibration: a vector diagram approach); without damping W is V, with it W is such that the residual at p is V.
 """
 
 from __future__ import annotations
@@ -22,7 +21,6 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.joint_shaping import JOINT_ORDERS, joint_impulses
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
@@ -85,13 +83,12 @@ class InputShaper:
     impulses: tuple[tuple[arb, arb], ...]  # time [s] and amplitude of each
     digits: int
     bits: int  # of the precision all this was computed at
-    joint: bool = False  # one for all modes together, not the convolution of one for each
-    note: str = ""  # why it is not, where it was to be
+    note: str = ""  # what was asked for and is not done
 
     @property
     def title(self) -> str:
-        """What it is, such as ``joint ZVD shaper``."""
-        return f"{'joint ' if self.joint else ''}{self.kind.upper()} shaper"
+        """What it is, such as ``ZVD shaper``."""
+        return f"{self.kind.upper()} shaper"
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -141,7 +138,7 @@ class InputShaper:
                     "amplitude_radius": size.radius,
                 }
             )
-        of = {"tf": self.tf, "kind": self.kind, "joint": self.joint}
+        of = {"tf": self.tf, "kind": self.kind, "joint": False}
         return {"schema": SCHEMA, **of, "modes": modes, "impulses": impulses}
 
     def __repr__(self) -> str:
@@ -190,8 +187,8 @@ def input_shaper(
     digits : int
         Of poles, times and amplitudes.
     joint : bool
-        One for all modes together, of kind ``zv`` or ``zvd``: with several modes it is shorter than the
-        convolution of one for each, which is taken where none is found.
+        Older versions looked for one shaper for all modes together. It is the convolution either way, and a
+        note says so.
 
     Raises
     ------
@@ -228,12 +225,8 @@ def input_shaper(
         for root in chosen:
             impulses = _convolved(impulses, _of_mode(bound, root, kind))
         impulses.sort(key=lambda impulse: impulse[0].mid())
-        poles, longest, note = [root.enclosure() for root in chosen], float(impulses[-1][0].mid()), ""
-        if joint and modes > 1:
-            found = joint_impulses(poles, kind, longest, bits) if kind in JOINT_ORDERS else None
-            joint, impulses = found is not None, found or impulses
-            note = "" if joint else "no shorter joint shaper was found: one shaper for each mode, in a row"
-    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint, note)
+    note = "joint shapers are not computed: one shaper for each mode, in a row" if joint and modes > 1 else ""
+    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, note)
 
 
 def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:

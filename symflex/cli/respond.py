@@ -132,8 +132,8 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
     zv and zvd. ei leaves up to 5 % of the vibration of an unshaped impulse, and tolerates larger errors of
     the frequency. Times and amplitudes come from proved poles.
 
-    By default, shapers of several modes are convolved; --joint computes a single shorter one. -o draws the
-    residual vibration of a mode whose frequency differs from the model's.
+    Shapers of several modes are convolved. -o draws the residual vibration of a mode whose frequency differs
+    from the model's.
     """
     from symflex import pipeline
     from symflex.analysis.input_shaping import input_shaper

@@ -11,9 +11,7 @@ from scipy.integrate import solve_ivp
 
 from symflex import loads
 from symflex.analysis.input_shaping import SHAPERS, input_shaper
-from symflex.analysis.joint_shaping import joint_impulses
 from symflex.errors import ModelError
-from symflex.roots.precision import precision
 from tests.unit.analysis.systems import rational, words
 
 
@@ -146,54 +144,8 @@ def test_an_integrator_finds_the_bound_of_ei_kept_over_its_range():
         assert rung(9.0 * ratio**2, shaper, damping=0.0) < 0.05 + 1e-9, ratio
 
 
-def test_a_joint_zv_shaper_of_two_undamped_modes_has_its_closed_form():
-    # a, b, a at 0, T/2, T: 2 a cos(w T/2) + b = 0 for both w, so that T/2 is 2 pi over their sum.
-    first, second = 1.0, sqrt(5.3)
-    shaper = input_shaper(rational("1/((s^2 + 1)*(s^2 + 53/10))"), 2, joint=True)
-    half = 2 * pi / (first + second)
-    side = 1 / (2 - 2 * np.cos(half))
-    assert shaper.times == pytest.approx((0, half, 2 * half), rel=1e-14)
-    assert shaper.amplitudes == pytest.approx((side, 1 - 2 * side, side), rel=1e-14)
-
-
-def test_a_joint_shaper_of_three_damped_modes_stills_all_and_is_shorter():
-    for kind, count in [("zv", 4), ("zvd", 7)]:
-        bound = rational("1/((s^2 + s/20 + 1)*(s^2 + s/20 + 53/10)*(s^2 + s/7 + 17))")
-        shaper = input_shaper(bound, 3, kind, joint=True)
-        assert len(shaper.times) == count, (kind, count)
-        assert shaper.times[-1] < input_shaper(bound, 3, kind).times[-1], (kind, count)
-        for p in np.roots(np.polymul(np.polymul([1, 0.05, 1], [1, 0.05, 5.3]), [1, 1 / 7, 17])):
-            parts = np.array(shaper.amplitudes) * np.exp(-p * np.array(shaper.times))
-            assert abs(np.sum(parts)) < 1e-12, (kind, count)
-            slope = np.sum(parts * np.array(shaper.times))
-            assert kind == "zv" or abs(slope) < 1e-11, (kind, count)
-
-
-def test_a_joint_shaper_of_modes_far_apart_takes_more_impulses_and_is_shorter_too():
-    for kind in ["zv", "zvd"]:
-        bound = rational("1/((s^2 + 1)*(s^2 + 16))")
-        shaper = input_shaper(bound, 2, kind, joint=True)
-        assert len(shaper.times) > {"zv": 3, "zvd": 5}[kind], kind
-        assert shaper.times[-1] < 0.95 * input_shaper(bound, 2, kind).times[-1], kind
-        assert max(left_of(shaper, omega) for omega in (1.0, 4.0)) < 1e-12, kind
-        assert min(shaper.amplitudes) > 0, kind
-
-
-@pytest.mark.slow
-def test_a_joint_shaper_of_quick_modes_is_that_of_slow_ones_in_another_unit_of_time():
-    longest = 2 * pi * (1 + 1 / 6.27)
-    with precision(100):
-        slow, quick = (
-            joint_impulses([acb(0, x), acb(0, 6.27 * x)], "zvd", longest / x, 100) for x in (1.0, 1024.0)
-        )
-    assert [float(t) / 1024 for t, _ in slow] == pytest.approx([float(t) for t, _ in quick], rel=1e-12)
-
-
-def test_where_no_joint_shaper_is_found_those_of_the_modes_stand_in_a_row():
-    for text, kind in (
-        ("1/((s^2 + 1)*(s^2 + 9))", "zv"),  # the first one's stills both
-        ("1/((s^2 + 1)*(s^2 + 2))", "ei"),  # ei is made for one mode at a time
-    ):
-        shaper = input_shaper(rational(text), 2, kind, joint=True)
-        assert (shaper.joint, shaper.times) == (False, input_shaper(rational(text), 2, kind).times)
-        assert "one shaper for each mode, in a row" in str(shaper)
+def test_asked_for_a_joint_shaper_those_of_the_modes_stand_in_a_row():
+    bound = rational("1/((s^2 + 1)*(s^2 + 2))")
+    shaper = input_shaper(bound, 2, joint=True)
+    assert shaper.times == input_shaper(bound, 2).times
+    assert "one shaper for each mode, in a row" in str(shaper)
