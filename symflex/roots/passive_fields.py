@@ -305,7 +305,6 @@ def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tupl
             m = n // 2
             pairs = [tuple((i, m + i, sign) for i in range(m)) for sign in (1, -1)]
             yield from ((*each, None if n <= MOST_STATES else pairs) for each in _stretched(matrix, unit))
-            yield from _beside(matrix, unit)
     if n <= MOST_STATES:
         yield matrix, unit, None
     if n == LINE:
@@ -432,45 +431,6 @@ def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
             own = [held[i][j] * scale[i] - x for j, x in enumerate(taken)]
             rows.append([*own, *(b[j][i] / scale[j] for j in range(m))])
         yield rows, [*unit[::2], *forces]
-
-
-def _beside(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]]]]:
-    """Yield beams and strings side by side, each bent or stretched alone, which hold one another.
-
-    The states of a beam are w, its slope, the moment K w'' and the force that balances the loads; those of a
-    string are w and K w'.
-    """
-    n, zero = len(matrix), matrix[0][0] * 0
-    starts = [i for i in range(n) if i == 0 or not _is_slope(matrix, i - 1)]
-    orders = [end - start for start, end in zip(starts, [*starts[1:], n], strict=True)]
-    if len(starts) == 1 or not set(orders) <= {LINE, BEAM}:
-        return
-    rates, states = [[zero] * n for _ in range(n)], [list(row) for row in unit]
-    pairs, scale = list[Pair](), list[Factored]()
-    for i, order in zip(starts, orders, strict=True):
-        row = matrix[i + order - 1]
-        own = {*starts, i + 2} if order == BEAM else {*starts}
-        if row[i].is_zero or any(_moves(x) or not (x.is_zero or j in own) for j, x in enumerate(row)):
-            return
-        told = [
-            k * matrix[j + its - 1][i] / row[j] * (1 if its == order else -1)
-            for k, j, its in zip(scale, starts, orders, strict=False)
-            if not (row[j].is_zero or matrix[j + its - 1][i].is_zero)
-        ]
-        scale.append(next(iter(told), row[i].denominator()))
-        for j in starts:
-            rates[i + order - 1][j] = row[j] * scale[-1]
-        rates[i][i + 1] = 1 / scale[-1] if order == LINE else zero + 1
-        states[i + order - 1] = [x * scale[-1] for x in unit[i + order - 1]]
-        if order == LINE:
-            pairs.append((i, i + 1, 1))
-        else:
-            held = row[i + 2] * scale[-1]
-            rates[i + 1][i + 2], rates[i + 2][i + 1], rates[i + 2][i + 3] = 1 / scale[-1], held, zero + 1
-            states[i + 2] = [x * scale[-1] for x in unit[i + 2]]
-            states[i + 3][i + 1] = -held
-            pairs += [(i, i + 3, -1), (i + 1, i + 2, 1)]
-    yield rates, states, [tuple((q, p, sign * turned) for q, p, sign in pairs) for turned in (1, -1)]
 
 
 def _is_reciprocal(matrix: Matrix, pairs: Sequence[Pair]) -> bool:
