@@ -27,6 +27,8 @@ MOST_POLISHED = 12
 POLISHED = 4
 STRANGE, MOST_DAMPED = 10.0, 2.0
 """What a BIC has to gain by a pair of zeros that is hardly one, and the damping ratio from which it is."""
+FAR_OUTSIDE = 30.0
+"""Frequency over the end of the band beyond which a pole bends nothing inside that a gain cannot."""
 REAL = 1e-9
 """Of a zero's magnitude: the imaginary part from which a zero is one of a pair."""
 
@@ -48,14 +50,14 @@ def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) 
     """Return how many zeros, or pairs of them, are hardly those of a structure seen in this band.
 
     They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
-    power of s.
+    power of s. A real one far outside counts twice: it is a power of s, or a gain, and rounded numbers.
     """
     place = np.abs(omega_z)
     outside = np.isfinite(place) & ((place < low) | (place > high))
     pairs = outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED))
-    corner = np.abs(real_z)
-    single = np.isfinite(corner) & ((corner < low) | (corner > high))
-    return int(pairs.sum() + single.sum())
+    corner = np.abs(real_z[np.isfinite(real_z)])
+    ends = ((low, high), (low / FAR_OUTSIDE, high * FAR_OUTSIDE))
+    return int(pairs.sum() + sum(np.sum((corner < a) | (corner > b)) for a, b in ends))
 
 
 def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[tuple[float, Resonances]]:

@@ -25,7 +25,7 @@ from scipy.special import fdtrc
 
 from symflex.budget import TIME_OVER, entered_budget
 from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined, refine, refine_directly
-from symflex.data.fitting.numerator import STRANGE, over_poles, strange
+from symflex.data.fitting.numerator import FAR_OUTSIDE, STRANGE, over_poles, strange
 from symflex.data.fitting.problem import FitProblem, estimated
 from symflex.data.fitting.resonances import Complex, Resonances, Whole
 from symflex.data.fitting.starts import (
@@ -68,8 +68,6 @@ FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
 FAR_OFF = 100.0
 """Sum of squares per degree of freedom from which poles are missing, whatever the start."""
-FAR_OUTSIDE = 30.0
-"""Frequency over the end of the band beyond which a pole bends nothing inside that a gain cannot."""
 LOWER = 0.5
 """How far the BIC has to fall for another start to count as better."""
 NEGLIGIBLE = 1e-6
@@ -436,10 +434,11 @@ def _nothing(problem: FitProblem) -> Candidate:
     return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
-def _merit(problem: FitProblem, refined: Refined) -> float:
+def _merit(problem: FitProblem, refined: Refined, correlation: float = 1.0) -> float:
     """Return the BIC of a minimum, for fits of the same lines with other zeros; strange ones cost."""
-    size = 2 * problem.count
-    merit = float(size * np.log(refined.cost / size + NEGLIGIBLE) + refined.parameters * np.log(size))
+    size = 2 * problem.count / max(correlation, 1.0)
+    fit = size * np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE)
+    merit = float(fit + refined.parameters * np.log(size))
     found = refined.resonances
     return merit + STRANGE * strange(found.omega_z, found.zeta_z, found.real_z, *problem.band)
 
@@ -449,7 +448,9 @@ def _is_better(problem: FitProblem, found: Candidate, best: Candidate) -> bool:
         failed, usable = (found, best) if best.failure is None else (best, found)
         is_far_worse = usable.refined.cost > FAR_BETTER * failed.refined.cost + NEGLIGIBLE * problem.count
         return (found is usable) != is_far_worse
-    return _merit(problem, found.refined) < _merit(problem, best.refined) - LOWER
+    # What a model lacks makes its residuals correlated; the better one of the two shows the noise.
+    least = min(found.refined.correlation, best.refined.correlation)
+    return _merit(problem, found.refined, least) < _merit(problem, best.refined, least) - LOWER
 
 
 def _better_of(

@@ -60,19 +60,34 @@ def test_without_a_base_gain_and_power_of_s_are_found():
     assert fit.resonances.zeta_z[0, 0] == pytest.approx(0.03)
 
 
-def test_rounded_frequencies_and_levels_are_not_taken_for_poles():
+def rounded(lines, data):
+    """Return data written as level and phase, all numbers with four digits."""
+
     def written(numbers):
         return np.array([float(f"{x:.4g}") for x in numbers])
 
+    level, turn = written(20 * np.log10(np.abs(data))), written(np.degrees(np.angle(data)))
+    return MeasuredResponse("y/u", written(lines), 10 ** (level / 20) * np.exp(1j * np.radians(turn)))
+
+
+def test_rounded_frequencies_and_levels_are_not_taken_for_poles():
     lines = np.geomspace(10.0, 1e3, 161)
     data = 10 * System(np.array([100.0]), np.array([0.02]), np.array([250.0]), np.array([0.01]))(lines)
-    level, turn = written(20 * np.log10(np.abs(data))), written(np.degrees(np.angle(data)))
-    rounded = MeasuredResponse("y/u", written(lines), 10 ** (level / 20) * np.exp(1j * np.radians(turn)))
-    fit = fit_resonances([rounded])
+    fit = fit_resonances([rounded(lines, data)])
     errors = fit.standard_errors()
     assert not fit.poor and max(score.order for score in fit.scores) < 6
     assert abs(fit.resonances.omega_p[0] / (2 * np.pi) - 100) < 3 * errors.omega_p[0] / (2 * np.pi) < 0.01
     assert abs(fit.resonances.zeta_p[0] - 0.02) < 3 * errors.zeta_p[0] < 1e-4
+
+
+def test_rounded_phases_of_a_double_integrator_show_no_zero_far_below_the_band():
+    lines = np.geomspace(1.0, 100.0, 401)
+    axis = System(np.array([55.0]), np.array([0.02]), np.array([40.0]), np.array([0.02]))
+    fit = fit_resonances(
+        [rounded(lines, -200 / (2 * np.pi * lines) ** 2 * axis(lines))], None, FitOptions(modes=1)
+    )
+    assert fit.resonances.slope[0] == -2 and not fit.poor
+    assert abs(fit.resonances.gain[0] - 200) < 3 * fit.standard_errors().gain[0] < 0.1
 
 
 def test_a_lag_of_the_sensor_is_found():
