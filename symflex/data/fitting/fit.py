@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.least_squares import FLAT, Refined, widened
 from symflex.data.fitting.lines import isolated, single_lines, wild_lines
 from symflex.data.fitting.order import (
     CRITERIA,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from symflex.data.fitting.least_squares import Refined
     from symflex.data.measurement import MeasuredResponse
 
 SLOPES = tuple(range(-4, 5))
@@ -62,8 +62,6 @@ DROWNED_DB = 6.0
 """Misfit of a fit without poles from which noise is as large as the response."""
 OVERDAMPED = 2.0
 """Damping ratio of a pair of zeros that had better be called two real ones."""
-FLAT = 0.25
-"""Damping ratio of a pair of zeros from which no sharp trough shows where it lies."""
 LEAST_DAMPING = 0.05
 """Damping ratios of zeros below this are not held against their own error."""
 DEFAULTS = FitOptions()
@@ -298,6 +296,7 @@ def _fit(
     candidate, problem = stages.within(
         LAST_SHARE, partial(_settled, candidate, problem), lambda: (candidate, problem)
     )
+    candidate = replace(candidate, refined=widened(problem, candidate.refined))
     if not has_base:
         bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
     fitted = candidate.refined.resonances

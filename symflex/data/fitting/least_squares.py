@@ -24,7 +24,7 @@ step for 50,000 lines costs what forming their derivatives costs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,6 +55,10 @@ They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1
 """
 SINGULAR = 1e-12
 """Reciprocal condition number below which the inverse in doubles has four digits at most."""
+FLAT = 0.25
+"""Damping ratio of a pair of zeros from which no sharp trough shows where it lies."""
+NEXT_TERM = 0.5
+"""Deviation of further terms of what lies outside the band, over those of the zeros there, at its end."""
 NULL_PART = 1e-3
 """Share of a parameter in a direction that the lines do not determine from which its error is infinite."""
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e9
@@ -270,6 +274,41 @@ def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> R
             sums.add(found.columns(r, problem.free), slopes, score, len(shares))
         covariance, correlation = _covariance(sums, shares)
     return Refined(found, has_converged, tuple(residuals), covariance, correlation, total)
+
+
+def widened(problem: FitProblem, refined: Refined) -> Refined:
+    """Return a minimum with errors that count what is not known of modes outside the band.
+
+    Zeros outside the band, or without a sharp trough, stand for such modes: they follow the term (s/w)^2 that
+    these add to ln G, w being the end of the band, with terms (s/w)^4 and (s/w)^6 of their own, which need
+    not be right. Errors are those of a fit in which either term is one more parameter, normally distributed
+    about 0 with half the first term as deviation; below the band powers are negative.
+    """
+    found, size = refined.resonances, refined.resonances.size(problem.free)
+    normal, bent = np.zeros((size, size)), []
+    for r, slopes in enumerate(_slopes(problem, found, "complex")):
+        line, columns = problem.lines[r], found.columns(r, problem.free)
+        normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
+        place = np.abs(found.omega_z[r])
+        low, high = line.omega[[0, -1]]
+        place = place[(place < low) | ((place > high) | (np.abs(found.zeta_z[r]) > FLAT)) & (place < np.inf)]
+        for end, power in ((low, -4), (high, 4), (low, -6), (high, 6)):
+            near = np.max(np.minimum(place / end, end / place), initial=0.0)
+            bend = (
+                NEXT_TERM * near**2 * problem.values(found, r) * (line.omega / end) ** power / _absolute(line)
+            )
+            cross = np.zeros(size)
+            cross[columns] = (np.conj(slopes).T @ bend).real
+            bent.append((cross, np.vdot(bend, bend).real))
+    covariance = refined.covariance
+    if covariance is None or not np.isfinite(normal).all():
+        return refined
+    scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))
+    for cross, whole in bent:
+        moved = np.linalg.lstsq(normal / np.outer(scale, scale), cross / scale, rcond=SINGULAR)[0] / scale
+        told = max(whole - float(cross @ moved), 0.0) / max(refined.reduced, np.finfo(float).tiny)
+        covariance = covariance + np.outer(moved, moved) / (1 + told)
+    return replace(refined, covariance=covariance)
 
 
 class _Sums:
