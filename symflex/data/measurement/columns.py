@@ -266,6 +266,13 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     below = list(units_below) or [""] * len(names)
     found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
     kinds = {m.kind for m in found}
+    if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
+        turned = {m.label for m in found if m.kind == "phase" and m.label}
+        found = [
+            meaning_of(f"magnitude {m.label}", m.unit) if not m.kind and m.unit and m.label in turned else m
+            for m in found
+        ]
+        kinds = {m.kind for m in found}
     if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
         return found
     letters: dict[str, int] = {}
@@ -662,6 +669,9 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")
     size, turned = _size(magnitude, scale), np.asarray(factor * phase.numbers.real, np.float64)
     if factor > 0 and _are_lags(lines, size, turned):
+        if re.search(r"\blags?\b", phase.name, re.I):
+            guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
+            return size, -turned
         guesses.append(
             f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as positive "
             "numbers, say -phase_deg or -phase_rad in --columns"

@@ -47,6 +47,8 @@ _IMPLIED: Final = {
     ".zma": ("f,mag,phase_deg", "Hz, Ohm, degrees"),
 }
 """Columns of files without a header, by the end of their names (loudspeaker programs)."""
+_Rewritten = tuple[bytes, Callable[[Span | None], Span | None], tuple[str, ...]]
+"""A text of columns, the function that says where what stands in it comes from, and what was guessed."""
 MOST_TURNED: Final = 12
 """Lines of a table that are columns."""
 MOST_UNNAMED: Final = 4
@@ -62,8 +64,8 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
     table = TextTable.of(name, data)
-    if (turned := _turned(table)) is not None:
-        said, (text, origin) = ("each line is taken as a column",), turned
+    if (turned := _turned(table)) is not None or (turned := _listed(table)) is not None:
+        text, origin, said = turned
         try:
             made_of_lines = read_columns(name, text, stem, asked)
         except DataError as error:
@@ -107,10 +109,26 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     return tuple(responses)
 
 
-def _turned(table: TextTable) -> tuple[bytes, Callable[[Span | None], Span | None]] | None:
+def _listed(table: TextTable) -> _Rewritten | None:
+    """Return the text with columns of values that a simulator lists one below the other; None if it does not.
+
+    This is the raw file of SPICE in text: ``Variables:``, then their names, ``Values:``, then for each point
+    its number and the value of each variable.
+    """
+    head, _, values = table.source.text.partition("\nValues:\n")
+    names = re.findall(r"^[ \t]*\d+[ \t]+(\S+)", head.partition("\nVariables:\n")[2], re.M)
+    cells = values.split()
+    width = len(names) + 1
+    if width < 3 or not cells or len(cells) % width:  # noqa: PLR2004
+        return None
+    rows = [names, *(cells[i + 1 : i + width] for i in range(0, len(cells), width))]
+    return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()
+
+
+def _turned(table: TextTable) -> _Rewritten | None:
     """Return the text with columns of a table whose lines are many numbers, after a name if more than a few.
 
-    The function with it says where what stands in that text comes from. None if it is no such table.
+    None if it is no such table.
     """
     places = [i for i, line in enumerate(table.lines) if line.strip()][: MOST_TURNED + 1]
     rows = [cut(table.lines[i], table.delimiter) for i in places]
@@ -133,7 +151,8 @@ def _turned(table: TextTable) -> tuple[bytes, Callable[[Span | None], Span | Non
         row = before.count(delimiter)
         return table.cell(places[row], rows[row], above.count("\n"))
 
-    return "".join(delimiter.join(column) + "\n" for column in zip(*rows, strict=True)).encode(), origin
+    text = "".join(delimiter.join(column) + "\n" for column in zip(*rows, strict=True))
+    return text.encode(), origin, ("each line is taken as a column",)
 
 
 def _responses(

@@ -48,6 +48,8 @@ _CANDIDATES: Final = (
     ("|", "."),
 )  # fmt: skip
 """Delimiters and decimal signs; of equals the first is taken."""
+_EASTERN: Final = {"GB18030": "频率", "Shift_JIS": "周波数"}
+"""Encodings beside UTF-8, and the word for a frequency by which they are known."""
 SAMPLE: Final = 400
 """Lines from the middle of a file by which delimiter and decimal sign are chosen."""
 LONGEST_LINE: Final = 20_000
@@ -70,9 +72,11 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         else:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
-        # Every letter of a name in another alphabet is wrong then, but its unit may be right.
-        text = data.decode("cp1252", "replace")
-        guesses = ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",)
+        # Every letter of a name in another alphabet may be wrong then, but its unit may be right.
+        known = (name for name, word in _EASTERN.items() if word.encode(name) in data)
+        encoding = next(known, "Latin-1 (Windows-1252)")
+        text = data.decode(encoding if encoding in _EASTERN else "cp1252", "replace")
+        guesses = (f"the file is not UTF-8 and is read as {encoding}",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
     if match := _CONTROL.search(text):
         raise _no_text(name, f"it holds the control character 0x{ord(match[0]):02x}")

@@ -551,6 +551,17 @@ def simulated_files():
         ).encode(),
     )
     parts = "\n".join(",".join(f"{x:.9e}" for x in row) for row in (F, RE, IM))
+    listed = [
+        f" {i}\t{f:.9e},0.0\n\t{h.real:.9e},{h.imag:.9e}\n" for i, (f, h) in enumerate(zip(F, H, strict=True))
+    ]
+    names = "Variables:\n\t0\tfrequency\tfrequency\tgrid=3\n\t1\tv(out)\tvoltage\nValues:\n"
+    yield Saved("spice.raw", (f"Title: * filter\nFlags: complex\n{names}" + "\n".join(listed)).encode())
+    yield Saved(
+        "unlike.csv",
+        ("Frequency (Hz),H(Ch2;Ch1) (g/g),H(Ch2;Ch1) Phase (Degree)\n" + rows(F, SIZE, DEG)).encode(),
+    )
+    yield Saved("lag.csv", ("Frequency (Hz),Gain (dB),Phase lag (deg)\n" + rows(F, DB, -DEG)).encode())
+    yield Saved("chinese.csv", ("频率(Hz),幅值(dB),相位(°)\n" + rows(F, DB, DEG)).encode("gb18030"))
     yield Saved("bare_rows.csv", parts.encode(), columns="f,re,im")
 
 
