@@ -141,9 +141,11 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
             add_legend_above(top, FIT_COLUMNS, is_tight=True)
             write_title(figure, title_lines(title, COLUMN_INCHES))
     if is_small:
-        first = cells[0].get_axes()[0]
-        handles, labels = first.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+        panels = [axes.get_legend_handles_labels() for cell in cells for axes in cell.get_axes()]
+        named = {label: handle for one in panels for handle, label in zip(*one, strict=True)}
+        figure.legend(
+            list(named.values()), list(named), loc="outside lower center", ncols=len(named), frameon=False
+        )
     return figure
 
 
@@ -210,7 +212,7 @@ def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
     axes.plot(every.frequency_hz[wild], left[wild], "x", color=COLOURS[1], markersize=4.5)
     if line.deviation is not None:
         noise = _decibels(np.sqrt(2) * line.deviation * line.measured.values)
-        axes.plot(line.measured.frequency_hz, noise, color=COLOURS[2], linewidth=0.8)
+        axes.plot(line.measured.frequency_hz, noise, color=COLOURS[2], linewidth=0.8, label="expected noise")
     finite = left[np.isfinite(left)]
     if finite.size:
         axes.set_ylim(

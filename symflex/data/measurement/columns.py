@@ -179,12 +179,13 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         inside = bracket[1].strip()
         parts = re.findall(_PARTS, inside.lower())
         is_unit = inside.lower() in UNITS or inside == "F"  # farad
-        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(
-            r"/?[\w .]*(?:\([\w .,]*\))?[\w .]*", inside
+        is_named = "_" in inside and not is_unit  # Re(A_1/F); units have no underscore
+        is_argument = re.search(r"\w$", text[: bracket.start()]) and (
+            is_named or re.fullmatch(r"/?[\w .]*(?:\([\w .,]*\))?[\w .]*", inside)
         )
         if (
             is_unit
-            or "/" in inside[1:]
+            or ("/" in inside[1:] and not is_named)
             or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
         ):
             unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))

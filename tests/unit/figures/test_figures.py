@@ -12,13 +12,17 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.data.fitting import fit_resonances
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import ModelError, UsageError
 from symflex.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
+from symflex.figures.fitted import draw_fit
 from symflex.figures.s_plane import RootMark, choose_view, leaving
 from symflex.figures.style import label_of, label_of_name, label_of_tf, label_of_unit
 from symflex.model import Output
 from symflex.model.analysis import FIGURE_KINDS
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
+from symflex.options import FitOptions
 from symflex.transfer import bind
 from tests.unit.analysis.systems import derived, rational
 from tests.unit.refusals import refusal
@@ -470,3 +474,16 @@ def test_roots_outside_in_one_direction_share_an_arrow():
     ]
     groups = leaving(marks, choose_view(marks, None, (0.6, 1.25)))
     assert [[mark.s for mark in group] for group in groups] == [[-5000, -9000], [5000]]
+
+
+def test_the_legend_of_a_page_names_what_any_of_its_responses_shows():
+    random = np.random.default_rng(1)
+    frequency = np.linspace(5.0, 60.0, 120)
+    s = 2j * np.pi * frequency
+    pole = 1 + 0.02 * s / (2 * np.pi * 20) + (s / (2 * np.pi * 20)) ** 2
+    noise = 1 + 0.01 * (random.standard_normal((2, 120)) + 1j * random.standard_normal((2, 120)))
+    values = noise * [1 / pole, (1 - s / 100) / pole]  # the zero of the second one is on the right
+    data = [MeasuredResponse(name, frequency, one) for name, one in zip(("a/u", "b/u"), values, strict=True)]
+    page = draw_fit(fit_resonances(data, None, FitOptions(modes=1, slope=0)))
+    shown = {text.get_text() for legend in page.legends for text in legend.get_texts()}
+    assert shown == {"measured", "fit", "expected noise", "phase from magnitude"}

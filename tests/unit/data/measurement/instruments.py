@@ -550,7 +550,6 @@ def simulated_files():
             "Frequency - mag (Hz),FRF mag (dB),Frequency - phase (Hz),FRF phase (deg)\n" + rows(F, DB, F, DEG)
         ).encode(),
     )
-    parts = "\n".join(",".join(f"{x:.9e}" for x in row) for row in (F, RE, IM))
     listed = [
         f" {i}\t{f:.9e},0.0\n\t{h.real:.9e},{h.imag:.9e}\n" for i, (f, h) in enumerate(zip(F, H, strict=True))
     ]
@@ -560,8 +559,14 @@ def simulated_files():
         "unlike.csv",
         ("Frequency (Hz),H(Ch2;Ch1) (g/g),H(Ch2;Ch1) Phase (Degree)\n" + rows(F, SIZE, DEG)).encode(),
     )
+    yield Saved(
+        "named.csv",
+        ("f_hz,Re(A_1/F),Im(A_1/F),Re(A_2/F),Im(A_2/F)\n" + rows(F, RE, IM, H2.real, H2.imag)).encode(),
+        (H, H2),
+    )
     yield Saved("lag.csv", ("Frequency (Hz),Gain (dB),Phase lag (deg)\n" + rows(F, DB, -DEG)).encode())
     yield Saved("chinese.csv", ("频率(Hz),幅值(dB),相位(°)\n" + rows(F, DB, DEG)).encode("gb18030"))
+    parts = "\n".join(",".join(f"{x:.9e}" for x in row) for row in (F, RE, IM))
     yield Saved("bare_rows.csv", parts.encode(), columns="f,re,im")
 
 

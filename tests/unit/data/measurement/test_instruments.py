@@ -42,6 +42,8 @@ def test_each_is_read_as_it_was_saved(tmp_path):
 
 GUESSES = {
     "oros.csv": "decimals are written with a comma",
+    "lag.csv": "'Phase lag (deg)' is the phase times -1",
+    "chinese.csv": "is read as GB18030",
     "bare.zma": "no line names the columns: Hz, Ohm, degrees",
     "scope_bode.csv": "Latin-1",
     "vibration_utf16.txt": "the text is UTF-16",
@@ -107,6 +109,11 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert option, (name, caught.value.diagnostics[0].hint)
         (found,) = read_measurement(path, option[1])
         assert found.values == pytest.approx(values, rel=1e-3), name
+
+
+def test_responses_are_called_what_stands_in_the_brackets_of_their_columns(tmp_path):
+    (tmp_path / "named.csv").write_bytes({saved.name: saved for saved in FILES}["named.csv"].content)
+    assert [one.name for one in read_measurement(tmp_path / "named.csv")] == ["A_1/F", "A_2/F"]
 
 
 def test_columns_that_are_not_there_are_refused(tmp_path):
