@@ -13,10 +13,10 @@ RESPONSE = MeasuredResponse(
 )
 
 
-def answered(read, data):
+def answered(read, data, name="a"):
     """Read a data file; what is read has at least one response, with as many values as lines."""
     try:
-        found = read("a", data, "a")
+        found = read(name, data, "a")
     except SymflexError as error:
         str(error)
         return

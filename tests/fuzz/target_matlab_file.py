@@ -7,7 +7,7 @@ import io
 import numpy as np
 import scipy.io
 
-from symflex.data.measurement.arrays import read_mat
+from symflex.data.measurement.arrays import read_arrays
 from tests.fuzz.measured import RESPONSE, answered
 
 ROOMS = ("symflex.data.measurement",)
@@ -28,4 +28,4 @@ def seeds():
 
 def run(data):
     """Read a file."""
-    answered(read_mat, data)
+    answered(read_arrays, data, "a.mat")

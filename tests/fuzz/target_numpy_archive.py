@@ -6,7 +6,7 @@ import io
 import struct
 import zipfile
 
-from symflex.data.measurement.arrays import read_npz
+from symflex.data.measurement.arrays import read_arrays
 from symflex.data.measurement.files import npz_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
@@ -45,4 +45,4 @@ def packed(data):
 
 def run(data):
     """Read a file."""
-    answered(read_npz, data if data.startswith(AS_IT_IS) else packed(data))
+    answered(read_arrays, data if data.startswith(AS_IT_IS) else packed(data), "a.npz")

@@ -6,7 +6,7 @@ import io
 
 import numpy as np
 
-from symflex.data.measurement.arrays import read_npy
+from symflex.data.measurement.arrays import read_arrays
 from tests.fuzz.measured import RESPONSE, answered
 
 ROOMS = ("symflex.data.measurement",)
@@ -25,5 +25,5 @@ def seeds():
 
 def run(data):
     """Read a file, and read it as it is asked for."""
-    answered(read_npy, data)
-    answered(lambda *given: read_npy(*given, "f,h"), data)
+    answered(read_arrays, data, "a.npy")
+    answered(lambda *given: read_arrays(*given, "f,h"), data, "a.npy")

@@ -196,6 +196,10 @@ class ResonanceFit:
             real_z,
         )
 
+    def of_response(self, response: int) -> str:
+        """Return whose something is, where there are several responses: `` of A_1/F``."""
+        return f" of {self.measured[response].name}" if len(self.measured) > 1 else ""
+
     def misfit_db(self, response: int) -> float:
         """Return the root mean square of model over data on the lines above the noise [dB]."""
         measured, model = self._seen(response)
@@ -414,17 +418,14 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
     for r in range(found.responses):
         left = fit.left_out(r)
         if left.size:
-            where = f" of {fit.measured[r].name}" if found.responses > 1 else ""
             places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[left][:NAMED_LINES])
             more = ", ..." if left.size > NAMED_LINES else ""
             word = "line" if left.size == 1 else "lines"
-            warnings.append(f"{left.size} wild {word}{where} left out, at {places}{more} Hz")
+            warnings.append(f"{left.size} wild {word}{fit.of_response(r)} left out, at {places}{more} Hz")
     for r, corner in enumerate(np.abs(found.real_z).tolist()):
         if np.isfinite(corner) and not low <= corner <= high:
-            where = f" of {fit.measured[r].name}" if found.responses > 1 else ""
-            warnings.append(
-                f"the real zero{where} lies outside the band measured, at {corner / (2 * np.pi):.4g} Hz"
-            )
+            place = f"{corner / (2 * np.pi):.4g} Hz"
+            warnings.append(f"the real zero{fit.of_response(r)} lies outside the band measured, at {place}")
     return warnings
 
 
@@ -440,29 +441,26 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         for r in range(found.responses):
             if not found.has_zeros[r, i]:
                 continue
-            line = fit.problem.lines[r]
-            where = f" of {line.measured.name}" if found.responses > 1 else ""
+            pair = f"zero pair {i + 1}{fit.of_response(r)}"
             if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
                 errors.omega_z[r, i] > WEAK * abs(found.omega_z[r, i])
             ):
-                warnings.append(
-                    f"zero pair {i + 1}{where} is not determined by the data: its error is of its own size"
-                )
+                warnings.append(f"{pair} is not determined by the data: its error is of its own size")
                 continue
             if abs(found.zeta_z[r, i]) > OVERDAMPED:
                 warnings.append(
-                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
+                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
                     "zeros, which stand for behaviour that a gain, a power of s and resonances cannot have"
                 )
             elif abs(found.zeta_z[r, i]) > FLAT and not is_exact:
                 warnings.append(
-                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g} and no sharp "
+                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g} and no sharp "
                     "trough: modes outside the band may move it by more than its standard error"
                 )
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
-                    f"zero pair {i + 1}{where} lies outside the band measured, at {place:.4g} Hz: "
+                    f"{pair} lies outside the band measured, at {place:.4g} Hz: "
                     "the data show its effect, not itself"
                 )
     for line in fit.problem.lines:

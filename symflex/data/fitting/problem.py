@@ -84,16 +84,10 @@ class FittedLines:
 
     def at(self, places: Whole) -> FittedLines:
         """Return some of the lines."""
-        one = self.measured
         observation = self.observation.at(places)
         return replace(
             self,
-            measured=replace(
-                one,
-                frequency_hz=one.frequency_hz[places],
-                values=one.values[places],
-                coherence=None if one.coherence is None else one.coherence[places],
-            ),
+            measured=self.measured.taken(places),
             observation=observation,
             base=self.base if observation.matrix is not None else self.base[places],
             base_at_lines=self.base_at_lines[places],

@@ -61,16 +61,16 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
         yield _zeros(fit, r)
     if shapes is not None:
         yield _shapes(shapes)
-    named = [f" of {measured.name}" if found.responses > 1 else "" for measured in fit.measured]
     residuals = [
-        f"{INDENT}residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
-        for r, name in enumerate(named)
+        f"{INDENT}residual{fit.of_response(r)}: {fit.misfit_db(r):.2g} dB and "
+        f"{fit.misfit_degrees(r):.2g} degrees rms"
+        for r in range(found.responses)
     ]
     yield Passage([*residuals, INDENT + _accuracy(fit)])
     if fit.scores:
         yield _orders(fit)
     tests = [
-        f"{INDENT}phase test{named[r]}: {_phase_words(test, fit, r)}"
+        f"{INDENT}phase test{fit.of_response(r)}: {_phase_words(test, fit, r)}"
         for r, test in enumerate(fit.phase_tests)
     ]
     yield Passage([*tests, *(f"{INDENT}warning: {warning}" for warning in fit.warnings)])
@@ -79,7 +79,7 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
 def _zeros(fit: ResonanceFit, r: int) -> Passage:
     """Return the zeros of a response, and what else of it is fitted."""
     found, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
-    lines = [f"{INDENT}zeros" + (f" of {fit.measured[r].name}" if found.responses > 1 else "")]
+    lines = [f"{INDENT}zeros{fit.of_response(r)}"]
     if free.gain:
         lines.append(f"{INDENT}gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
     if free.lag:

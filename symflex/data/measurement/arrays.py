@@ -63,19 +63,9 @@ UNITS: Final = ("frequencyunit", "frequency_unit", "units")
 _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherence, averages, window, tf"
 
 
-def read_npz(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from a numpy archive; as :func:`arrays_in` and :func:`responses_of`."""
-    return responses_of(arrays_in(name, data, ".npz"), name, stem, asked)
-
-
-def read_npy(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from one array, a matrix of columns; as :func:`read_npz`."""
-    return responses_of(arrays_in(name, data, ".npy"), name, stem, asked)
-
-
-def read_mat(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from a MATLAB file of version 4 to 7; as :func:`read_npz`."""
-    return responses_of(arrays_in(name, data, ".mat"), name, stem, asked)
+def read_arrays(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
+    """Read responses from a .npz, .npy or .mat file; as :func:`arrays_in` and :func:`responses_of`."""
+    return responses_of(arrays_in(name, data, format_of(name, data)), name, stem, asked)
 
 
 OCTAVE: Final = b"# Created by Octave"

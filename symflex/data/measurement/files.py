@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import format_of, read_mat, read_npy, read_npz
+from symflex.data.measurement.arrays import format_of, read_arrays
 from symflex.data.measurement.comma_separated import read_columns
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
 from symflex.data.measurement.touchstone import read_touchstone
@@ -32,20 +32,10 @@ from symflex.errors.optional import installed
 from symflex.model.spec.read import read_file
 
 READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, ...]]] = {
-    ".csv": read_columns,
-    ".txt": read_columns,
-    ".dat": read_columns,
-    ".tsv": read_columns,
-    ".frd": read_columns,
-    ".zma": read_columns,
-    ".s1p": read_touchstone,
-    ".s2p": read_touchstone,
-    ".npz": read_npz,
-    ".npy": read_npy,
-    ".mat": read_mat,
-    ".uff": read_universal_file,
-    ".unv": read_universal_file,
-    ".uf": read_universal_file,
+    **dict.fromkeys((".csv", ".txt", ".dat", ".tsv", ".frd", ".zma"), read_columns),
+    **dict.fromkeys((".s1p", ".s2p"), read_touchstone),
+    **dict.fromkeys((".npz", ".npy", ".mat"), read_arrays),
+    **dict.fromkeys((".uff", ".unv", ".uf"), read_universal_file),
 }
 """Readers by the end of a file's name.
 
@@ -53,14 +43,10 @@ Each takes what messages call the file, its bytes, a name, and what ``--columns`
 endings are read as text in columns where they are text.
 """
 SAVE_AS: Final = {
-    ".xlsx": "save the sheet as .csv",
-    ".xls": "save the sheet as .csv",
-    ".ods": "save the sheet as .csv",
+    **dict.fromkeys((".xlsx", ".xls", ".ods"), "save the sheet as .csv"),
     ".tdms": "export the channels as text, or read them with nptdms and save them with numpy.savez",
-    ".h5": "save the arrays with numpy.savez",
-    ".hdf5": "save the arrays with numpy.savez",
-    ".s3p": "save two of its ports as .s2p",
-    ".s4p": "save two of its ports as .s2p",
+    **dict.fromkeys((".h5", ".hdf5"), "save the arrays with numpy.savez"),
+    **dict.fromkeys((".s3p", ".s4p"), "save two of its ports as .s2p"),
     ".json": "save the responses as text in columns, or with numpy.savez",
     ".wav": "symflex reads frequency responses, not time series",
     ".toml": "this is a specification, not measured data",
@@ -197,14 +183,10 @@ def npz_bytes(response: MeasuredResponse) -> bytes:
         "synthetic": np.array("yes" if response.is_synthetic else "no"),
         "note": np.array("; ".join(response.notes)),
     }
+    known = {"averages": response.averages, "window": response.window, "unit": response.unit}
+    arrays |= {name: np.array(value) for name, value in known.items() if value}
     if response.coherence is not None:
         arrays["coherence"] = response.coherence
-    if response.averages:
-        arrays["averages"] = np.array(response.averages)
-    if response.window:
-        arrays["window"] = np.array(response.window)
-    if response.unit:
-        arrays["unit"] = np.array(response.unit)
     buffer = BytesIO()
     # An array called allow_pickle would be taken for numpy's option, whose type mypy sees; none is.
     np.savez(buffer, **arrays)  # type: ignore[arg-type]

@@ -12,7 +12,7 @@ import pytest
 import scipy.io
 
 from symflex.data.measurement.array_files import read_archive, read_netcdf, read_variables
-from symflex.data.measurement.arrays import read_mat, read_npz
+from symflex.data.measurement.arrays import read_arrays
 from symflex.errors import DataError
 
 ARRAYS = {"f": np.arange(1.0, 5), "H": np.array([1, 1j, -1, 2 + 1j]), "tf": "X/F"}
@@ -50,35 +50,35 @@ def netcdf(size, count=1):
     return head + b"".join(variables)
 
 
-def answered(read, data):
+def answered(name, data):
     """Whether a reader returns, or refuses with a typed error; anything else is raised."""
     try:
-        read("a", data, "a")
+        read_arrays(name, data, "a")
     except DataError:
         pass
     return True
 
 
 FILES = {
-    "mat 5": (read_mat, mat()),
-    "mat 4": (read_mat, mat("4")),
-    "mat 5, compressed": (read_mat, mat(compress=True)),
-    "npz": (read_npz, npz()),
+    "mat 5": ("a.mat", mat()),
+    "mat 4": ("a.mat", mat("4")),
+    "mat 5, compressed": ("a.mat", mat(compress=True)),
+    "npz": ("a.npz", npz()),
 }
 
 
 @pytest.mark.slow
 def test_a_flipped_bit_is_answered_or_refused():
-    for read, data in FILES.values():
+    for name, data in FILES.values():
         for place in range(0, len(data), 2):
             for bit in range(place % 3, 8, 3):
-                assert answered(read, data[:place] + bytes([data[place] ^ 1 << bit]) + data[place + 1 :])
+                assert answered(name, data[:place] + bytes([data[place] ^ 1 << bit]) + data[place + 1 :])
 
 
 def test_a_file_cut_anywhere_is_refused_or_answered():
-    for read, data in FILES.values():
+    for name, data in FILES.values():
         for place in range(len(data)):
-            assert answered(read, data[:place])
+            assert answered(name, data[:place])
 
 
 def test_numbers_of_every_kind_are_read_as_scipy_wrote_them():
