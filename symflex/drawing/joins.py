@@ -12,14 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 from heapq import heappop, heappush
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import BLACK, THIN, Extent, Placed, Stroke, around, union
 from symflex.drawing.symbols import circle, head
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.drawing.geometry import Drawing, Point
 
@@ -32,9 +32,7 @@ BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 LONGEST: Final = 300.0
 """Cost of a way that would rather confuse."""
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
-MOST_CELLS: Final = 12_000
-"""In which ways are looked for more than once: a drawing of a column's width has some 6000."""
-ROUNDS: Final = 2
+ROUNDS: Final = 3
 """In which wires that meet look for other ways; the first ones do not know what comes after them."""
 Cell = tuple[int, int]
 
@@ -69,55 +67,27 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     right, top = int(drawing.width / CELL), int(drawing.height / CELL)
     blocked.update((x, y) for x in (0, right) for y in range(top + 1))
     blocked.update((x, y) for x in range(right + 1) for y in (0, top))
-    tried = []
-    tries = MOST_CELLS // max(1, right * top)
-    for first in range(min(len(joins), max(1, tries))):
-        order = [first, *(i for i in range(len(joins)) if i != first)]
-        ways = _apart(
-            order, lambda i, met: _best(joins[i], blocked, met, solid), crossed, ROUNDS if tries else 1
-        )
-        passed = [list(_passed(one)) for one in ways]
-        shared = sum(len({*a} & {*b}) for a, b in combinations(passed, 2))
-        struck = sum(crossed.get(c, 0.0) for cells in passed for c in cells)
-        bends = sum(len(one) if one else LONGEST / BEND for one in ways)
-        length = sum(map(len, passed))
-        tried.append((length + BEND * bends + struck + CROSSING * shared, first, ways))
-        if not shared:
-            break
-    found = min(tried)[2] if tried else []
+    ways: list[list[Point]] = [[] for _ in joins]
+    for turn in range(ROUNDS):
+        for i, one in enumerate(joins):
+            others = {c for way in ways if way is not ways[i] for c in _passed(way)}
+            if not turn or others & set(_passed(ways[i])):
+                met = {**dict.fromkeys(others, CROSSING), **crossed}
+                ways[i] = _best(one, blocked, met, solid) or ways[i]
     branches = set()  # of a wire that begins in the same place
     for i, one in enumerate(joins):
-        stem = next((found[j] for j in range(i) if joins[j].starts == one.starts and found[j]), [])
+        stem = next((ways[j] for j in range(i) if joins[j].starts == one.starts and ways[j]), [])
         stems = tuple(around(pair) for pair in pairwise(stem[:-1]))
-        others = {c for way in found if way not in (stem, found[i]) for c in _passed(way)}
+        others = {c for way in ways if way not in (stem, ways[i]) for c in _passed(way)}
         met = {**dict.fromkeys(others, CROSSING), **crossed}
         if stems and (branch := _best(replace(one, starts=stems), blocked, met, solid)):
-            found[i] = branch
+            ways[i] = branch
             branches.add(i)
     return tuple(
         _drawn(one.name, points, is_branch=i in branches)
-        for i, (one, points) in enumerate(zip(joins, found, strict=True))
+        for i, (one, points) in enumerate(zip(joins, ways, strict=True))
         if points
     )
-
-
-def _apart(
-    order: Sequence[int],
-    way: Callable[[int, Mapping[Cell, float]], list[Point]],
-    crossed: Mapping[Cell, float],
-    rounds: int,
-) -> list[list[Point]]:
-    """Return ways that were found one after the other, those that meet others once more."""
-    ways: list[list[Point]] = [[] for _ in order]
-    for turn in range(rounds):
-        before = list(ways)
-        for i in order:
-            others = {c for j, other in enumerate(ways) if j != i for c in _passed(other)}
-            if not turn or others & set(_passed(ways[i])):
-                ways[i] = way(i, {**dict.fromkeys(others, CROSSING), **crossed}) or ways[i]
-        if ways == before:
-            break
-    return ways
 
 
 def _best(
