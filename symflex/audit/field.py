@@ -26,7 +26,7 @@ from math import gcd
 from typing import TYPE_CHECKING, NoReturn
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
-from symflex.algebra.ring import by_powers
+from symflex.algebra.normal_form import with_image
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -454,28 +454,23 @@ class Arithmetic:
     # ------------------------------------------------------------------------------------ normal form
 
     @cached_property
-    def _relations(self) -> tuple[tuple[int, int, fmpz_mpoly], ...]:
+    def _relations(self) -> tuple[tuple[int, int, Factored], ...]:
         """Position, power, and what the power is equal to."""
         g, index = self.ground, self.ring.index
         # A sum may hold roots of earlier ones, and all hold roots of primes.
         sums = reversed(list(enumerate(g.sums)))
-        found = [(index[f"sum({i})"], g.order, self.from_recipe(recipe).expand()) for i, recipe in sums]
-        found += [(index[f"root({p})"], g.order, self.ring.constant(p)) for p in g.primes]
-        found.append((index[UNIT], 2, self.ring.constant(-1)))
+        found = [(index[f"sum({i})"], g.order, self.from_recipe(recipe)) for i, recipe in sums]
+        found += [(index[f"root({p})"], g.order, self.number(p)) for p in g.primes]
+        found.append((index[UNIT], 2, self.number(-1)))
         for i in range(len(g.waves)):
             c = self.ring.generator(f"cos({i})")
-            found.append((index[f"sin({i})"], 2, 1 - c * c))
+            found.append((index[f"sin({i})"], 2, Factored.polynomial(self.ring, 1 - c * c)))
         return tuple(found)
 
     def reduce(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the normal form of a polynomial."""
         for index, power, image in self._relations:
-            if not len(polynomial) or int(polynomial.degrees()[index]) < power:
-                continue
-            x, total = self.ring.context.gen(index), self.ring.constant(0)
-            for n, part in by_powers(self.ring, polynomial, index).items():
-                total = total + part * x ** (n % power) * image ** (n // power)
-            polynomial = total
+            polynomial, _ = with_image(self.ring, polynomial, index, image, power)
         return polynomial
 
     def reduced(self, value: Factored) -> Factored:

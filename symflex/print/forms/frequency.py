@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, KernelTable, Ring
+from symflex.algebra.normal_form import with_image
 from symflex.algebra.ring import by_powers
 from symflex.expressions import (
     Call,
@@ -236,16 +237,7 @@ class _FrequencyPage:
         for kernel in self._turning:
             squares[f"sin[{kernel.generator}]"] = 1 - ring.generator(f"cos[{kernel.generator}]") ** 2
         for name, square in squares.items():
-            index = ring.index[name]
-            if int(work.degrees()[index]) > 1:
-                x = ring.generator(name)
-                work = sum(
-                    (
-                        part * x ** (n % 2) * square ** (n // 2)
-                        for n, part in by_powers(ring, work, index).items()
-                    ),
-                    ring.constant(0),
-                )
+            work, _ = with_image(ring, work, ring.index[name], Factored.polynomial(ring, square), 2)
         return work
 
     @staticmethod

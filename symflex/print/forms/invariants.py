@@ -13,9 +13,9 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, KernelTable, Ring
+from symflex.algebra import Factored, KernelTable, Ring, degree_in
 from symflex.algebra.exponential_sum import power, spread, times
-from symflex.algebra.normal_form import NormalForm
+from symflex.algebra.normal_form import NormalForm, with_image
 from symflex.algebra.ring import by_powers
 from symflex.print.forms.notation import angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
@@ -191,18 +191,10 @@ class Invariants:
         first, second = (ring.index[w] for w in dispersion.wavenumbers)
         y = ring.generator(dispersion.wavenumbers[1])
         c0, c2 = (ring.generator(coefficient_name(number, k)) for k in (0, 2))
-        image = -c2 - y * y
-        work = sum(
-            (part * image ** (n // 2) for n, part in by_powers(ring, work, first).items()), ring.constant(0)
-        )
-        while int(work.degrees()[second]) >= 4:  # noqa: PLR2004
-            work = sum(
-                (
-                    part * y**n if n < 4 else -part * (c2 * y ** (n - 2) + c0 * y ** (n - 4))  # noqa: PLR2004
-                    for n, part in by_powers(ring, work, second).items()
-                ),
-                ring.constant(0),
-            )
+        square, fourth = (Factored.polynomial(ring, f) for f in (-c2 - y * y, -c2 * y * y - c0))
+        work, _ = with_image(ring, work, first, square, 2)
+        while degree_in(work, second) >= 4:  # noqa: PLR2004
+            work, _ = with_image(ring, work, second, fourth, 4)
         parts = by_powers(ring, work, second)
         zero = ring.constant(0)
         return parts.get(0, zero), parts.get(2, zero)
@@ -375,14 +367,7 @@ def krylov_name(group: int, order: int) -> str:
 
 def real_powers(ring: Ring, work: fmpz_mpoly) -> fmpz_mpoly:
     """Use ``j^2 = -1``."""
-    index = ring.index[IMAGINARY]
-    if int(work.degrees()[index]) < 2:  # noqa: PLR2004
-        return work
-    j = ring.generator(IMAGINARY)
-    return sum(
-        (part * j ** (n % 2) * (-1) ** (n // 2) for n, part in by_powers(ring, work, index).items()),
-        ring.constant(0),
-    )
+    return with_image(ring, work, ring.index[IMAGINARY], Factored.number(ring, -1), 2)[0]
 
 
 def in_exponentials(
