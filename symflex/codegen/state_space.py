@@ -23,15 +23,9 @@ from symflex.codegen.python.module import NUMPY_DIALECT, docstring, literal, ori
 from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
-    Call,
     Expression,
     Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
+    fold,
     format_expression,
     names,
     number,
@@ -360,36 +354,33 @@ def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
 
 def _node(expression: Expression) -> tree.CodeNode:
     """Return an expression of constants as a program's node."""
-    match expression:
-        case Number(value) if value < 0:
-            return tree.Negate(tree.RealNumber(-value))
-        case Number(value) if value.denominator == 1:
-            return tree.RealNumber(value)
-        case Number(value):
-            return tree.Divide(
-                tree.RealNumber(Fraction(value.numerator)), tree.RealNumber(Fraction(value.denominator))
-            )
-        case Name(name):
-            return tree.RealNumber(Fraction(1), 1) if name == PI else tree.ParameterValue(name)
-        case Negative(Quotient(numerator, denominator)):
-            return tree.Divide(tree.Negate(_node(numerator)), _node(denominator))
-        case Negative(operand):
-            return tree.Negate(_node(operand))
-        case Sum(terms):
-            return tree.Add(tuple(_node(t) for t in terms))
-        case Product(factors):
-            return tree.Multiply(tuple(_node(f) for f in factors))
-        case Quotient(numerator, denominator):
-            return tree.Divide(_node(numerator), _node(denominator))
-        case Power(base, exponent):
-            order = integer_exponent(exponent) or 0
-            inner = _node(base)
-            raised = inner if abs(order) == 1 else tree.IntegerPower(inner, abs(order))
-            return raised if order > 0 else tree.Divide(tree.RealNumber(Fraction(1)), raised)
-        case Call(name, argument):
-            return tree.Apply(name, _node(argument))
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+
+    def exact(value: Fraction) -> tree.CodeNode:
+        above, below = (tree.RealNumber(Fraction(abs(n))) for n in value.as_integer_ratio())
+        size = above if value.denominator == 1 else tree.Divide(above, below)
+        return minus(size) if value < 0 else size
+
+    def minus(node: tree.CodeNode) -> tree.CodeNode:
+        if isinstance(node, tree.Divide):
+            return tree.Divide(tree.Negate(node.numerator), node.denominator)
+        return tree.Negate(node)
+
+    def power(base: tree.CodeNode, exponent: Expression) -> tree.CodeNode:
+        order = integer_exponent(exponent) or 0
+        raised = base if abs(order) == 1 else tree.IntegerPower(base, abs(order))
+        return raised if order > 0 else tree.Divide(tree.ONE, raised)
+
+    return fold(
+        expression,
+        number=exact,
+        name=lambda name: tree.RealNumber(Fraction(1), 1) if name == PI else tree.ParameterValue(name),
+        power=power,
+        call=lambda call, argument: tree.Apply(call.name, argument),
+        negative=minus,
+        total=lambda terms: tree.Add(tuple(terms)),
+        product=lambda factors: tree.Multiply(tuple(factors)),
+        quotient=tree.Divide,
+    )
 
 
 @dataclass(frozen=True, slots=True)
