@@ -78,7 +78,7 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     for i, one in enumerate(joins):
         stem = next((ways[j] for j in range(i) if joins[j].starts == one.starts and ways[j]), [])
         stems = tuple(around(pair) for pair in pairwise(stem[:-1]))
-        others = {c for way in ways if way not in (stem, ways[i]) for c in _passed(way)}
+        others = {c for way in ways if way is not ways[i] for c in _passed(way)} - {*_passed(stem[:-1])}
         met = {**dict.fromkeys(others, CROSSING), **crossed}
         if stems and (branch := _best(replace(one, starts=stems), blocked, met, solid)):
             ways[i] = branch
