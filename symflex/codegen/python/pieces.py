@@ -89,6 +89,16 @@ class PrivateText(ABC):
         """Return the lines of the assignments, and what prints values in their scope."""
 
     @abstractmethod
+    def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
+        """Return the text of what tells whether a condition holds."""
+
+    def _tests(self, program: tree.Piecewise) -> list[str]:
+        """Return the lines of the function of all tests."""
+        lines, printer = self._body(program.tests, self.variable)
+        tests = ", ".join(self._test(condition, printer) for condition in program.conditions)
+        return [*self._head(f"_tests_of_{self.name}"), *lines, *statement("return", f"[{tests}]", "    ")]
+
+    @abstractmethod
     def _mean(self, parts: str, points: int) -> str:
         """Return the text of a mean over a circle."""
 
@@ -222,19 +232,12 @@ class BlockText(PrivateText):
         printer = NumpyPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
         return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
 
-    def _tests(self, program: tree.Piecewise) -> list[str]:
-        lines, printer = self._body(program.tests, self.variable)
-        tests = []
-        for condition in program.conditions:
-            text = printer.print(condition.quantity)
-            scale = printer.print(condition.scale)
-            if not condition.limit:
-                tests.append(f"_is_left({text}, {scale})")
-                continue
-            below = f" / np.abs({scale})" if scale != "1.0" else ""
-            tests.append(f"np.abs({text}) < {condition.limit!r}{below}")
-        head = self._head(f"_tests_of_{self.name}")
-        return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
+    def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
+        text, scale = printer.print(condition.quantity), printer.print(condition.scale)
+        if not condition.limit:
+            return f"_is_left({text}, {scale})"
+        below = f" / np.abs({scale})" if scale != "1.0" else ""
+        return f"np.abs({text}) < {condition.limit!r}{below}"
 
     def _mean(self, parts: str, points: int) -> str:
         given = ", ".join(["z", *self.arguments[1:]])
@@ -307,41 +310,26 @@ class TracedText(PrivateText):
             lines = [f"    {inverse} = 1.0 / {variable}", *lines]
         return lines, printer
 
-    def _tests(self, program: tree.Piecewise) -> list[str]:
-        lines, printer = self._body(program.tests, self.variable)
-        tests = []
-        for condition in program.conditions:
-            is_one = condition.scale == tree.ONE
-            if not condition.limit:
-                tested = (
-                    condition.quantity if is_one else tree.Multiply((condition.scale, condition.quantity))
-                )
-                tests.append(f"{self.dialect.space}.real({printer.print(tested)}) < 0.0")
-                continue
-            limit = repr(condition.limit)
-            if not is_one:
-                limit += f" / {_size(condition.scale, printer)}"
-            tests.append(f"{printer.print(tree.Apply('abs', condition.quantity))} < {limit}")
-        head = self._head(f"_tests_of_{self.name}")
-        return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
+    def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
+        quantity, scale = condition.quantity, condition.scale
+        if not condition.limit:
+            tested = quantity if scale == ONE else tree.Multiply((scale, quantity))
+            return f"{self.dialect.space}.real({printer.print(tested)}) < 0.0"
+        below = f" / {printer.print(tree.Apply('abs', scale))}" if scale != ONE else ""
+        return f"{printer.print(tree.Apply('abs', quantity))} < {condition.limit!r}{below}"
 
     def _mean(self, parts: str, points: int) -> str:
         return f"_mean_over_circle({self.leading}{parts}, [{', '.join(self.arguments)}], {points})"
 
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
-        value = printer.print(num) if den == tree.ONE else printer.quotient(num, den)
+        value = printer.print(num) if den == ONE else printer.quotient(num, den)
         first = f"    {printer.inverse} = 1.0 / {printer.variable}"
-        if den == tree.ONE and printer.inverse in value and first not in lines:
+        if den == ONE and printer.inverse in value and first not in lines:
             lines = [first, *lines]
         if not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
         return [*lines, *statement("return", value, "    ")]
-
-
-def _size(scale: tree.CodeNode, printer: ArrayPrinter) -> str:
-    number = number_of(scale, printer.numbers)
-    return printer.print(tree.Apply("abs", scale)) if number is None else repr(abs(number))
 
 
 WIDTH = 88
