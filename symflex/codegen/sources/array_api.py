@@ -85,9 +85,9 @@ def _shaped(xp, value, arguments):
 
 #: _real_numbers
 def _real_numbers(xp, *arguments):
-    """Return the library, and real numbers."""
+    """Return what _numbers does, of real numbers alone."""
     xp, arrays = _numbers(xp, 0.0, *arguments)
-    if any(array.dtype == xp.complex128 for array in arrays[1:]):
+    if any(array.dtype in (xp.complex64, xp.complex128) for array in arrays[1:]):
         message = "real numbers or arrays of them are wanted"
         raise TypeError(message)
     return xp, arrays[1:]

@@ -31,16 +31,6 @@ def _shaped(value, arguments):
     return jnp.broadcast_to(value, _shape(arguments))
 
 
-#: _real_numbers
-def _real_numbers(*arguments):
-    """Return real numbers."""
-    arrays = [jnp.asarray(value) for value in arguments]
-    if any(jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays):
-        message = "real numbers or arrays of them are wanted"
-        raise TypeError(message)
-    return [array.astype(jnp.float64) for array in arrays]
-
-
 #: _is_idle _found _size
 def _is_idle(serves):
     """Tell that a piece serves no element; False where values are not known yet."""
