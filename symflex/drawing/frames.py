@@ -20,6 +20,7 @@ from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed,
 from symflex.drawing.lettering import SMALL, name_latex, text
 from symflex.drawing.scheme import Mark, evaluate, values_of
 from symflex.drawing.symbols import DOT, HALF, arrow, circle, guide, head, line, outline, rectangle, wall
+from symflex.figures.runs import places_of_members
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -38,8 +39,6 @@ JOINT: Final = 2.4
 SPIRAL: Final = 7.0
 """From the inner to the outer end of a spiral spring [points]."""
 SPIRAL_TURNS, SPIRAL_POINTS = 1.75, 48
-APART: Final = 0.3
-"""Between members that no node joins, as a share of the length of one."""
 CLAMP: Final = 8.0
 """Half the width of a wall that holds a member [points]."""
 SHARP: Final = pi / 3
@@ -153,25 +152,8 @@ class _Plan:
     def _place(self) -> dict[str, tuple[Point, Point]]:
         """Return where both ends of each member are, at the scale of the drawing."""
         vectors = self._vectors()
-        places: dict[str, Point] = {}
-        ends: dict[str, tuple[Point, Point]] = {}
-        waiting = list(self.members)
-        while waiting:
-            part = next(
-                (p for p in waiting if any(self.joint(e.node) in places for e in p.ends if e.node)),
-                waiting[0],
-            )
-            waiting.remove(part)
-            a, b = (self.joint(e.node) if e.node else "" for e in part.ends)
-            dx, dy = vectors[part.name]
-            far = max((x for pair in ends.values() for x, _ in pair), default=0.0)
-            right = far + bool(ends) * APART * hypot(dx, dy) - min(dx, 0.0)
-            start = places.get(a) or ((places[b][0] - dx, places[b][1] - dy) if b in places else (right, 0.0))
-            end = places.get(b) or (start[0] + dx, start[1] + dy)
-            ends[part.name] = (start, end)
-            for node, place in ((a, start), (b, end)):
-                if node:
-                    places.setdefault(node, place)
+        joints = {p.name: [self.joint(e.node) if e.node else "" for e in p.ends] for p in self.members}
+        ends = places_of_members({name: (a, b, vectors[name]) for name, (a, b) in joints.items()})
         points = [p for pair in ends.values() for p in pair]
         box = around(points)
         sizes = [hypot(b[0] - a[0], b[1] - a[1]) for a, b in ends.values()]

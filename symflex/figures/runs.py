@@ -7,18 +7,23 @@ a row of nodes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import Name
 from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.analysis.modes import DistributedShape, EnclosedModeShape
     from symflex.model import Model, PlacedElement
 
+Vector = tuple[float, float]
+
 AT_REST: Final = 1e-9
+APART: Final = 0.3
+"""Between members that no node joins, as a share of the length of one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,10 +135,9 @@ def _carrying(model: Model) -> set[str]:
 def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
     """Yield the members of frames, those that are joined placed by their lengths and directions.
 
-    What pins, joints and links join is drawn at one place. Each end at ground is a place of its own; what is
-    not joined to what was placed before begins where that ends.
+    What pins, joints and links join is drawn at one place. Each end at ground is a place of its own.
     """
-    members = [(use.name, *_ends(use)) for use in _lines(model) if parts[use.name].direction]
+    lines = [use for use in _lines(model) if parts[use.name].direction]
     joined = {
         r.node: references[0].node
         for use in model.elements
@@ -146,35 +150,58 @@ def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
     def joint(node: str) -> str:
         while node in joined:
             node = joined[node]
-        return node
+        return "" if node == "ground" else node
 
-    places: dict[str, tuple[float, float]] = {}
-    starts: dict[str, tuple[float, float]] = {}
-    waiting = list(members)
-    while waiting:
-        name, a, b = next(
-            ((n, a, b) for n, a, b in waiting if joint(a) in places or joint(b) in places), waiting[0]
-        )
-        waiting.remove((name, a, b))
-        part = parts[name]
-        dx, dy = (float(part.length.mid()) * float(x.mid()) for x in part.direction)
-        if joint(a) in places:
-            x, y = places[joint(a)]
-        elif joint(b) in places:
-            x, y = places[joint(b)][0] - dx, places[joint(b)][1] - dy
-        else:
-            x, y = 1.2 * max((x for x, _ in places.values()), default=0.0), 0.0
-        starts[name] = (x, y)
-        for node, place in ((a, (x, y)), (b, (x + dx, y + dy))):
-            if node != "ground":
-                places.setdefault(joint(node), place)
-    if members:
+    def reach(part: DistributedShape) -> Vector:
+        x, y = (float(part.length.mid()) * float(x.mid()) for x in part.direction)
+        return x, y
+
+    nodes = {use.name: _ends(use) for use in lines}
+    joints = {name: (joint(a), joint(b)) for name, (a, b) in nodes.items()}
+    ends = places_of_members({name: (*both, reach(parts[name])) for name, both in joints.items()})
+    if lines:
         carrying = _carrying(model)
-        at = {node: places[joint(node)] for _, *ends in members for node in ends if node in carrying}
+        at = {
+            node: place
+            for name, both in nodes.items()
+            for node, place in zip(both, ends[name], strict=True)
+            if node in carrying
+        }
         yield Plan(
-            tuple((name, *start) for name, start in starts.items()),
+            tuple((name, *start) for name, (start, _) in ends.items()),
             tuple((node, *place) for node, place in at.items()),
         )
+
+
+def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[str, tuple[Vector, Vector]]:
+    """Return where both ends of each member are, those that are joined beside each other.
+
+    A member has the joints at its ends, ``""`` for a place of its own, and how far it reaches from the first
+    to the second. One that is not joined to those before begins to their right.
+
+    Examples
+    --------
+    >>> bent = {"post": ("", "corner", (0.0, 3.0)), "bar": ("corner", "", (2.0, 0.0))}
+    >>> places_of_members({**bent, "mast": ("", "", (0.0, 10.0))})
+    {'post': ((0.0, 0.0), (0.0, 3.0)), 'bar': ((0.0, 3.0), (2.0, 3.0)), 'mast': ((5.0, 0.0), (5.0, 10.0))}
+    """
+    places: dict[str, Vector] = {}
+    ends: dict[str, tuple[Vector, Vector]] = {}
+    waiting = dict(members)
+    while waiting:
+        name = next(
+            (n for n, (a, b, _) in waiting.items() if a in places or b in places), next(iter(waiting))
+        )
+        a, b, (dx, dy) = waiting.pop(name)
+        far = max((x for pair in ends.values() for x, _ in pair), default=0.0)
+        right = far + bool(ends) * APART * hypot(dx, dy) - min(dx, 0.0)
+        start = places.get(a) or ((places[b][0] - dx, places[b][1] - dy) if b in places else (right, 0.0))
+        end = places.get(b) or (start[0] + dx, start[1] + dy)
+        ends[name] = (start, end)
+        for node, place in ((a, start), (b, end)):
+            if node:
+                places.setdefault(node, place)
+    return ends
 
 
 def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
