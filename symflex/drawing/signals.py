@@ -7,13 +7,11 @@ Input: a model and the outputs that are at no one place. Output: a :class:`Signa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.expressions import (
     Attribute,
-    Call,
     Equation,
     Expression,
     Name,
@@ -22,12 +20,11 @@ from symflex.expressions import (
     Quotient,
     Sum,
     names,
-    negative,
     number,
     product_of,
     quotient,
-    sum_of,
 )
+from symflex.print.forms.shapes import plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -38,30 +35,6 @@ if TYPE_CHECKING:
 Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
 MOST_AT_SUM: Final = 3
 """Arrows that meet at a sum: from the left, from below, from above."""
-Values = Mapping[str, Expression]
-_S: Final = Name("s")
-
-
-def _lag(time: Expression) -> Expression:
-    return sum_of([number(1), product_of([time, _S])])
-
-
-def _without_ones(polynomial: Expression) -> Expression:
-    terms = polynomial.terms if isinstance(polynomial, Sum) else [polynomial]
-    return sum_of([product_of([t]) for t in terms])
-
-
-FORMULAS: Final[dict[str, Callable[[Values], Expression]]] = {
-    "integrator": lambda v: quotient(v["k"], _S),
-    "lag": lambda v: quotient(v["k"], _lag(v["T"])),
-    "lead_lag": lambda v: quotient(product_of([v["k"], _lag(v["T_1"])]), _lag(v["T_2"])),
-    "pid": lambda v: sum_of(
-        [v["k_p"], quotient(v["k_i"], _S), quotient(product_of([v["k_d"], _S]), _lag(v["T_f"]))]
-    ),
-    "delay": lambda v: Call("exp", negative(product_of([_S, v["T"]]))),
-    "tf": lambda v: quotient(_without_ones(v["num"]), _without_ones(v["den"])),
-}
-"""Transfer functions of blocks that are short enough to be printed in them."""
 
 
 @dataclass
@@ -226,7 +199,7 @@ def whole(value: Expression) -> Expression:
 
 
 def formula(block: PlacedBlock) -> Expression | None:
-    """Return the transfer function of a block with its values, None where it has no short one.
+    """Return the transfer function of a block with its values, None where it has no formula.
 
     Examples
     --------
@@ -236,5 +209,4 @@ def formula(block: PlacedBlock) -> Expression | None:
     >>> format_expression(formula(PlacedBlock("G", BLOCKS["lag"], (("k", number(1)), ("T", Name("tau"))))))
     '1/(1 + tau*s)'
     """
-    written = FORMULAS.get(block.block.type_name) if block.block else None
-    return written(dict(block.values)) if written else None
+    return plain(block.formula, dict(block.values)) if block.formula else None

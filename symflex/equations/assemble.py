@@ -27,7 +27,13 @@ from symflex.algebra import (
 from symflex.budget import spend
 from symflex.equations.against_text import error_of
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
-from symflex.equations.evaluate import ExactEvaluator, Opener, without_squares, written_denominator
+from symflex.equations.evaluate import (
+    ExactEvaluator,
+    Opener,
+    transfer_of,
+    without_squares,
+    written_denominator,
+)
 from symflex.equations.radicals import radicals_of
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
@@ -439,8 +445,8 @@ class _Assembly:
                 continue  # over the ring without kernels there is no value for it
             try:
                 if block.block is not None:
-                    values = {name: evaluator.constant(e) for name, e in block.values}
-                    found[block.name] = self._radicals.tidy(block.block.transfer(s, values))
+                    values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
+                    found[block.name] = self._radicals.tidy(transfer_of(block, values))
                 elif self.nested is not None:
                     found[block.name] = self._radicals.tidy(self.nested(block, self.ring))
             except ZeroDivisionError:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from math import isqrt
 from typing import TYPE_CHECKING
 
@@ -37,21 +37,51 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    fold,
     format_expression,
     names,
     names_among,
     substitute,
 )
+from symflex.library.blocks import StateSpaceBlock
 from symflex.library.elements import LinearForm, Variable
+from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
-    from symflex.model import ModelScope
+    from symflex.model import ModelScope, PlacedBlock
 
 
 OPENED_PARTS = 1_000
 OPENED_DEPTH = 200
+
+
+def transfer_of(block: PlacedBlock, values: Mapping[str, Factored]) -> Factored:
+    """Return the transfer function of a block that is no other model's, for values of s and its parameters.
+
+    Raises ZeroDivisionError.
+
+    Examples
+    --------
+    >>> from symflex.library.blocks import BLOCKS
+    >>> from symflex.model import PlacedBlock
+    >>> ring = Ring(("s", "k"))
+    >>> values = {name: Factored.generator(ring, name) for name in ring.names}
+    >>> (transfer_of(PlacedBlock("G", BLOCKS["integrator"]), values) * values["s"] / values["k"]).is_one
+    True
+    """
+    if block.formula is None:
+        assert isinstance(block.block, StateSpaceBlock)
+        return block.block.transfer(values)
+    found: Factored = fold(
+        block.formula,
+        number=partial(Factored.number, values[LAPLACE].ring),
+        name=values.__getitem__,
+        power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
+        call=lambda _, argument: argument,
+    )
+    return found
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING, ClassVar
@@ -15,21 +14,23 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored
 
 
-class Block(ABC):
+class Block:
     """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``.
 
     A block with ``kernel_time``, the name of one of its parameters, is ``exp(-s*T)`` of that time; it has a
-    generator of its own in the equations, which never call its ``transfer``.
+    generator of its own in the equations, which never evaluate its formula.
     """
 
     type_name: ClassVar[str]
-    summary: ClassVar[str]
+    formula: ClassVar[str] = ""  # the transfer function in s and the parameters; none of state equations
+    remark: ClassVar[str] = ""  # ends the summary
     parameters: ClassVar[tuple[ParameterPort, ...]]
     kernel_time: ClassVar[str] = ""
 
-    @abstractmethod
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the block's transfer function for the given values."""
+    @property
+    def summary(self) -> str:
+        """The formula as people write products, and the remark."""
+        return self.formula.replace("*", " ") + self.remark
 
 
 class Resonance(Block):
@@ -39,8 +40,8 @@ class Resonance(Block):
     """
 
     type_name = "resonance"
-    summary = (
-        "(omega_p/omega_z)^2 (s^2 + 2 zeta_z omega_z s + omega_z^2)/(s^2 + 2 zeta_p omega_p s + omega_p^2)"
+    formula = (
+        "(omega_p/omega_z)^2*(s^2 + 2*zeta_z*omega_z*s + omega_z^2)/(s^2 + 2*zeta_p*omega_p*s + omega_p^2)"
     )
     parameters = (
         ParameterPort("omega_p", "rad/s", "an angular frequency"),
@@ -48,13 +49,6 @@ class Resonance(Block):
         ParameterPort("omega_z", "rad/s", "an angular frequency"),
         ParameterPort("zeta_z", "1", "a damping ratio"),
     )
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the resonance's transfer function."""
-        omega_p, omega_z = values["omega_p"], values["omega_z"]
-        zeros = s**2 + values["zeta_z"] * omega_z * s * 2 + omega_z**2
-        poles = s**2 + values["zeta_p"] * omega_p * s * 2 + omega_p**2
-        return omega_p**2 / omega_z**2 * zeros / poles
 
 
 class Notch(Block):
@@ -64,50 +58,36 @@ class Notch(Block):
     """
 
     type_name = "notch"
-    summary = "(s^2 + 2 zeta_z omega s + omega^2)/(s^2 + 2 zeta_p omega s + omega^2)"
+    formula = "(s^2 + 2*zeta_z*omega*s + omega^2)/(s^2 + 2*zeta_p*omega*s + omega^2)"
     parameters = (
         ParameterPort("omega", "rad/s", "an angular frequency"),
         ParameterPort("zeta_p", "1", "a damping ratio"),
         ParameterPort("zeta_z", "1", "a damping ratio", "0"),
     )
 
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the filter's transfer function."""
-        omega = values["omega"]
-        above, below = (s**2 + values[zeta] * omega * s * 2 + omega**2 for zeta in ("zeta_z", "zeta_p"))
-        return above / below
-
 
 class LowPass(Block):
     """A pair of poles with unit gain at low frequency, times k: a second-order low-pass filter."""
 
     type_name = "low_pass"
-    summary = "k omega^2/(s^2 + 2 zeta omega s + omega^2)"
+    formula = "k*omega^2/(s^2 + 2*zeta*omega*s + omega^2)"
     parameters = (
         ParameterPort("k", "", "a gain", "1"),
         ParameterPort("omega", "rad/s", "an angular frequency"),
         ParameterPort("zeta", "1", "a damping ratio"),
     )
 
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the filter's transfer function."""
-        omega = values["omega"]
-        return values["k"] * omega**2 / (s**2 + values["zeta"] * omega * s * 2 + omega**2)
-
 
 class TransferFunctionBlock(Block):
     """A numerator over a denominator: expressions in s, or lists of coefficients, highest power first."""
 
     type_name = "tf"
-    summary = "num/den, each an expression in s or a list of coefficients (highest power first)"
+    formula = "num/den"
+    remark = ", each an expression in s or a list of coefficients (highest power first)"
     parameters = (
         ParameterPort("num", "", "a numerator"),
         ParameterPort("den", "", "a denominator", "1"),
     )
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the quotient."""
-        return values["num"] / values["den"]
 
 
 class StateSpaceBlock(Block):
@@ -118,7 +98,7 @@ class StateSpaceBlock(Block):
     """
 
     type_name = "ss"
-    summary = "C (s - A)^-1 B + D, with matrices as arrays of rows"
+    remark = "C (s - A)^-1 B + D, with matrices as arrays of rows"
     parameters = (
         ParameterPort("A", "", "a square matrix"),
         ParameterPort("B", "", "a column"),
@@ -126,8 +106,9 @@ class StateSpaceBlock(Block):
         ParameterPort("D", "", "a number", "0"),
     )
 
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the transfer function from the only input to the only output."""
+    def transfer(self, values: Mapping[str, Factored]) -> Factored:
+        """Return the transfer function from the only input to the only output, at values of s and entries."""
+        s = values["s"]
         places = range(1, isqrt(sum(name.startswith("A[") for name in values)) + 1)
         a = [[values[f"A[{i}][{j}]"] for j in places] for i in places]
         b, c = ([values[f"{name}[{i}]"] for i in places] for name in "BC")
@@ -157,58 +138,41 @@ class Integrator(Block):
     """Gain over s."""
 
     type_name = "integrator"
-    summary = "k/s"
+    formula = "k/s"
     parameters = (ParameterPort("k", "", "a gain", "1"),)
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return ``k/s``."""
-        return values["k"] / s
 
 
 class LeadLag(Block):
     """A real zero at ``-1/T_1`` and a real pole at ``-1/T_2``; lead when T_1 > T_2."""
 
     type_name = "lead_lag"
-    summary = "k (1 + T_1 s)/(1 + T_2 s)"
+    formula = "k*(1 + T_1*s)/(1 + T_2*s)"
     parameters = (
         ParameterPort("k", "", "a gain", "1"),
         ParameterPort("T_1", "s", "a time constant"),
         ParameterPort("T_2", "s", "a time constant"),
     )
 
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the compensator's transfer function."""
-        return values["k"] * (values["T_1"] * s + 1) / (values["T_2"] * s + 1)
-
 
 class Lag(Block):
     """A real pole at ``-1/T``: a first-order low-pass filter."""
 
     type_name = "lag"
-    summary = "k/(1 + T s)"
+    formula = "k/(1 + T*s)"
     parameters = (ParameterPort("k", "", "a gain", "1"), ParameterPort("T", "s", "a time constant"))
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the filter's transfer function."""
-        return values["k"] / (values["T"] * s + 1)
 
 
 class Pid(Block):
     """Proportional, integral and filtered derivative action, in parallel form."""
 
     type_name = "pid"
-    summary = "k_p + k_i/s + k_d s/(1 + T_f s)"
+    formula = "k_p + k_i/s + k_d*s/(1 + T_f*s)"
     parameters = (
         ParameterPort("k_p", "", "a proportional gain"),
         ParameterPort("k_i", "", "an integral gain", "0"),
         ParameterPort("k_d", "", "a derivative gain", "0"),
         ParameterPort("T_f", "s", "a time constant", "0"),
     )
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the controller's transfer function."""
-        derivative = values["k_d"] * s / (values["T_f"] * s + 1)
-        return values["k_p"] + values["k_i"] / s + derivative
 
 
 class Delay(Block):
@@ -218,14 +182,9 @@ class Delay(Block):
     """
 
     type_name = "delay"
-    summary = "exp(-s T)"
+    formula = "exp(-s*T)"
     parameters = (ParameterPort("T", "s", "a dead time"),)
     kernel_time = "T"
-
-    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
-        """Return the rational factor beside the kernel, which is one; never called by the equations."""
-        del values
-        return s**0
 
 
 BLOCKS: dict[str, Block] = {

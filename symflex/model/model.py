@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.expressions import Attribute, Equation, names
+from symflex.errors import Text
+from symflex.expressions import Attribute, Equation, names, parse
 from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
 from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
@@ -201,6 +202,12 @@ class PlacedBlock:
     submodel: Model | None = None
     tf: tuple[str, str] | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def formula(self) -> Expression | None:
+        """The transfer function in s and the block's parameters; None of state equations and models."""
+        text = self.block.formula if self.block else ""
+        return parse(Text.alone("<block>", text)) if text else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.equations.evaluate import transfer_of
 from symflex.expressions import (
     FUNCTIONS,
     Call,
@@ -75,5 +76,5 @@ def _opened(placed: PlacedBlock) -> Expression:
         return Call("exp", negative(product_of([values[placed.block.kernel_time], Name(LAPLACE)])))
     ring = Ring((LAPLACE, *values))
     known = {name: Factored.generator(ring, name) for name in ring.names}
-    transfer = placed.block.transfer(known[LAPLACE], known)
+    transfer = transfer_of(placed, known)
     return substitute(ProductPrinter(Arranger.plain(ring)).quotient(transfer), values)
