@@ -30,6 +30,7 @@ from symflex.transfer import BoundNested
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.analysis.rational.laurent import PrincipalPart
     from symflex.analysis.time_response.function_size import Annulus
     from symflex.analysis.time_response.partial_fractions import ExponentialTerm
     from symflex.analysis.time_response.sample_times import SampleTimes
@@ -64,12 +65,11 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
 
 def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, count: int) -> PartialSum:
     """Return the sum over so many modes."""
-    # Zeros matter in residues alone; to find them takes as long as to find the poles.
-    located = locate(bound, Modes(count), EFFORT.pole_digits, with_zeros=False).complete()
-    poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
-    rings = _rings(bound, poles, integrations)
-    apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _ in rings)]
-    parts = residues_at(bound, apart, EFFORT.pole_digits)
+    try:
+        rings, parts = _parts(bound, integrations, count, with_zeros=False)
+    except UncertifiedError:
+        # A zero may lie on a root of the denominator, as where a wavenumber vanishes in both.
+        rings, parts = _parts(bound, integrations, count, with_zeros=True)
     with precision(BITS):
         origin = at_origin(expand_at_zero(bound, integrations - 1, EFFORT.pole_digits), integrations)
         terms = [term_of(part, integrations) for part in parts]
@@ -97,6 +97,20 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
                 values[0] = begun + arb(0, EFFORT.surer * abs(begun - sooner).upper())
                 at_times = (arb(0), *at_times[1:])
         return PartialSum((*origin, *terms), tuple(values), rest, at_times, method="estimated modes")
+
+
+def _parts(
+    bound: AnyBoundFunction, integrations: int, count: int, *, with_zeros: bool
+) -> tuple[list[tuple[Annulus, list[ExponentialTerm]]], tuple[PrincipalPart, ...]]:
+    """Return the rings around poles close to one another, with their sums, and the residues at the others.
+
+    Zeros matter in residues alone; to find them takes as long as to find the poles.
+    """
+    located = locate(bound, Modes(count), EFFORT.pole_digits, with_zeros=with_zeros).complete()
+    poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
+    rings = _rings(bound, poles, integrations)
+    apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _ in rings)]
+    return rings, residues_at(bound, apart, EFFORT.pole_digits)
 
 
 def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -> arb:

@@ -397,3 +397,30 @@ def test_a_search_that_ends_by_itself_leaves_what_was_proved_before(monkeypatch)
     assert len(asked) == 2
     assert found.certified
     assert np.all(np.abs(found.values - whole.values) <= found.radius + whole.radius)
+
+
+@pytest.mark.slow
+def test_modes_are_summed_where_a_wavenumber_vanishes_in_numerator_and_denominator():
+    # There, at s = -0.1 +- j sqrt(0.99), both strings move as rigid bodies, and no pole is.
+    half = 'type = "string", N = "N", rhoA = "mu", l = "L/2", c_f = "c", k_f = "k"'
+    bound = of(
+        f"""
+parameters = {{ N = 1, mu = 1, L = 2, c = 0.2, k = 1 }}
+elements.a = {{ {half}, between = ["ground", "x"] }}
+elements.b = {{ {half}, between = ["x", "ground"] }}
+elements.m = {{ type = "mass", at = "x", m = 1 }}
+inputs.F = {{ force = "x" }}
+outputs.X = "x"
+"""
+    )
+
+    def receptance(s):
+        gamma = mpmath.sqrt(s**2 + s / 5 + 1)
+        return 1 / (s**2 + 2 * gamma * mpmath.coth(gamma))
+
+    times = [0.5, 2.0, 5.0]
+    found = estimated(bound, 1, SampleTimes.of(times))
+    for t, value in zip(times, found.values, strict=True):
+        # Echoes bend it: the series of de Hoog, Knight & Stokes (1982), not Talbot's contour.
+        y = mpmath.invertlaplace(lambda s: receptance(s) / s, t, method="dehoog", degree=60)
+        assert abs(value.mid() - float(y)) <= value.rad() < 1e-4
