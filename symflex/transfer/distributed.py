@@ -143,7 +143,8 @@ class KernelReduction:
         quotient, shared = back(quotient), back(shared)
         if matched:
             quotient, _ = self._radicals.in_lowest_terms(quotient)
-        ratio = _split_contents(self._shortest(quotient), self._kernel_content)
+        shortest = _with_fewer_waves(self._shortest(quotient), table)
+        ratio = _split_contents(shortest, self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)

@@ -402,3 +402,31 @@ def test_two_beams_may_differ_in_what_their_wavenumbers_are_not_tied_to_a_parame
             second = transition(s, values | {"k_f": values["k"], "c_f": values["c"]})
             wanted = complex(tip_receptance(second * first))
             assert abs(pipeline.bind(tf)(complex(s)) - wanted) <= 1e-11 * abs(wanted)
+
+
+def test_a_pipe_with_friction_has_no_wavenumber_where_the_square_of_one_is_shorter():
+    # Wylie & Streeter 1978, Fluid Transients, chapter 12: p(l)/p(0) = 1/(cosh(q) + Z/R_v sinh(q)).
+    (tf,) = functions(
+        """
+        parameters.c   = "1250 m/s"
+        parameters.R_f = "9e5 Pa*s/m^4"
+        parameters.R_v = "3e9 Pa*s/m^3"
+        [fields.pipe]
+        unknowns   = ["p", "q"]
+        domain     = ["0", "l"]
+        equations  = ["p' = -(rho/A*s + R_f)*q", "q' = -A/(rho*c^2)*s*p"]
+        conditions = ["p(0) = p_0", "p(l) = R_v*q(l)"]
+        [inputs]
+        p_0 = { unit = "Pa" }
+        [outputs]
+        P = "p(l)"
+        """.replace("parameters.", "").replace("\n        ", "\n")
+    ).values()
+    assert {str(f) for f, _ in tf.num.factors} == {"A", "R_v"}
+
+    def along(s):
+        inertance, compliance = 2700 / mp.mpf("1e-4") * s + 9e5, mp.mpf("1e-4") / (2700 * 1250**2) * s
+        gamma = mp.sqrt(inertance * compliance)
+        return 1 / (mp.cosh(gamma * LENGTH) + gamma / compliance / mp.mpf(3e9) * mp.sinh(gamma * LENGTH))
+
+    agrees(tf, along)
