@@ -56,7 +56,7 @@ from symflex.transfer.balls import ball
 from symflex.transfer.of_model import assemble
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
     from symflex.equations import Equations
     from symflex.model import ExactValue, Model, Output, PlacedElement
@@ -98,11 +98,13 @@ class PassiveLoop:
         return min(atan2(self.damping * omega, self.stiffness), pi / 2)
 
 
-def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue]]) -> PassiveLoop | None:
+def passive_loop(
+    model: Model, gain: str, values: Iterable[tuple[str, ExactValue]], reversed_: Container[str] = ()
+) -> PassiveLoop | None:
     """Return how a loop is closed, ``None`` where it is not proved to be passive for all K > 0.
 
     ``values`` are those of the parameters, with any value of the gain. Without the name of one, which is
-    empty then, the loop is as they say.
+    empty then, the loop is as they say. Axial forces of the beams ``reversed_`` have the wrong sign.
     """
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
     known.pop(gain, None)  # elements, too, shall be passive whatever positive value it has
@@ -128,7 +130,7 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
         replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
     ends = [_Acting.of(source, equations.model) for source in sources]
-    return _Structure(equations, rest, gain, line, known).closed_at(ends)
+    return _Structure(equations, rest, gain, line, known, reversed_).closed_at(ends)
 
 
 def _dynamic(model: Model) -> dict[str, Expression]:
@@ -171,9 +173,9 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> tu
     line = line_of(model, known)
     beams = [use for use in model.elements if isinstance(use.element, Beam)]
     pressed = [use for use in beams if parameter_signs(use, line).get("N") == -1]
-    # Where beams are pulled, the same rests on the axis: no proof of that depends on the force's sign.
+    # Where beams are pulled, the same rests on the axis, as far as no proof of that depends on the sign.
     pulled = replace(model, elements=tuple(_pulled(u) if u in pressed else u for u in model.elements))
-    loop = passive_loop(pulled, "", known) if pressed else None
+    loop = passive_loop(pulled, "", known, {use.name for use in pressed}) if pressed else None
     if loop is None or not is_passive(pulled, known):
         return None
     squares = []
@@ -240,6 +242,7 @@ class _Structure:
     gain: str
     line: Line
     values: Mapping[str, ExactValue]
+    reversed_: Container[str]  # names of beams whose axial force has the wrong sign
 
     def closed_at(self, places: Sequence[_Acting]) -> PassiveLoop | None:
         """Return how loops are closed by what acts at one end each, or between two."""
@@ -318,7 +321,7 @@ class _Structure:
                 # Whatever loses no energy bends, twists and shears nowhere, or nowhere leaves its place.
                 is_lossy = 1 in (given.get("eta"), given["c_f"])
                 members.append((states, len(use.element.ends) if is_lossy else len(states[0])))
-                if _grows(use, given):
+                if use.name not in self.reversed_ and _grows(use, given):
                     beams.append(states)
                 if _loses(use, given, self.line):
                     resting.update(v for state in states for v in state if v is not None)
@@ -502,11 +505,16 @@ def _is_stable(coefficients: Mapping[int, arb]) -> bool:
 
 
 def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
-    """Tell whether a member is a beam whose states all grow once they are positive."""
+    """Tell whether a member is a beam whose states all grow once they are positive, as a tension lets them.
+
+    On the axis ``(EI y'')' = V + N y'`` and ``V' = rho A omega^2 y``, with V minus the force across.
+    """
     if not isinstance(use.element, Beam) or dict(use.choices).get("theory") != "euler-bernoulli":
         return False
-    return all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l")) and all(
-        signs[n] == 0 for n in ("eta", "c_f", "k_f", "N")
+    return (
+        all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l"))
+        and all(signs[n] == 0 for n in ("eta", "c_f", "k_f"))
+        and signs["N"] in (0, 1)
     )
 
 

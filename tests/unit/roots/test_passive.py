@@ -9,7 +9,7 @@ from string import Template
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
-from scipy.linalg import eigvals
+from scipy.linalg import eigvals, expm
 
 from symflex import pipeline
 from symflex.errors import SpecError
@@ -243,6 +243,23 @@ def test_an_absorber_without_strain_moves_with_the_tip_and_holds_it():
     assert all_rests(HELD + ABSORBER)
     # In the middle of a string it does not feel every other mode.
     assert not all_rests(STRUNG + ABSORBER)
+
+
+def test_a_dashpot_at_the_tip_stops_a_cantilever_that_is_pulled():
+    # A mode that the dashpot does not feel would be one of a clamped beam whose tip turns alone. At any
+    # frequency a tension adds to the deflection that the turn then gives at the clamp: it is never zero.
+    text = 'symflex = 1\ninputs.F = { force = "tip" }\noutputs.X = "tip"\n[elements]\n'
+    text += 'loss = { type = "damper", between = ["tip", "ground"], b = 1 }\n'
+    text += 'arm = { type = "beam", between = ["ground", "tip"], EI = 1, rhoA = 1, l = 1, N = $section }'
+    for tension in (0, 5, 400):
+        assert all_rests(text, str(tension)), tension
+        for square in np.geomspace(1e-4, 1e6, 30):  # deflection, slope, moment and force, from the tip on
+            law = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [0, tension, 0, 1], [square, 0, 0, 0]])
+            assert expm(law)[0, 1] >= 1
+    # Where it is pressed, the sum is not of one sign, and nothing is said.
+    found = fastest_growth(pipeline.loads(Template(text).substitute(section="-1")), ())
+    assert found is not None
+    assert not found[1]
 
 
 def test_finite_elements_are_stable_too():
