@@ -76,6 +76,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     if SWEEP in (spec.path, given.kind):
         return _plot_sweep(spec, given)
+    if given.kind.endswith(".toml") and not Path(spec.path).exists():
+        raise _exchanged(spec, given)
     path = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
     if given.modes is not None:
@@ -129,6 +131,11 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
+
+
+def _exchanged(spec: Specification, given: PlotOptions) -> UsageError:
+    hint = f"the file comes first: symflex plot {given.kind} {spec.path}"
+    return UsageError(Diagnostic("SF902", f"there is no file '{spec.path}'", None, hint))
 
 
 def _plot_sweep(spec: Specification, given: PlotOptions) -> int:

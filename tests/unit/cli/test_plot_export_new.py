@@ -269,6 +269,11 @@ def test_a_transfer_function_that_is_zero_is_left_out_of_a_plot(shell):
     assert done.err.endswith("Z/F is identically zero and is left out\nwrote a.svg\n")
 
 
+def test_a_file_and_a_figure_in_the_wrong_order_are_put_right(shell):
+    done = shell("plot", "bode", "x.toml")
+    assert (done.code, done.err.endswith("the file comes first: symflex plot x.toml bode\n")) == (2, True)
+
+
 @pytest.mark.slow
 def test_what_is_written_in_band_form_is_called_so(shell):
     arm = WORKED / "frames" / "two_link_arm.toml"
