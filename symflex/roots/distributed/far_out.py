@@ -320,7 +320,8 @@ class _SumFarOut:
             unit = (value.log() / order + start).exp()
             named[law.wavenumbers[0]] = _Power(Fraction(power, order), unit)
         arguments = []
-        for argument, length in zip(self.sums.arguments, self.sums.lengths, strict=True):
+        decays: dict[int, acb] = {}  # of delayed terms, such as what a belt loses on the way
+        for i, (argument, length) in enumerate(zip(self.sums.arguments, self.sums.lengths, strict=True)):
             if argument.wavenumber:
                 known = named[argument.wavenumber]
                 arguments.append(_Power(known.power, known.unit * length))
@@ -329,6 +330,9 @@ class _SumFarOut:
             if found is None:
                 return None
             power, value = found
+            linear = _linear(self.kernels, argument.rate)
+            if linear is not None:
+                value, decays[i] = linear[0], -linear[1] * length
             is_delay = power == 1 and bool(value.imag == 0) and bool(value.real * length.real > 0)
             arguments.append(_Power(Fraction(power), -value * length, is_delay))
         terms: Terms = {}
@@ -337,8 +341,9 @@ class _SumFarOut:
         ):
             for powers, amplitude in zip(each.terms, coefficients, strict=True):
                 own = terms.setdefault(powers, {})
+                decay = sum((decays[i] * acb(a, b) for i, a, b in powers if i in decays), acb(0)).exp()
                 for number, factors in amplitude:
-                    exponent, unit = Fraction(0), number * scale
+                    exponent, unit = Fraction(0), number * scale * decay
                     for name, e in factors:
                         exponent += named[name].power * e
                         unit = unit * named[name].unit ** e
@@ -379,6 +384,24 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
         power += degree_in(factor, 0) * exponent
         total = total * found**exponent
     return power, total
+
+
+def _linear(kernels: KernelValues, value: Factored) -> tuple[acb, acb] | None:
+    """Return a and b of a rate ``a s + b``; None of any other."""
+    names = kernels.names
+    unit, rate = acb(ball(value.unit)), (acb(0), acb(1))
+    for factor, exponent in value.factors:
+        found = [
+            summed(terms_of(c), names[1:], lambda name: acb(kernels.constants[name]), acb(1))
+            for c in coefficients_in_s(factor, Ring(tuple(names[1:])))
+        ]
+        if len(found) == 1:
+            unit = unit * found[0] ** exponent
+        elif len(found) == 2 and exponent == 1 and rate[0] == 0:  # noqa: PLR2004
+            rate = (found[1], found[0])
+        else:
+            return None
+    return (unit * rate[0], unit * rate[1]) if rate[0] != 0 else None
 
 
 @dataclass(frozen=True, slots=True)

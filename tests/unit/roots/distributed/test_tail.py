@@ -248,6 +248,13 @@ def test_transport_that_grows_on_its_way_is_not_taken_for_a_delay():
     assert isinstance(right_tail(function, [shifted**0, shifted], [acb(2), acb(1)], 1.0), str)
 
 
+def test_transport_with_decay_is_a_delay_that_fades():
+    # 1 - r exp(-0.2) exp(-s): poles at Re s = log(r) - 0.2.
+    for share, is_bounded in ((1.1, True), (1.2, True), (1.23, False), (1.3, False)):
+        found = tail(field("w' + (s + 0.2)*w = 0", f"w(0) = F + {share}*w(1)"))
+        assert isinstance(found, float) == is_bounded, share
+
+
 def test_too_many_exponentials_are_not_looked_at():
     function = delayed("s + s*D + 1")
     decay = function.ratio.ring.generator(function.kernels.generators[0])
