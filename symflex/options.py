@@ -122,7 +122,7 @@ class DeriveOptions:
 class ExportOptions:
     """Options of ``symflex export``."""
 
-    target: str = option("", "--to", required=True, metavar="TARGET", help="One of the targets below.")
+    target: str = option("", "--to", metavar="TARGET", help="One of the targets below.  [required]")
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
     form: str | None = option(
         None,

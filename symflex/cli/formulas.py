@@ -201,7 +201,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
     if given.target not in EXPORTERS:
         hint = nearest(given.target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
-        raise UsageError(Diagnostic("SF902", f"there is no export target '{given.target[:64]}'", None, hint))
+        is_named = f"there is no export target '{given.target[:64]}'"
+        message = is_named if given.target else "what to export to is missing: --to TARGET"
+        raise UsageError(Diagnostic("SF902", message, None, hint))
     exporter = _chosen(EXPORTERS[given.target], given)
     is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
     if given.output:

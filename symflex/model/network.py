@@ -172,6 +172,7 @@ def _values(
     who = f"{element.type_name} '{entry.key}'"
     given: dict[str, Expression] = {}
     complete = True
+    said: list[ParameterPort] = []
     spare = _spare(table, element, choices)
     for parameter in element.parameters:
         expression: Expression | None = None
@@ -201,12 +202,19 @@ def _values(
             possible = [p for p in element.parameters if p.applies(choices.values())]
             listed = ", ".join(p.name for p in possible if not p.of)
             products = ", ".join(f"{p.name} for {'*'.join(p.of)}" for p in possible if p.of)
-            reader.note(
-                "SF214",
-                f"{who} lacks {parameter.name}, {parameter.doc}",
-                entry.key_span,
-                f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products),
-            )
+            # Beside EI, I is needed for another product alone: that one is missing, and said once.
+            with_it = [p for p in possible if parameter.name in p.of]
+            given_of = [p for p in with_it if table.get(p.name) is not None]
+            left = [p for p in with_it if given_of and not any(map(table.get, (p.name, *p.of)))]
+            missing = left[0] if left else parameter
+            if missing not in said:
+                said.append(missing)
+                reader.note(
+                    "SF214",
+                    f"{who} lacks {missing.name}, {missing.doc}",
+                    entry.key_span,
+                    f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products),
+                )
         else:
             continue
         if expression is None:

@@ -115,6 +115,12 @@ def test_a_figure_without_values_says_which(shell):
     assert "parameter 'm' has no value" in done.err
 
 
+def test_without_a_target_all_targets_are_listed(shell):
+    done = shell("export", "x.toml")
+    assert done.code == 2
+    assert all(target in done.err for target in ("--to", *EXPORTERS))
+
+
 @pytest.mark.slow
 def test_every_target_is_exported_to_stdout(shell):
     for target in EXPORTERS:
