@@ -46,9 +46,13 @@ THINGS: tuple[Thing, ...] = (
     ),
     Thing(("damper", "dashpot", "shock_absorber", "viscous_friction"), "damper, rotary_damper"),
     Thing(("tyre", "tire", "mount", "isolator", "bearing", "contact"), "spring", "with a damper beside it"),
+    Thing(("torsion_damper", "torsional_damper", "rotational_damper", "angular_damper"), "rotary_damper"),
     Thing(("coupling", "joint_stiffness", "harmonic_drive", "flexspline"), "torsion_spring"),
+    Thing(("torsional_spring", "rotational_spring", "rotary_spring", "angular_spring"), "torsion_spring"),
     Thing(("inerter",), "transformer", "to an inertia of its own: J = b*r^2, ratio = 1/r"),
     Thing(("dry_friction", "coulomb_friction", "stiction", "backlash"), "", "it is not linear; linearise it"),
+    Thing(("force", "actuator_force"), "force_source", 'or give it as an input, { force = "x" }'),
+    Thing(("torque", "moment"), "torque_source", 'or give it as an input, { torque = "theta" }'),
     # Transmissions
     Thing(
         ("gear", "gearbox", "gears", "reducer"),

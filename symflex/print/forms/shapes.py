@@ -451,9 +451,15 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     wanted = {*written, Fraction(1)}
 
     def led_by_s(part: Expression) -> Expression:
-        if not isinstance(part, Sum) or powers_of(part.terms[0])[1].keys() != {S}:
+        if not isinstance(part, Sum):
             return part
-        scaled = _scaled(part, divisor := _typed_scale(part, wanted))
+        fronts = [powers_of(term)[0] for term in part.terms]
+        if powers_of(part.terms[0])[1].keys() == {S}:
+            divisor = _typed_scale(part, wanted)
+        else:  # what several parts were divided by goes on to the front
+            are_whole = all(x.denominator == 1 for x in fronts)
+            divisor = Fraction(gcd(*map(int, fronts)) if are_whole else 1)
+        scaled = None if divisor == 1 else _scaled(part, divisor)
         return part if scaled is None else product_of([number(divisor), scaled])
 
     (above, powers), (below, divisors) = (powers_of(rebuilt(e, led_by_s)) for e in (num, den))

@@ -420,6 +420,27 @@ outputs.X = "x"
     assert printed(tf_of(closed, "X", "w")) == ("K*s + Z", "m*s^2 + K*s + Z")
 
 
+def test_what_a_typed_damping_is_multiplied_by_is_cancelled():
+    # Two masses on a spring, whose drive has a notch: 2*0.7*2*pi is 14/5 pi, and the 5 is of all terms.
+    text = """symflex = 1
+parameters = { K = {}, m = {}, M = {}, b = {}, k = {}, f = "200 Hz" }
+elements.motor = { type = "mass", at = "x", m = "m" }
+elements.load = { type = "mass", at = "y", m = "M" }
+elements.shaft = { type = "spring", between = ["x", "y"], k = "k" }
+elements.loss = { type = "damper", between = ["x", "y"], b = "b" }
+elements.drive = { type = "force_source", at = "x", f = "N*K*(r - x)" }
+blocks.N = { type = "notch", omega = "f", zeta_p = 0.7 }
+inputs.r = { unit = "m" }
+outputs.Y = "y"
+"""
+    num, den = printed(tf_of(text, "Y", "r"))
+    assert num == "K*(b*s + k)*(s^2 + 4*pi^2*f^2)"
+    assert den == (
+        "M*s^2*(m*s^2*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2) + K*(s^2 + 4*pi^2*f^2))"
+        " + (b*s + k)*(s^2*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2)*(m + M) + K*(s^2 + 4*pi^2*f^2))"
+    )
+
+
 DELAYS = """[blocks]
 A = { type = "delay", T = "T_1" }
 B = { type = "delay", T = "T_2" }
