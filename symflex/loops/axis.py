@@ -8,6 +8,7 @@ its sign; else it is halved. Near 0, where wavenumbers vanish, power series with
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import exp, inf, pi
 from typing import TYPE_CHECKING
 
@@ -148,6 +149,7 @@ class LoopAtOrigin:
 
     orders: tuple[int, int]  # of the roots of A and B at 0, exact
     series: tuple[LocalSeries, LocalSeries]  # of A and B
+    ratio: Fraction | None = None  # A/B at 0 where that is known to be a number, neither zero nor infinite
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""
@@ -176,6 +178,30 @@ class LoopAtOrigin:
             else:
                 value = first[1] * second[0] - first[0] * second[1]
             return bool(value != 0)
+
+    def leaves_one(self, gain: Fraction, radius: arb) -> bool:
+        """Tell whether the loop gain is exactly one at 0, and nowhere else on the axis within a radius.
+
+        There ``abs(A)^2 - K^2 abs(B)^2`` is omega squared times what differs from 0.
+        """
+        if self.ratio is None or self.ratio**2 != gain**2:
+            return False
+        with precision(ORIGIN_BITS):
+            omega = arb(0).union(radius)
+            first, second = (self._rise(i, omega) for i in (0, 1))
+            return bool(first - ball(gain**2) * second != 0)
+
+    def _rise(self, which: int, omega: arb) -> arb:
+        """Return ``(u^2 + omega^2 v^2 - u(0)^2)/omega^2``, of order 0."""
+        u, v = self._parts(which, omega)
+        series = self.series[which]
+        start, *others = (c.real for c in series.coefficients[::2])
+        change = arb(0)
+        for coefficient in reversed(others):
+            change = -coefficient - omega * omega * change
+        share = omega.upper() / series.reach
+        rest = series.bound * share ** (len(series.coefficients) - 2) / (1 - share) / series.reach**2
+        return (change + arb(0, rest.upper())) * (u + start) + v * v
 
     def _parts(self, which: int, omega: arb) -> tuple[arb, arb]:
         """Return u and v, functions of omega squared, of ``u + j omega v``."""
@@ -228,4 +254,19 @@ def loop_at_origin(function: LoopFunction) -> LoopAtOrigin | None:
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in own.coefficients)
             series.append(replace(own, coefficients=scaled, bound=own.bound * abs(scale)))
-    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]))
+    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function))
+
+
+def _ratio_at_zero(function: LoopFunction) -> Fraction | None:
+    """Return A/B at s = 0 of a loop with dead time and no waves, None where it is not told."""
+    bound = function.bound
+    ring, kernels = bound.ratio.ring, bound.kernels.kernels
+    if any(k.function != "exp" or not k.dispersion.shift.exponent_of(ring.context.gen(0)) for k in kernels):
+        return None
+    images = [ring.context.gen(i) for i in range(len(ring.names))]
+    images[0] = ring.constant(0)
+    for kernel in kernels:
+        images[ring.index[kernel.generator]] = ring.constant(1)
+    a, b = (Factored.polynomial(ring, ring.compose(f, images)) for f in (function.a, function.b))
+    ratio = None if a.is_zero or b.is_zero else a / b
+    return ratio.unit if ratio is not None and ratio.is_constant else None

@@ -433,6 +433,8 @@ def distributed_crossovers(
                 break
             if a.abs_upper() < share * b.abs_lower() and orders[1] <= orders[0]:
                 break
+            if origin.leaves_one(nominal, arb(first)):
+                break
             first /= 2
         else:
             # As where it is one at s = 0 itself: nothing is gained by going closer.
