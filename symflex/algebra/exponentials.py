@@ -143,6 +143,40 @@ class Exponentials:
             n for n, a in zip(center, self.angles, strict=True) if a.kind == "hyperbolic"
         )
 
+    def restore_halved(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, tuple[int, ...]]:
+        """Return a polynomial over the coordinates in kernels of half the length, of whatever parity it is.
+
+        Returned are f over the ring, whose kernels now stand for half their length, and per hyperbolic angle
+        n with ``polynomial = f * prod(E^(n/2))``.
+        """
+        source = self.coordinates
+        places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
+        monomials = polynomial.monoms()
+        # From the lowest to the highest power of E, so that a bare power of E leaves nothing behind.
+        highest = [
+            sum(bound(int(m[place[0]]) for m in monomials) for bound in (min, max)) for place in places
+        ]
+        kept = [(self.ring.index[n], source.index[n]) for n in self._kept]
+        total = self.ring.constant(0)
+        powers: dict[tuple[int, int], fmpz_mpoly] = {}
+        for monomial, coefficient in polynomial.terms():
+            exponents = [0] * len(self.ring.names)
+            for target, i in kept:
+                exponents[target] = int(monomial[i])
+            term = self.ring.context.from_dict({tuple(exponents): int(coefficient)})
+            for number, (angle, place, n) in enumerate(zip(self.angles, places, highest, strict=True)):
+                c, s = self.ring.generator(angle.even.generator), self.ring.generator(angle.odd.generator)
+                if angle.kind == "hyperbolic":
+                    k = 2 * int(monomial[place[0]]) - n
+                    if (number, k) not in powers:
+                        powers[number, k] = (c + s) ** k if k >= 0 else (c - s) ** -k
+                    term = term * powers[number, k]
+                else:
+                    a, b = (int(monomial[i]) for i in place)
+                    term = term * s**a * c**b
+            total = total + term
+        return total, tuple(n for n, a in zip(highest, self.angles, strict=True) if a.kind == "hyperbolic")
+
     def split(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return a polynomial over the coordinates as one free of kernels times the rest."""
         kernels = {k.generator for k in self.table.kernels}

@@ -25,6 +25,7 @@ from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
 from symflex.transfer.balls import ball
@@ -146,7 +147,7 @@ class DistributedFactors:
     def _function(self, gain: Fraction) -> KernelFunction:
         whole = self._product(gain)
         s = whole.ring.context.gen(0)
-        return KernelFunction(self.bound, whole.filter(lambda f: f != s))
+        return KernelFunction(*without_squares(self.bound, whole.filter(lambda f: f != s)))
 
     def is_mirrored(self, function: LoopFunction) -> bool:
         """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""

@@ -35,7 +35,7 @@ from symflex.roots.functions.kernel_function import (
     has_kernels,
     split_off_kernels,
 )
-from symflex.roots.functions.simplified import without_reflections
+from symflex.roots.functions.simplified import without_reflections, without_squares
 from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
@@ -92,7 +92,7 @@ class Side:
         self._lossless: LosslessSearch | None = None
         if is_kernel := has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
-            self.function = KernelFunction(bound, _without_laplace(plain) * mixed)
+            self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             require_lowest(bound)
             self._winding = CertifiedWinding(self.function)
             self._origin, self._order = roots_at_zero(

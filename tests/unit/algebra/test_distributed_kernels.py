@@ -376,6 +376,27 @@ def test_restored_kernels_times_what_was_divided_out_have_the_value():
             assert mp.almosteq(value(restored, values) * out, wanted, 1e-28), kind
 
 
+def test_what_is_restored_in_half_the_length_has_the_value():
+    for kind in ["wave", "bending", "pair"]:
+        found, change, _ = mixed(kind)
+        gens = [change.coordinates.generator(c) for a in change.angles for c in a.coordinates]
+        s = change.coordinates.generator("s")
+        polynomial = gens[0] ** 3 * s + 2 * gens[0] * gens[-1] ** 2 - 5 * gens[0] ** 4 * gens[-1] * gens[1]
+        whole = generator_values(found)
+        halves = dict(whole)
+        for kernel in found.table.kernels:
+            x = whole[kernel.wavenumber] * value(kernel.length, POINT) / 2
+            halves[kernel.generator] = getattr(mp, kernel.function)(x)
+        restored, powers = change.restore_halved(polynomial)
+        places = in_coordinates(change, whole)
+        waves = [places[a.coordinates[0]] for a in change.angles if a.kind == "hyperbolic"]
+        out = mp.fprod(mp.sqrt(e) ** n for e, n in zip(waves, powers, strict=True))
+        found_value = polynomial_value(restored, found.kernel_ring.names, halves) * out
+        assert mp.almosteq(
+            found_value, polynomial_value(polynomial, change.coordinates.names, places), 1e-28
+        ), kind
+
+
 def test_what_is_free_of_kernels_is_split_off():
     found = propagate(BASE, [(Dispersion("w", "wave", KINDS["wave"], R), [L])])
     change = Exponentials(found.kernel_ring, found.table)

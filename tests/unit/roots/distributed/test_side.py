@@ -417,10 +417,14 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(monke
 
 def test_what_kernels_vanish_like_at_0_is_a_root_there():
     for engine in ENGINES:
-        # cosh(s) - 1, with a double root at 0.
+        # cosh(s) - 1, with double roots at 0 and at every 2 pi j n.
         source = bound(ROD)
         ring = source.ratio.ring
         (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
         one = Side(source, Factored.polynomial(ring, cosh - 1), 20, engines=(engine,))
-        (zero,) = one.at_origin
+        one.extend(4)
+        (zero,) = (r for r in one.roots if r.is_zero)
         assert zero.multiplicity == 2, engine
+        found = sorted((float(r.im), r.multiplicity) for r in one.roots if r.im > 0)[:2]
+        assert found == [(pytest.approx(2 * pi), 2), (pytest.approx(4 * pi), 2)], engine
+        assert one.prove(Modes(4)).is_complete, engine
