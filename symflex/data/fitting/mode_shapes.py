@@ -185,10 +185,13 @@ def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Rea
 def _shown_poles(fit: ResonanceFit) -> tuple[Real, Real]:
     """Return the poles of the resonances that have mode shapes: in the band, and determined by the data.
 
-    SF616 when there are none.
+    Where the data determine none, which makes the fit poor, all in the band have shapes. SF616 when there are
+    none.
     """
     found, errors = fit.resonances, fit.standard_errors()
     shown = fit.modes & (errors.zeta_p <= WEAK * found.zeta_p)
+    if not shown.any():
+        shown = fit.modes
     if not shown.any():
         message = "the response at the driven point shows no resonance"
         raise FitError(Diagnostic("SF616", message, None, "check --driving and --band"))
