@@ -201,9 +201,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
     if given.target not in EXPORTERS:
         hint = nearest(given.target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
-        is_named = f"there is no export target '{given.target[:64]}'"
-        message = is_named if given.target else "what to export to is missing: --to TARGET"
-        raise UsageError(Diagnostic("SF902", message, None, hint))
+        wrong = f"there is no export target '{given.target[:64]}'"
+        missing = "what to export to is missing: --to TARGET"
+        raise UsageError(Diagnostic("SF902", wrong if given.target else missing, None, hint))
     exporter = _chosen(EXPORTERS[given.target], given)
     is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
     if given.output:

@@ -250,14 +250,15 @@ class Distributed:
         ``states`` are those of line elements at their first ends.
         """
         owner, dot, _ = call.name.partition(".")
-        at, propagation = self.evaluator.constant(call.argument), self.propagation
+        at, inputs = self.evaluator.constant(call.argument), tuple[Variable, ...]()
         if dot:
             medium, _ = self.lines[owner]
-            own = medium, states[owner], (), self.along[call.name]
-            return _value(*own, call.order, medium.way(at), propagation, call.argument)
-        found = self.solutions[call.name]
-        own_state = found.medium, found.initial, found.inputs, call.name
-        return _value(*own_state, call.order, at - found.origin, propagation, call.argument)
+            initial, name, length = states[owner], self.along[call.name], medium.way(at)
+        else:
+            found = self.solutions[call.name]
+            medium, initial, inputs = found.medium, found.initial, found.inputs
+            name, length = call.name, at - found.origin
+        return _value(medium, initial, inputs, name, call.order, length, self.propagation, call.argument)
 
 
 class _Demands:

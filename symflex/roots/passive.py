@@ -99,12 +99,12 @@ class PassiveLoop:
 
 
 def passive_loop(
-    model: Model, gain: str, values: Iterable[tuple[str, ExactValue]], reversed_: Container[str] = ()
+    model: Model, gain: str, values: Iterable[tuple[str, ExactValue]], pressed: Container[str] = ()
 ) -> PassiveLoop | None:
     """Return how a loop is closed, ``None`` where it is not proved to be passive for all K > 0.
 
     ``values`` are those of the parameters, with any value of the gain. Without the name of one, which is
-    empty then, the loop is as they say. Axial forces of the beams ``reversed_`` have the wrong sign.
+    empty then, the loop is as they say. The beams ``pressed`` are in the model as if pulled.
     """
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
     known.pop(gain, None)  # elements, too, shall be passive whatever positive value it has
@@ -130,7 +130,7 @@ def passive_loop(
         replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
     ends = [_Acting.of(source, equations.model) for source in sources]
-    return _Structure(equations, rest, gain, line, known, reversed_).closed_at(ends)
+    return _Structure(equations, rest, gain, line, known, pressed).closed_at(ends)
 
 
 def _dynamic(model: Model) -> dict[str, Expression]:
@@ -242,7 +242,7 @@ class _Structure:
     gain: str
     line: Line
     values: Mapping[str, ExactValue]
-    reversed_: Container[str]  # names of beams whose axial force has the wrong sign
+    pressed: Container[str]  # names of beams that are in the equations as if pulled
 
     def closed_at(self, places: Sequence[_Acting]) -> PassiveLoop | None:
         """Return how loops are closed by what acts at one end each, or between two."""
@@ -321,7 +321,7 @@ class _Structure:
                 # Whatever loses no energy bends, twists and shears nowhere, or nowhere leaves its place.
                 is_lossy = 1 in (given.get("eta"), given["c_f"])
                 members.append((states, len(use.element.ends) if is_lossy else len(states[0])))
-                if use.name not in self.reversed_ and _grows(use, given):
+                if use.name not in self.pressed and _grows(use, given):
                     beams.append(states)
                 if _loses(use, given, self.line):
                     resting.update(v for state in states for v in state if v is not None)

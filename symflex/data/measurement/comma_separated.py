@@ -119,7 +119,7 @@ def _listed(table: TextTable) -> _Rewritten | None:
     names = re.findall(r"^[ \t]*\d+[ \t]+(\S+)", head.partition("\nVariables:\n")[2], re.M)
     cells = values.split()
     width = len(names) + 1
-    if width < 3 or not cells or len(cells) % width:  # noqa: PLR2004
+    if not names[1:] or not cells or len(cells) % width:
         return None
     rows = [names, *(cells[i + 1 : i + width] for i in range(0, len(cells), width))]
     return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()

@@ -193,8 +193,8 @@ class Invariants:
         c0, c2 = (ring.generator(coefficient_name(number, k)) for k in (0, 2))
         square, fourth = (Factored.polynomial(ring, f) for f in (-c2 - y * y, -c2 * y * y - c0))
         work, _ = with_image(ring, work, first, square, 2)
-        while degree_in(work, second) >= 4:  # noqa: PLR2004
-            work, _ = with_image(ring, work, second, fourth, 4)
+        while degree_in(work, second) >= dispersion.order:
+            work, _ = with_image(ring, work, second, fourth, dispersion.order)
         parts = by_powers(ring, work, second)
         zero = ring.constant(0)
         return parts.get(0, zero), parts.get(2, zero)

@@ -369,16 +369,12 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
     small = acb(arb(0, 1 / radius), arb(0, 1 / radius))
     power = 0
     total = acb(ball(value.unit))
-    names = kernels.names
-    constants = Ring(tuple(names[1:]))
     for factor, exponent in value.factors:
-        if any(degree_in(factor, names.index(n)) for n in kernels.table.generators):
+        if any(degree_in(factor, kernels.names.index(n)) for n in kernels.table.generators):
             return None
         found = acb(0)
-        for coefficient in coefficients_in_s(factor, constants):
-            found = found * small + summed(
-                terms_of(coefficient), names[1:], lambda name: acb(kernels.constants[name]), acb(1)
-            )
+        for coefficient in _coefficients(kernels, factor):
+            found = found * small + coefficient
         if found.contains(0):
             return None
         power += degree_in(factor, 0) * exponent
@@ -388,20 +384,25 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
 
 def _linear(kernels: KernelValues, value: Factored) -> tuple[acb, acb] | None:
     """Return a and b of a rate ``a s + b``; None of any other."""
-    names = kernels.names
     unit, rate = acb(ball(value.unit)), (acb(0), acb(1))
     for factor, exponent in value.factors:
-        found = [
-            summed(terms_of(c), names[1:], lambda name: acb(kernels.constants[name]), acb(1))
-            for c in coefficients_in_s(factor, Ring(tuple(names[1:])))
-        ]
-        if len(found) == 1:
-            unit = unit * found[0] ** exponent
-        elif len(found) == 2 and exponent == 1 and rate[0] == 0:  # noqa: PLR2004
-            rate = (found[1], found[0])
-        else:
-            return None
+        match _coefficients(kernels, factor):
+            case [constant]:
+                unit = unit * constant**exponent
+            case [constant, slope] if exponent == 1 and rate[0] == 0:
+                rate = (slope, constant)
+            case _:
+                return None
     return (unit * rate[0], unit * rate[1]) if rate[0] != 0 else None
+
+
+def _coefficients(kernels: KernelValues, factor: fmpz_mpoly) -> list[acb]:
+    """Return balls around the coefficients of a polynomial in s, that of the lowest power first."""
+    names = kernels.names[1:]
+    return [
+        summed(terms_of(c), names, lambda name: acb(kernels.constants[name]), acb(1))
+        for c in coefficients_in_s(factor, Ring(tuple(names)))
+    ]
 
 
 @dataclass(frozen=True, slots=True)
