@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import re
 
+import pytest
+
 from tests.house.repository import ROOT
 
 LIMITS = re.compile(r"SF(103|104|230|231|233|235|236|5\d\d|910|911|912|914|917|919)")
@@ -32,6 +34,7 @@ def calls():
                     yield f"{path.relative_to(ROOT)}:{node.lineno} {text}", hint
 
 
+@pytest.mark.slow
 def test_messages_of_limits_say_the_way_round_them():
     found = dict(calls())
     assert len(found) > 60

@@ -55,6 +55,7 @@ def test_a_folder_is_copied_with_all_that_is_in_it(shell):
     assert all((shell.folder / name).read_bytes() == p.read_bytes() for name, p in wanted.items())
 
 
+@pytest.mark.slow
 def test_every_model_is_copied_with_what_it_needs(shell):
     for name, path in MODELS.items():
         folder = Path("copies", path.stem)

@@ -237,8 +237,11 @@ def test_a_template_says_at_its_head_what_it_is_and_what_to_try_next():
         assert len(commands) >= 2, template
 
 
+LONG = ("servo", "motor_loop", "sliding_beam")
+
+
 @pytest.mark.parametrize(
-    "template", [pytest.param(t, marks=pytest.mark.slow) if t == "servo" else t for t in TEMPLATES]
+    "template", [pytest.param(t, marks=pytest.mark.slow) if t in LONG else t for t in TEMPLATES]
 )
 def test_a_template_derives_and_what_it_proposes_works(shell, template):
     done = shell("new", template, "-o", f"{template}.toml")

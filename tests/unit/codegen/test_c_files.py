@@ -235,6 +235,7 @@ def test_values_agree_with_balls_on_the_axis_and_all_around(name, request):
         assert np.array_equal(response(library, number, -omega[:37]), found[:37].conj())
 
 
+@pytest.mark.slow
 def test_one_array_may_be_the_frequencies_themselves(either):
     omega = np.geomspace(1e-3, 1e4, 75)
     expected = response(either, 0, omega)

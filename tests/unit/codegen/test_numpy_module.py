@@ -304,18 +304,18 @@ KINDS = ("two_mass", "six_mass", "sliding_free_beam", "rigid_body")
 """With short and long formulas, with responses in real arithmetic, with units that are not SI."""
 
 
-def test_modules_import_numpy_only_and_keep_to_88_columns():
-    for name in KINDS:
-        text = exported_text(DERIVATIONS / f"{name}.toml")
-        roots = set()
-        for node in ast.walk(ast.parse(text)):
-            if isinstance(node, ast.Import):
-                roots |= {alias.name.split(".")[0] for alias in node.names}
-            if isinstance(node, ast.ImportFrom):
-                roots.add(node.module.split(".")[0])
-        assert roots == {"__future__", "numpy"}, name
-        # Only the linters' own lines may be longer.
-        assert all(len(line) <= 88 for line in text.splitlines() if not line.startswith("# ruff")), name
+@pytest.mark.parametrize("name", KINDS)
+def test_modules_import_numpy_only_and_keep_to_88_columns(name):
+    text = exported_text(DERIVATIONS / f"{name}.toml")
+    roots = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            roots |= {alias.name.split(".")[0] for alias in node.names}
+        if isinstance(node, ast.ImportFrom):
+            roots.add(node.module.split(".")[0])
+    assert roots == {"__future__", "numpy"}
+    # Only the linters' own lines may be longer.
+    assert all(len(line) <= 88 for line in text.splitlines() if not line.startswith("# ruff"))
 
 
 def test_modules_satisfy_ruff(tmp_path):

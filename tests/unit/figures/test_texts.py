@@ -26,7 +26,12 @@ def bounds_of(model):
     [
         ("classics/quarter_car", ["bode", "poles_zeros"]),
         pytest.param("classics/quarter_car", ["modes", "nyquist"], marks=pytest.mark.slow),
-        ("eppinger1988/loops/lumped_bending_beam_position", ["bode", "poles_zeros"]),  # six functions
+        # six functions
+        pytest.param(
+            "eppinger1988/loops/lumped_bending_beam_position",
+            ["bode", "poles_zeros"],
+            marks=pytest.mark.slow,
+        ),
         pytest.param("eppinger1988/sliding_free_beam", ["modes", "poles_zeros"], marks=pytest.mark.slow),
         pytest.param("frames/portal_frame", ["modes"], marks=pytest.mark.slow),
     ],

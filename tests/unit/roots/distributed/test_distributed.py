@@ -338,7 +338,8 @@ def resting_hub():
         return pipeline.derive_bound(model, model.transfer_functions)[0]
 
 
-@pytest.mark.parametrize("is_counted_at_once", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("is_counted_at_once", [True, False])
 def test_a_search_repeated_with_proof_keeps_hidden_modes_hidden(monkeypatch, is_counted_at_once):
     if not is_counted_at_once:
         monkeypatch.setattr(Side, "counted", lambda self: Proof(0, 0, "for this test"))

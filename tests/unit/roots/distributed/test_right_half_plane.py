@@ -171,7 +171,9 @@ OWN = {  # {} stands for s - a or s + a
 }
 
 
-@pytest.mark.parametrize("kind", OWN)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind != "a quotient")) for kind in OWN]
+)
 @pytest.mark.parametrize("den", ["s - 100", "s + 100"])
 def test_a_passive_structure_says_nothing_of_poles_that_its_output_adds(kind, den):
     line, output = (part.format(den) for part in OWN[kind])
@@ -181,6 +183,7 @@ def test_a_passive_structure_says_nothing_of_poles_that_its_output_adds(kind, de
     assert (shown.verdict.word, shown.verdict.right) == ("unstable" if right else "stable", len(right))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", ["u/(s - 100)", "C*u"])
 def test_a_passive_structure_says_nothing_of_poles_of_what_drives_it(drive):
     text = LOSSY_ARM.replace('F = { force = "x" }', "u = {}")
@@ -216,6 +219,7 @@ def test_a_mode_above_those_shown_that_no_damper_feels_keeps_a_passive_structure
     assert found(damped, Modes(1)).verdict.sentence == "stable: passive, nothing supplies energy"
 
 
+@pytest.mark.slow
 def test_a_voltage_that_follows_a_motion_may_supply_energy():
     # An inductor is an integral of the motion then: m s^2 + n^2/(L s) and a rod's s coth(s) have zeros there.
     text = (

@@ -113,16 +113,16 @@ def test_a_root_of_a_power_has_its_exponent():
         assert sorted((r.multiplicity, r.is_real) for r in found.roots) == [(1, False), (times, True)]
 
 
-def test_two_roots_are_told_apart_by_cuts_and_left_as_one_where_cells_would_be_too_small():
+@pytest.mark.parametrize(("apart", "alone"), [(10**3, True), (10**9, True), (10**14, False), (10**25, False)])
+def test_two_roots_are_told_apart_by_cuts_and_left_as_one_where_cells_would_be_too_small(apart, alone):
     # 2 + 1/apart, and 2; and beside them one at -5
-    for apart, alone in ((10**3, True), (10**9, True), (10**14, False), (10**25, False)):
-        found = search(close(apart)).ring(log(0.1), log(10))
-        assert found.missing == 0, apart
-        with precision(400):
-            expected = (arb(2), 2 + arb(1) / apart, arb(-5))
-        assert contained(found.roots, *expected) == [1, 1, 1], apart
-        assert sorted(root.multiplicity for root in found.roots) == ([1, 1, 1] if alone else [1, 2]), apart
-        assert all(root.certified is (root.multiplicity == 1) for root in found.roots), apart
+    found = search(close(apart)).ring(log(0.1), log(10))
+    assert found.missing == 0
+    with precision(400):
+        expected = (arb(2), 2 + arb(1) / apart, arb(-5))
+    assert contained(found.roots, *expected) == [1, 1, 1]
+    assert sorted(root.multiplicity for root in found.roots) == ([1, 1, 1] if alone else [1, 2])
+    assert all(root.certified is (root.multiplicity == 1) for root in found.roots)
 
 
 def test_a_root_that_two_factors_share_is_one_of_two_that_are_not_told_apart():
