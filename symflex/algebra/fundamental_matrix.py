@@ -30,7 +30,7 @@ from functools import cached_property
 from math import ceil, comb, floor, inf, log2
 from typing import TYPE_CHECKING, TypeVar
 
-from flint import acb, arb, arb_poly, ctx
+from flint import acb, arb, arb_poly
 
 from symflex.algebra.varying_growth import (
     bits_of,
@@ -48,6 +48,7 @@ from symflex.algebra.varying_system import (
     polynomial_of,
     sequence_of,
 )
+from symflex.balls import current_bits, precision
 from symflex.budget import GB, spend
 from symflex.errors import BudgetError, Diagnostic
 
@@ -110,7 +111,7 @@ class PowerExpansion:
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
         found, size = [], abs(u).upper()
-        with ctx.workprec(self.precision):
+        with precision(self.precision):
             cut = self._cut(rows, columns, size)
             # On the real axis arithmetic is a third of the work.
             at: Number = u.real if u.imag == 0 else u
@@ -128,7 +129,7 @@ class PowerExpansion:
             return DiscPolynomial(self._polynomial(rows, columns), arb(0))
         # Sizes up to the same part of an octave are cut alike, once. A millionth more makes up for rounding.
         part = floor(CUTS * log2(way) + 1e-6) + 1
-        key = rows, columns, part, ctx.prec
+        key = rows, columns, part, current_bits()
         if key not in self._cuts:
             self._cuts[key] = self._cut_for(rows, columns, 2.0 ** (part / CUTS) * (1 + ASIDE))
         return self._cuts[key]
@@ -136,13 +137,13 @@ class PowerExpansion:
     def _cut_for(self, rows: Lines, columns: Lines, way: float) -> DiscPolynomial:
         polynomial, upto = self._polynomial(rows, columns), arb(way)
         if (rows, columns) not in self._logarithms:
-            with ctx.workprec(FEWEST_BITS):
+            with precision(FEWEST_BITS):
                 sizes = [abs(c).upper() for c in polynomial.coeffs()]
                 self._logarithms[rows, columns] = [bits_of(x) if x > 0 else -inf for x in sizes]
         terms = [x + m * log2(way) for m, x in enumerate(self._logarithms[rows, columns])]
-        least = max(terms, default=0.0) - ctx.prec - GUARD
+        least = max(terms, default=0.0) - current_bits() - GUARD
         count = next((m + 1 for m in reversed(range(len(terms))) if terms[m] > least), 0)
-        with ctx.workprec(FEWEST_BITS):
+        with precision(FEWEST_BITS):
             left = _sizes_of(polynomial.right_shift(count))(upto) * upto**count
         return DiscPolynomial(polynomial.truncate(count), left.abs_upper())
 
@@ -171,7 +172,7 @@ class PowerExpansion:
         if (rows, columns) not in self._made:
             lines = self._lines(len(rows))
             found: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in lines}
-            with ctx.workprec(self.precision):
+            with precision(self.precision):
                 for step in self._steps:
                     spend()
                     found = {line: _combined(step, line, found, self.terms) for line in lines}
@@ -183,14 +184,14 @@ class PowerExpansion:
 
     def _growth(self, order: int) -> Growth:
         if order not in self._growths:
-            with ctx.workprec(self.bits):
+            with precision(self.bits):
                 self._growths[order] = growth_of(MinorsAlong(self.system, order), self.legs, self.reach)
         return self._growths[order]
 
     @cached_property
     def _near(self) -> Growth:
         """How minors of half of the rows grow, which grow most, where they are used."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             return growth_of(MinorsAlong(self.system, self._half), self.legs, self.largest)
 
     @property
@@ -200,7 +201,7 @@ class PowerExpansion:
     @cached_property
     def precision(self) -> int:
         """The bits of polynomials: where they are used, minors are smaller than their terms."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             lost = bits_of(self._near.size) - least_growth(self.system, self._half, self.largest)
         return self.bits + GUARD + ceil(max(0.0, lost))
 
@@ -222,7 +223,7 @@ class PowerExpansion:
             message = f"solutions along a member that varies take about {taken / GB:.0f} GB"
             hint = "ask for lower frequencies, and check units and powers of s"
             raise BudgetError(Diagnostic("SF504", message, None, hint))
-        with ctx.workprec(self.precision):
+        with precision(self.precision):
             start, end = self.system.ends()
             for k, (leg, discs) in enumerate(zip(self.legs, self.discs, strict=True)):
                 spend()
@@ -281,7 +282,7 @@ class DiscPolynomial:
         return _extended(self._derived, k)
 
     def _size(self, k: int) -> arb_poly:
-        with ctx.workprec(FEWEST_BITS):
+        with precision(FEWEST_BITS):
             if not self._sized:
                 self._sized.append(_sizes_of(self.polynomial))
             return _extended(self._sized, k)
@@ -343,7 +344,7 @@ def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> M
     """Return the solutions that are finite at a singular start, at the end of the first step."""
     n, share = beginning.matrix.size, abs(step.length) / step.radius
     growth, _ = growth_begun(beginning, step, reach)
-    count = ceil((ctx.prec + bits_of(growth.size)) / -log2(float(share.upper())))
+    count = ceil((current_bits() + bits_of(growth.size)) / -log2(float(share.upper())))
     orders = beginning.matrix.series(step.start, count)
     rates: list[list[tuple[int, int, Polynomial]]] = []
     for p in range(count):
@@ -398,7 +399,7 @@ def _stepped(system: VaryingSystem, step: Leg, discs: Sequence[Growth], terms: i
 
     It is exact where abs(u) is at most the last of them.
     """
-    n, bits = system.size, ctx.prec
+    n, bits = system.size, current_bits()
     share = abs(step.length) / step.radius
     doublings = -log2(float(share.upper()))
     # An order in u is used times a power of the last size.
@@ -469,7 +470,7 @@ def _by_recurrence(
         while counts[kept - 1] <= k + 1:
             kept -= 1
         new: list[Polynomial | None] = [None] * n
-        with ctx.workprec(needed[k]):
+        with precision(needed[k]):
             for part, (taps, divisors, common), histories in zip(parts, scaled, divided, strict=True):
                 value = _convolved(taps, states[part.place[1]], k)
                 for divisor, history in zip(divisors, histories, strict=True):
@@ -553,12 +554,12 @@ def _by_quadrature(
     for j in range(n):
         orders: list[dict[int, Polynomial]] = []
         values: Column = [[arb(0)] * len(counts) for _ in range(n)]
-        for m, (precision, count) in enumerate(zip(needed, counts, strict=True)):
+        for m, (bits, count) in enumerate(zip(needed, counts, strict=True)):
             here: dict[int, Polynomial] = {}
             orders.append(here)
             if count == 0:
                 continue
-            with ctx.workprec(precision):
+            with precision(bits):
                 for i in order:
                     parts = [
                         (a * orders[m - q][k]).truncate(count - 1)

@@ -18,9 +18,10 @@ from math import factorial, inf, isfinite, log2, prod
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, arb
 
 from symflex.algebra.varying_system import sequence_of
+from symflex.balls import precision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -337,7 +338,7 @@ def _bounded(
     to be bounded before those that follow fall.
     """
     norm, radius, way = sizes
-    with ctx.workprec(BOUND_BITS):
+    with precision(BOUND_BITS):
         parts = [
             [(i, j, x * weights[j] / weights[i]) for i, j, x in rates]
             for rates in _by_powers(beginning.matrix, start, MOST_TERMS, reach)

@@ -21,13 +21,13 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes
 from symflex.roots.locate import locate
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import decimals
 
 if TYPE_CHECKING:

@@ -29,18 +29,17 @@ from flint import acb, acb_poly, arb
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions, values_of
 from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.balls import ball, bits_for_digits, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.optional import installed
 from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem, problem_of
 from symflex.roots.root import exact_fraction
 from symflex.state_space import not_rational
 from symflex.state_space.sampled import Sampling
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

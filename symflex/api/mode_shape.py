@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.api.root import Root, radius_of
+from symflex.balls import precision, to_complex_mpmath
 from symflex.errors import Diagnostic, UsageError
 from symflex.print.latex import width_of
-from symflex.roots import precision
-from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
     import numpy as np

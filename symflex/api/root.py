@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 import mpmath
 
 from symflex import roots as roots_room
-from symflex.roots import HiddenRoot, decimals, precision
+from symflex.balls import precision, to_complex_mpmath, to_mpmath
+from symflex.roots import HiddenRoot, decimals
 from symflex.roots import Root as CertifiedRoot
-from symflex.roots.precision import to_complex_mpmath, to_mpmath
 
 if TYPE_CHECKING:
     from flint import acb

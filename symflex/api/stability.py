@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
+from symflex.balls import to_mpmath
 from symflex.loops import degrees, hertz
-from symflex.roots.precision import to_mpmath
 
 if TYPE_CHECKING:
     from flint import arb

@@ -13,11 +13,12 @@ from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Literal
 
-from flint import acb, arb, ctx
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, behaviour_at_zero, full_angles, lowest_terms
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
+from symflex.balls import precision
 from symflex.expressions import Expression, format_expression, quotient
 
 if TYPE_CHECKING:
@@ -163,7 +164,7 @@ def _phase(numbers: Numbers) -> LawCheck | None:
         if values is None:
             return None
         printed, derived = values
-        with ctx.workprec(AXIS_BITS):
+        with precision(AXIS_BITS):
             if not (_is_quadrature(derived) or _is_in_phase(derived)):
                 return None
             if not (printed.real.contains(0) or printed.imag.contains(0) or _is_axial(printed)):
@@ -251,7 +252,7 @@ def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]
 
     def at(frequency: float) -> _Value | None:
         nonlocal component
-        with ctx.workprec(AXIS_BITS):
+        with precision(AXIS_BITS):
             value = function(acb(0, arb(frequency) * 2 * arb.pi()), AXIS_BITS)
             if not value.is_finite():
                 return None

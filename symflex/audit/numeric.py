@@ -9,12 +9,13 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from flint import acb, arb, ctx
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE
+from symflex.balls import ball, precision, precisions
 from symflex.model import ExactValue
 from symflex.transfer import bind
-from symflex.transfer.balls import ball, principal_values
+from symflex.transfer.enclose import principal_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -59,12 +60,12 @@ class Numbers:
         """Return the derived function's value on a ball."""
         if bits not in self._enclosed:
             self._enclosed[bits] = self.bound.enclosed(bits)
-        with ctx.workprec(bits):
+        with precision(bits):
             return self._enclosed[bits](s)
 
     def printed_at(self, s: acb, bits: int) -> acb:
         """Return the printed formula's value on a ball."""
-        with ctx.workprec(bits):
+        with precision(bits):
             known: dict[str, acb] = {LAPLACE: s, "pi": acb(arb.pi())}
             for name, value in self.values.items():
                 known[name] = acb(ball(value.rational) * arb.pi() ** value.pi_power)
@@ -74,7 +75,7 @@ class Numbers:
 
     def ratio_at(self, frequency: float) -> tuple[float, float] | None:
         """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` where it has no value."""
-        with ctx.workprec(FIRST_BITS):
+        with precision(FIRST_BITS):
             s = acb(0, arb(frequency) * 2 * arb.pi())
             ratio = self.printed_at(s, FIRST_BITS) / self.derived_at(s, FIRST_BITS)
             if not ratio.is_finite() or ratio.contains(0) or ratio.rel_accuracy_bits() <= DOUBLE_BITS:
@@ -87,14 +88,12 @@ class Numbers:
 
     def both_at(self, s: tuple[Fraction, Fraction], digits: int = DIGITS) -> tuple[acb, acb] | None:
         """Return both values to the given digits, ``None`` when they have none there."""
-        bits = FIRST_BITS
-        while bits <= LAST_BITS:
-            with ctx.workprec(bits):
+        for bits in precisions(FIRST_BITS, LAST_BITS):
+            with precision(bits):
                 point = acb(ball(s[0]), ball(s[1]))
             printed, derived = self.printed_at(point, bits), self.derived_at(point, bits)
             if _are_accurate(printed, derived, BITS_PER_DIGIT * digits):
                 return printed, derived
-            bits *= 2
         return None
 
 
@@ -150,7 +149,7 @@ def compare(numbers: Numbers) -> Comparison:
         if values is None:
             continue
         printed, derived = values
-        with ctx.workprec(LAST_BITS):
+        with precision(LAST_BITS):
             gap = printed - derived
             if not gap.contains(0):
                 size = float((abs(gap) / abs(derived)).mid()) if derived != 0 else 1.0

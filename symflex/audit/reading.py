@@ -21,7 +21,7 @@ from symflex.expressions import (
     Sum,
 )
 from symflex.model.analysis import check_printed, lines_in_order, readable_names
-from symflex.transfer.balls import rational_value
+from symflex.transfer.enclose import rational_value
 from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.analysis.sampling import SampledTransferFunction, sampled_transfer_function
+from symflex.balls import precision
 from symflex.budget import spend
 from symflex.codegen.c.body import KEYWORDS, RESERVED
 from symflex.codegen.c.module import comment, prefix_of
@@ -40,7 +41,6 @@ from symflex.codegen.module_text import (
 from symflex.codegen.python.module import NUMPY_DIALECT, docstring
 from symflex.codegen.python.pieces import WIDTH
 from symflex.errors import BudgetError, Diagnostic, ModelError
-from symflex.roots.precision import precision
 from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:

@@ -15,15 +15,12 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.interval_newton import narrowed
+from symflex.balls import ball, bits_for_digits, narrowed, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.roots import precision
 from symflex.roots.counting.local_series import SERIES_POINTS, LocalSeries, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.precision import bits_for_digits
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.stability_map import hertz, real_json
-from symflex.roots import decimals, precision
+from symflex.roots import decimals
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import precision
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
@@ -28,7 +28,6 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, arb
 
 from symflex.algebra import degree_in
+from symflex.balls import ball, precision
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
@@ -35,10 +36,9 @@ from symflex.loops.stability_map import (
     PoleCount,
     StabilityMap,
 )
-from symflex.roots import find_polynomial_roots, precision
+from symflex.roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
+from symflex.balls import UndecidedError, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
 from symflex.loops.loop import NO_LOOP, Loop, LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
-from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root, precision
+from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.networks.cramer import EssentialSingularityError
-from symflex.roots.networks.members import UndecidedError
 from symflex.roots.pole_zero_map import is_right
 
 if TYPE_CHECKING:

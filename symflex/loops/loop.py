@@ -19,12 +19,11 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
+from symflex.balls import Value, expansion, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.roots import precision
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
-from symflex.transfer.balls import Value, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

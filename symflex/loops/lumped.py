@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 from flint import arb, fmpz_mpoly
 
 from symflex.algebra import Ring, degree_in
+from symflex.balls import precision, value_at
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots, precision
+from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.problem import problem_of
-from symflex.transfer.balls import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

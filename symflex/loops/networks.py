@@ -17,9 +17,10 @@ from fractions import Fraction
 from math import nan
 from typing import TYPE_CHECKING
 
-from flint import acb, ctx
+from flint import acb
 
 from symflex.algebra import Factored, degree_in, terms_of
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import names_among
 from symflex.loops.loop import NO_LOOP, Loop, no_loop
@@ -27,7 +28,6 @@ from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import DiscSearch
 from symflex.roots.networks.disc_series import DiscSeries
 from symflex.roots.networks.poles_zeros import locate_quotient
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,7 +80,7 @@ class NetworkLoop:
         found = []
         for each in omega:
             value = self.cramer.at(acb(0, each), LOOP_GAIN_BITS)
-            with ctx.workprec(LOOP_GAIN_BITS):
+            with precision(LOOP_GAIN_BITS):
                 found.append(complex((-ball(gain) * value.num / value.den).mid()))
         return found
 
@@ -182,7 +182,7 @@ class LoopInDisc:
         radius = self.a.radius
         if not abs(s) < radius:
             return (complex(nan),) * 4
-        with ctx.workprec(self.a.bits):
+        with precision(self.a.bits):
             x = acb(s.real, s.imag) / radius
             (a, b), (a_slope, b_slope) = (
                 [one.polynomial(x) for one in (self.a, self.minus_b)],

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Literal
 
 from flint import arb
 
+from symflex.balls import ball, precision
 from symflex.loops.apart import PolesApart
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
-from symflex.roots import decimals, precision
+from symflex.roots import decimals
 from symflex.roots.pole_zero_map import StabilityVerdict
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

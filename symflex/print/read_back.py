@@ -19,9 +19,10 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, fmpq
 
 from symflex.algebra import LAPLACE, Factored
+from symflex.balls import at_centre, precision
 from symflex.budget import spend
 from symflex.errors import REPORT, Diagnostic, InternalError, SpecError, Text
 from symflex.expressions import (
@@ -42,16 +43,16 @@ from symflex.expressions import (
 from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
 from symflex.transfer import NestedTransferFunction
-from symflex.transfer.balls import at_centre, principal_values
+from symflex.transfer.enclose import principal_values
 from symflex.transfer.probes import SOLVED_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.algebra import Dispersion, Kernel
+    from symflex.balls import Value
     from symflex.print.forms.printed import PrintedForm
     from symflex.transfer import AnyTransferFunction
-    from symflex.transfer.balls import Value
     from symflex.transfer.probes import Probes
 
 PRECISIONS: Final = (64, 192, 576)
@@ -100,7 +101,7 @@ def read_hidden(
         return
     probes, bits = tf.probes, PRECISIONS[1]
     chosen = [i for i, (_, (re, _)) in enumerate(probes.points) if re > 0]
-    with ctx.workprec(bits):
+    with precision(bits):
         try:
             whole = replace(form, num=product_of([e for e, _ in factors]))
             points = _Points(_Reader(tf, whole, probes, None), bits, chosen)
@@ -129,7 +130,7 @@ class _Reader:
         agreed, is_printed, is_derived = 0, False, False
         for bits in (SOLVED_BITS, PRECISIONS[-1]) if self.probes.is_solved else PRECISIONS:
             spend()
-            with ctx.workprec(bits):
+            with precision(bits):
                 pairs = self._pairs(bits, pending)
                 is_printed |= any(x.is_finite() for x, _ in pairs)
                 is_derived |= any(y.is_finite() for _, y in pairs)

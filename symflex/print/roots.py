@@ -90,7 +90,8 @@ def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
 
 def _frequency(root: Root, printed: RootDecimals, digits: int) -> str:
     """Return the natural frequency abs(s)/(2 pi) [Hz]."""
-    from symflex.roots import decimals, precision  # imports numpy
+    from symflex.balls import precision  # imports numpy
+    from symflex.roots import decimals
 
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         frequency = root.natural_frequency() / (2 * arb.pi())
@@ -106,7 +107,8 @@ def _angular_frequency(root: Root, printed: RootDecimals, digits: int) -> str:
 
 def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
     """Return ``-re/abs(s)``, empty at 0 and where s may be 0."""
-    from symflex.roots import decimals, precision  # imports numpy
+    from symflex.balls import precision  # imports numpy
+    from symflex.roots import decimals
 
     frequency = root.natural_frequency()
     if root.is_zero or not frequency > 0:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored, by_powers, degree_in, terms_of
-from symflex.algebra.interval_newton import stays_inside
+from symflex.balls import expansion, precision, stays_inside
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.model import with_numbers
@@ -35,12 +35,11 @@ from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict
 from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.precision import precision
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
 from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, overlap
 from symflex.transfer import bind
-from symflex.transfer.balls import expansion, summed
+from symflex.transfer.enclose import summed
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:

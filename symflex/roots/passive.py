@@ -25,6 +25,7 @@ from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
+from symflex.balls import ball, precision
 from symflex.expressions import (
     Expression,
     Name,
@@ -50,9 +51,7 @@ from symflex.model.signs import (
     parameter_signs,
     value_along,
 )
-from symflex.roots import precision
 from symflex.roots.root import ROUNDING
-from symflex.transfer.balls import ball
 from symflex.transfer.of_model import assemble
 
 if TYPE_CHECKING:

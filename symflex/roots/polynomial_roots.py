@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, Proposer, connected
 from symflex.roots.polynomials.isolation import isolations
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import Splitting, SquareFreePart, split
 from symflex.roots.root import GUARD_BITS, Root, count_roots, root_at_zero
 

@@ -17,11 +17,10 @@ from functools import reduce
 from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra import Factored, Ring, degree_in, square_free_factors
+from symflex.balls import precision, value_at
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.roots.precision import precision
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-from symflex.transfer.balls import value_at
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
 """At which a coefficient is compared with zero, one after the other."""
@@ -32,7 +31,7 @@ class RealConstant:
     """A real number that exact steps treat as an independent symbol."""
 
     name: str  # such as ``pi`` or ``sqrt(2)``; equal names are the same constant
-    evaluate: Callable[[], arb]  # returns the constant as a real ball at the current ``flint.ctx.prec``
+    evaluate: Callable[[], arb]  # returns the constant as a real ball at the current precision
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +93,7 @@ class PolynomialInS:
         return tuple(int(c.to_dict().get((), 0)) for c in self.coefficients)
 
     def enclosure(self) -> arb_poly:
-        """Return the polynomial with coefficients as balls, at the current ``flint.ctx.prec``."""
+        """Return the polynomial with coefficients as balls, at the current precision."""
         if self.is_exact:
             return arb_poly([arb(c) for c in self.integers()])
         values = tuple(constant.evaluate() for constant in self.constants)

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions, band_ends, frequency
-from symflex.roots.precision import precision
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

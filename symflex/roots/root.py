@@ -9,8 +9,8 @@ from fractions import Fraction
 
 from flint import acb, arb, fmpz
 
+from symflex.balls import precision
 from symflex.expressions.format import decimal_exponent
-from symflex.roots.precision import precision
 
 GUARD_BITS = 32
 """Beyond the bits of what is computed with."""

@@ -14,12 +14,13 @@ from sys import float_info
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, acb_mat, arb, ctx, fmpz_mpoly
+from flint import acb, acb_mat, arb, fmpz_mpoly
 
+from symflex.balls import precision, precisions, value_at
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.errors.optional import installed
 from symflex.expressions import format_expression
-from symflex.transfer.balls import enclosure, later, value_at
+from symflex.transfer.enclose import enclosure, later
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -242,16 +243,14 @@ class Rounding:
         return value_at(polynomial, lambda i: self._exact[self._names[i]], Fraction)
 
     def _of_ball(self, value: FieldElement, what: str) -> float:
-        bits = FIRST_BITS
-        while bits <= LAST_BITS:
-            with ctx.workprec(bits):
+        for bits in precisions(FIRST_BITS, LAST_BITS):
+            with precision(bits):
                 below = self._enclosed(value.den, bits)
                 if not below.contains(0):
                     quotient = self._enclosed(value.num, bits) / below
                     low, high = float(quotient.lower()), float(quotient.upper())
                     if low == high:
                         return low
-            bits *= 2
         message = f"it could not be decided whether {what} is zero"
         raise UncertifiedError(Diagnostic("SF401", message))
 
@@ -290,7 +289,7 @@ def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[comp
 
     The matrices count as exact, and what is computed with them is enclosed and then rounded.
     """
-    with ctx.workprec(RESPONSE_BITS):
+    with precision(RESPONSE_BITS):
         a, b, c, d = (_acb_matrix(array) for array in (arrays.a, arrays.b, arrays.c, arrays.d))
         n = len(arrays.a)
         found = []

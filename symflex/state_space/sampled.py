@@ -21,15 +21,15 @@ from math import ceil, isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
+from symflex.balls import ball, precision, precisions
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY
 from symflex.options import duration, exact, frequency
 from symflex.state_space.numeric import Arrays, Matrices, rounding_of
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -233,9 +233,8 @@ def sampled(
     states, inputs, outputs = names
     whole = ceil(delay / sampling.sample)
     stepped = _stepped if sampling.method == "zoh" else _bilinear
-    bits = FIRST_BITS
-    while True:
-        with ctx.workprec(bits):
+    for bits in precisions(FIRST_BITS, LAST_BITS):
+        with precision(bits):
             found = [_doubles(m) for m in stepped(balls(bits), sampling, delay, whole)]
         known = [array for array in found if array is not None]
         if len(known) == len(found):
@@ -243,10 +242,8 @@ def sampled(
             arrays = Arrays(known[0], known[1], known[2], known[3])
             every = (*states, *past)
             return SampledStateSpace(arrays, sampling, delay, every, tuple(inputs), tuple(outputs))
-        if bits >= LAST_BITS:
-            message = "an entry of the sampled state equations does not fit in double precision"
-            raise ModelError(Diagnostic("SF233", message, None, "choose a shorter sampling time"))
-        bits *= 2
+    message = "an entry of the sampled state equations does not fit in double precision"
+    raise ModelError(Diagnostic("SF233", message, None, "choose a shorter sampling time"))
 
 
 def _stepped(

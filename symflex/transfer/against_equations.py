@@ -22,14 +22,14 @@ from functools import cached_property, partial
 from random import Random
 from typing import TYPE_CHECKING
 
-from flint import acb, ctx
+from flint import acb
 
 from symflex.algebra import LAPLACE, NO_KERNELS, PolynomialMemo, uncollected
+from symflex.balls import Arithmetic, at_centre, ball, current_bits, plan, precision
 from symflex.equations import assemble
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.balls import Arithmetic, at_centre, ball, enclosure, plan
 from symflex.transfer.direct_solve import (
     DirectSolve,
     GeneratorValues,
@@ -38,6 +38,7 @@ from symflex.transfer.direct_solve import (
     SingularPointError,
     carried,
 )
+from symflex.transfer.enclose import enclosure
 from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
@@ -138,9 +139,9 @@ def compare(
         tried.append(parameters)
         points = list(_points(parameters, is_lumped=solve.is_lumped))
         more = max(BITS, len(solve.direct.equations.unknowns))
-        for precision in (BITS, BITS + more, BITS + 2 * more):
+        for bits in (BITS, BITS + more, BITS + 2 * more):
             try:
-                with ctx.workprec(precision):
+                with precision(bits):
                     reason = _compare_at(solve.direct, agreements, points)
             except NotFollowedError:
                 return "a member that tapers needs too many Taylor steps"
@@ -194,7 +195,7 @@ def _is_narrow(value: acb) -> bool:
     """Tell whether a ball is narrow, or so small that a zero is what it encloses."""
     if not value.is_finite():
         return False
-    is_zero = value.contains(0) and float(abs(value).upper()) < 2.0 ** -(ctx.prec // 2)
+    is_zero = value.contains(0) and float(abs(value).upper()) < 2.0 ** -(current_bits() // 2)
     return bool(value == 0 or is_zero or value.rel_accuracy_bits() >= WANTED)
 
 
@@ -224,7 +225,7 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
         found.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
     if not isinstance(tf, TransferFunction) and not tf.is_distributed:
-        found.append(tf.enclosed(ctx.prec)(here.s()))
+        found.append(tf.enclosed(current_bits())(here.s()))
     return found
 
 

@@ -21,9 +21,10 @@ from itertools import combinations
 from math import inf, isfinite, lcm
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, acb_series, arb, ctx
+from flint import acb, acb_poly, acb_series, arb
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, PolynomialMemo, Ring, degree_in
+from symflex.balls import EvaluationPlan, at_centre, ball, expansion, plan, precision, value_at
 from symflex.budget import spend
 from symflex.equations import assemble, radicals_of
 from symflex.errors import Diagnostic, ModelError, Text, UsageError
@@ -34,19 +35,9 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.declarations import assuming
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.against_equations import agreement, compare
-from symflex.transfer.balls import (
-    EvaluationPlan,
-    at_centre,
-    ball,
-    double_value,
-    enclosure,
-    expansion,
-    later,
-    limit_at_zero,
-    plan,
-    value_at,
-)
 from symflex.transfer.derive import derive, nested_transfer
+from symflex.transfer.double_value import double_value, limit_at_zero
+from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
@@ -84,7 +75,7 @@ class EnclosedTransferFunction:
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             value = self.unit
             for polynomial, exponent in self.factors:
                 value = value * polynomial(s) ** exponent
@@ -92,7 +83,7 @@ class EnclosedTransferFunction:
 
     def logarithmic_derivative(self, s: acb) -> acb:
         """Return a ball around ``G'(s)/G(s)``."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             total = acb(0)
             for polynomial, exponent in self.factors:
                 total = total + exponent * polynomial.derivative()(s) / polynomial(s)
@@ -114,7 +105,7 @@ class EnclosedDistributed:
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the value at ``s``; not finite where a wavenumber is zero."""
         spend()
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             value = self.kernels.value(self.ratio, self.kernels.at(s))
             return value if isinstance(value, acb) else value[0]
 
@@ -124,7 +115,7 @@ class EnclosedDistributed:
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around ``G(s)`` and ``G'(s)/G(s)``, for which kernels are evaluated once."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             values = self.kernels.at(expansion(s))
             value, slope = acb(ball(self.ratio.unit)), acb(0)
             for factor, exponent in self.ratio.factors:
@@ -241,7 +232,7 @@ class BoundTransferFunction:
         """Return the function with ball coefficients of the given precision."""
         if self.kernels:
             return self.enclosed_part(self.ratio, bits)
-        with ctx.workprec(bits):
+        with precision(bits):
             values = [evaluate() for _, evaluate in self.constants]
 
             def coefficients(factor: fmpz_mpoly) -> list[arb]:
@@ -253,7 +244,7 @@ class BoundTransferFunction:
 
     def enclosed_part(self, part: Factored, bits: int) -> EnclosedDistributed:
         """Return a function over the ring of kernels, such as :attr:`num`, evaluated in balls."""
-        with ctx.workprec(bits):
+        with precision(bits):
             return EnclosedDistributed(bits, part, self.kernel_values())
 
     def kernel_values(self, *, is_along: bool = True) -> KernelValues:

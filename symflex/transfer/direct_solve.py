@@ -21,24 +21,16 @@ from functools import cached_property
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_series, arb, ctx
+from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra import FUNCTIONS, LAPLACE, terms_of
+from symflex.balls import balancing, ball, binary_exponent, current_terms, raised, series_terms
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.balls import (
-    balancing,
-    ball,
-    binary_exponent,
-    evaluated,
-    later,
-    raised,
-    series_terms,
-    summed,
-)
+from symflex.transfer.enclose import evaluated, later, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -46,10 +38,10 @@ if TYPE_CHECKING:
     from flint import fmpz, fmpz_mpoly
 
     from symflex.algebra import Factored
+    from symflex.balls import Arithmetic
     from symflex.equations import Continuum, Equations
     from symflex.expressions import Call, Expression
     from symflex.library.elements import LinearForm, Variable
-    from symflex.transfer.balls import Arithmetic
 
 ZERO = acb(0)
 SMALL = 10
@@ -289,7 +281,7 @@ class _AlongX:
     point: Point
 
     def series(self, value: Factored, x: acb) -> list[acb]:
-        """Return the coefficients about a point, as many as ``ctx.cap``."""
+        """Return the coefficients about a point, as many as ``current_terms()``."""
         along = acb_series([x, 1])
         known: dict[str, acb_series] = {COORDINATE: along}
 
@@ -299,7 +291,7 @@ class _AlongX:
             return known[name] if name in known else self.number.values[name]
 
         found = evaluated(value, named, acb_series([1]))
-        return [found[i] for i in range(ctx.cap)]
+        return [found[i] for i in range(current_terms())]
 
     def _function(self, call: Call, along: acb_series) -> acb_series:
         def named(name: str) -> acb_series:

@@ -18,11 +18,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
+from flint import acb, acb_mat, acb_poly, acb_series, arb
 
-from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, raised
+from symflex.balls import Arithmetic, Value, at_centre, ball, current_bits, narrowed, raised, stays_inside
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
     from symflex.algebra.minors import Minor
-    from symflex.transfer.balls import EvaluationPlan
+    from symflex.balls import EvaluationPlan
     from symflex.transfer.enclose_varying import VaryingMatrices
 
 
@@ -389,7 +388,7 @@ def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb:
         middle = root.mid()
         return middle - polynomial(middle) / slope(root)
 
-    return narrowed(disc, newton, ctx.prec.bit_length() + 2, HALF)
+    return narrowed(disc, newton, current_bits().bit_length() + 2, HALF)
 
 
 def _boxed(polynomial: acb_poly, slope: acb_poly, middle: acb) -> acb | None:

@@ -14,9 +14,9 @@ from functools import cached_property
 from math import ceil, inf, log2, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, ctx
+from flint import acb, acb_series, arb
 
-from symflex.transfer.balls import Value, at_centre, raised
+from symflex.balls import Value, at_centre, current_bits, raised
 from symflex.transfer.varying_law import LEAST, ROOM, BoundLaw
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class VaryingMatrices:
     def _in_powers(self, matrix: int, size: arb) -> PowerExpansion:
         """Return an expansion that serves for abs(u) up to a size at the current precision."""
         law, known = self.laws[matrix], self._known.setdefault(matrix, [])
-        fitting = [e for reached, bits, e in known if size <= reached and bits >= ctx.prec]
+        fitting = [e for reached, bits, e in known if size <= reached and bits >= current_bits()]
         # One for larger frequencies, or with more bits, serves as well.
         if not fitting:
             if matrix not in self._lowest:
@@ -137,7 +137,7 @@ class VaryingMatrices:
             if not size <= wanted:
                 wanted = (size * FURTHER ** (law.step * min(max(len(known), 1), FURTHEST))).upper()
             largest = max(wanted, arb(2) ** (law.step * self._lowest[matrix]), *(r for r, _, _ in known))
-            bits = max(FEWEST_BITS, ceil(ctx.prec / BUCKET) * BUCKET, *(b for _, b, _ in known))
+            bits = max(FEWEST_BITS, ceil(current_bits() / BUCKET) * BUCKET, *(b for _, b, _ in known))
             fitting = [law.expanded(largest, bits)]
             known.append((largest, bits, fitting[0]))
         return fitting[0]
@@ -161,7 +161,7 @@ class VaryingMatrices:
         least = abs(middle).upper() * LEAST if middle != 0 else arb(LEAST)
         reach = (radius * ROOM).upper() if radius * ROOM > least else least
         exact = (tuple(map(int, x.man_exp())) for x in (middle.real, middle.imag, reach.mid()))
-        key = ctx.prec, orders, *exact
+        key = current_bits(), orders, *exact
         if matrix not in self._last or self._last[matrix][0] != key:
             self._last[matrix] = key, self.laws[matrix].expanded_about(middle, reach, orders)
         return self._last[matrix][1]

@@ -22,27 +22,18 @@ from math import prod
 from operator import truediv
 from typing import TYPE_CHECKING, Any
 
-from flint import acb, acb_series, arb, ctx
+from flint import acb, acb_series, arb
 
 from symflex.algebra import LAPLACE, uncollected
 from symflex.algebra.straight_line import Operation, Step, StraightLine
+from symflex.balls import ball, expansion, precision, precisions, raised
 from symflex.budget import spend
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
-from symflex.transfer.balls import (
-    DOUBLE_BITS,
-    FIRST_BITS,
-    LAST_BITS,
-    ball,
-    double_value,
-    enclosure,
-    expansion,
-    later,
-    limit_at_zero,
-    raised,
-)
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.direct_solve import NotFollowedError, Point, SingularPointError
+from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value, limit_at_zero
+from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.transfer_function import (
     TransferFunction,
     name_quantity,
@@ -57,11 +48,11 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from symflex.balls import Arithmetic, Value
     from symflex.equations import ConstantFunction, Equations
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
-    from symflex.transfer.balls import Arithmetic, Value
     from symflex.transfer.probes import Probes
 
 CONSTANT_BITS = 256
@@ -301,7 +292,7 @@ class BoundNested:
 
     def enclosed(self, bits: int) -> EnclosedNested:
         """Return the function, evaluated in balls at the given precision."""
-        with ctx.workprec(bits):
+        with precision(bits):
             used = self.source.generators - {LAPLACE}
             return EnclosedNested(bits, self.source, {n: acb(self._enclosures[n]()) for n in used})
 
@@ -309,7 +300,7 @@ class BoundNested:
         """Return a ball around the value from the equations; not finite where they are singular."""
         if self.source.cut is None:
             return acb("nan")
-        with ctx.workprec(bits):
+        with precision(bits):
             pair = self.source.output.name, self.source.input.name
             return self.source.cut.value(pair, dict(self.values), s)
 
@@ -335,10 +326,11 @@ class BoundNested:
 
     def bits_at(self, s: complex) -> int:
         """Return with how many bits the value is known: at other points as many do, or nearly."""
-        bits, point = FIRST_BITS, acb(s.real, s.imag)
-        while bits < LAST_BITS and not self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:
-            bits *= 2
-        return bits
+        point = acb(s.real, s.imag)
+        for bits in precisions(FIRST_BITS, LAST_BITS // 2):
+            if self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:
+                return bits
+        return LAST_BITS
 
     def limit_at_zero(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
@@ -362,7 +354,7 @@ class BoundNested:
         points = np.asarray(s, dtype=complex)
         if self.source.is_distributed and self.source.cut is not None:
             return self._solved(self.source.cut, points)
-        with ctx.workprec(CONSTANT_BITS):
+        with precision(CONSTANT_BITS):
             known: dict[str, Any] = {
                 n: float(self._enclosures[n]().mid()) for n in self.source.generators - {LAPLACE}
             }
@@ -379,7 +371,7 @@ class BoundNested:
         from symflex.algebra.line_networks import network_value  # few functions are of so many members
 
         network, known = cut.network, cut.constants(dict(self.values))
-        with ctx.workprec(CONSTANT_BITS), np.errstate(all="ignore"):
+        with precision(CONSTANT_BITS), np.errstate(all="ignore"):
             entries = network.values(
                 name=lambda name: points if name == LAPLACE else float(known[name]().mid()),
                 number=lambda x: x.numerator / x.denominator,
@@ -404,7 +396,7 @@ class EnclosedNested:
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]; not finite near a pole."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             num, den = _values(self.source, {**self.constants, LAPLACE: s}, ball)
             return acb(num) / acb(den)
 
@@ -414,7 +406,7 @@ class EnclosedNested:
         names = program.names
         known = {**self.constants, LAPLACE: s}
         wanted = program.steps_of(*(i for w in waves for i in w.arguments))
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             values = program.values(
                 program.operations(wanted), name=lambda position: known[names[position]], number=ball
             )
@@ -425,7 +417,7 @@ class EnclosedNested:
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around the value and around ``G'(s)/G(s)``."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             spend()
             sides = _values(self.source, {**self.constants, LAPLACE: expansion(s)}, ball)
             (num, above), (den, below) = (

@@ -21,22 +21,15 @@ from math import sqrt, tau
 from random import Random
 from typing import TYPE_CHECKING, Final, Literal
 
-from flint import acb, arb, ctx
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Factored, PolynomialMemo
+from symflex.balls import at_centre, ball, current_bits, plan, precision
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
-from symflex.transfer.balls import (
-    at_centre,
-    ball,
-    enclosure,
-    evaluated,
-    later,
-    plan,
-    principal_values,
-)
 from symflex.transfer.bind import BoundTransferFunction
+from symflex.transfer.enclose import enclosure, evaluated, later, principal_values
 from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -144,7 +137,7 @@ class Probes:
 
     def numbers(self, chosen: Sequence[int], bits: int) -> dict[str, list[acb]]:
         """Return s, pi and every parameter at some of the points."""
-        with ctx.workprec(bits):
+        with precision(bits):
             points = [self.points[i] for i in chosen]
             found = {
                 LAPLACE: [acb(ball(re), ball(im)) for _, (re, im) in points],
@@ -168,7 +161,7 @@ class Probes:
         found = []
         for i in chosen:
             setting, (re, im) = self.points[i]
-            with ctx.workprec(bits):
+            with precision(bits):
                 function = enclosed.get(id(setting)) or setting.evaluate(value, bits)
                 enclosed[id(setting)] = function
                 found.append(function(acb(ball(re), ball(im))))
@@ -180,7 +173,7 @@ class Probes:
         for i, place in zip(chosen, x, strict=True):
             setting, (re, im) = self.points[i]
             assert setting.bound is not None
-            with ctx.workprec(bits):
+            with precision(bits):
                 kernels = setting.bound.kernel_values(is_along=False)
                 known = kernels.generators_at(acb(ball(re), ball(im)))
                 known[COORDINATE] = place
@@ -260,8 +253,8 @@ class _Draw:
             if found is None:
                 return None
             # Where a constant is not real, or a coefficient not analytic along x, this says so.
-            with ctx.workprec(SOLVED_BITS if self.is_solved else FIRST_BITS):
-                function = found[0](None, ctx.prec)
+            with precision(SOLVED_BITS if self.is_solved else FIRST_BITS):
+                function = found[0](None, current_bits())
                 if self.is_solved:
                     function(acb(*map(ball, points[0])))
         except ModelError:
@@ -297,11 +290,11 @@ def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:
     known: dict[tuple[int, str], dict[str, acb]] = {}
 
     def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
-        with ctx.workprec(bits):
+        with precision(bits):
             kernels = bound.kernel_values(is_along=False)
 
         def at(s: acb) -> acb:
-            with ctx.workprec(bits):
+            with precision(bits):
                 key = bits, str(s)
                 if key not in known:
                     known[key] = _solved(bound, s) if is_solved else _arbitrary(bound, s)
@@ -347,14 +340,14 @@ def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
         return at_centre(steps.value([known[names[i]] ** e for i, e in steps.powers]))
 
     def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
-        with ctx.workprec(bits):
+        with precision(bits):
             numbers: dict[str, acb] = {name: acb(enclose()) for name, enclose in enclosures.items()}
             numbers["pi"] = acb(arb.pi())
             numbers.update((c.generator, acb(later(c.expression, enclosures)())) for c in tf.constants)
 
         def at(s: acb) -> acb:
             known = {**numbers, LAPLACE: s}
-            with ctx.workprec(bits):
+            with precision(bits):
                 if value is None and tf.closed is not None:
                     for name, definition in tf.definitions:
                         known[name] = evaluated(definition, known.__getitem__, acb(1))

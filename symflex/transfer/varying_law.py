@@ -17,18 +17,19 @@ from functools import cached_property, partial
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
-from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
+from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
 from symflex.algebra.fundamental_matrix import expand
 from symflex.algebra.ring import PolynomialMemo, terms_of
 from symflex.algebra.varying_growth import SingularCoefficientError, growth_along, legs_along
 from symflex.algebra.varying_system import RationalPart, SingularBeginning
+from symflex.balls import at_centre, ball, current_bits, precision, raised, series_terms
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.balls import at_centre, ball, evaluated, raised, series_terms, summed
+from symflex.transfer.enclose import evaluated, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
     from symflex.algebra.fundamental_matrix import PowerExpansion
     from symflex.algebra.sparse import Monomial
     from symflex.algebra.varying_system import Coefficients, Number, Place
+    from symflex.balls import Value
     from symflex.expressions import Expression
-    from symflex.transfer.balls import Value
 
 ELSEWHERE = acb(0.7, 1.3)
 """A frequency like any other, at which coefficients have no pole in s."""
@@ -205,7 +206,7 @@ class BoundLaw(PartedLaw):
         Raises ModelError: SF250 where a coefficient is not analytic.
         """
         try:
-            with ctx.workprec(bits):
+            with precision(bits):
                 return expand(_InPowers(self, self.step), largest, bits)
         except SingularCoefficientError as error:
             raise self._singular(error) from None
@@ -226,7 +227,7 @@ class BoundLaw(PartedLaw):
         None where coefficients may have a pole in s so close by.
         """
         try:
-            return expand(_AboutMiddle(self, middle, orders, within), reach, ctx.prec, orders)
+            return expand(_AboutMiddle(self, middle, orders, within), reach, current_bits(), orders)
         except SingularCoefficientError as error:
             try:
                 expand(_AboutMiddle(self, ELSEWHERE, 1), arb(TINY), FEW_BITS, 1)

@@ -64,6 +64,13 @@ def test_polynomials_are_factored_in_one_place_that_survives_large_coefficients(
     assert {place.split(":")[0] for place in found} == {"symflex/algebra/ring.py"}, found
 
 
+def test_the_precision_of_balls_is_read_set_and_raised_in_one_place():
+    precision = re.compile(r"\bctx\.(?:prec|cap|dps|workprec|workdps)\b|\bbits \*= 2\b")
+    package = ((path, text) for path, text in text_files() if path.is_relative_to(ROOT / "symflex"))
+    found = occurrences(precision, package)
+    assert {place.split(":")[0] for place in found} == {"symflex/balls/precision.py"}, found
+
+
 def test_no_module_bears_a_vague_name():
     named = {
         p

@@ -15,8 +15,9 @@ from flint import acb, acb_mat, arb, arb_mat
 from symflex.algebra import LAPLACE, Factored, composed
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
+from symflex.balls import at_centre, balancing, binary_exponent
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.balls import at_centre, balancing, binary_exponent, enclose, enclosure, evaluated
+from symflex.transfer.enclose import enclose, enclosure, evaluated
 from symflex.transfer.enclose_kernels import fundamental_functions
 from symflex.transfer.varying_law import BoundLaw
 
@@ -24,11 +25,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.algebra import Dispersion
+    from symflex.balls import Value
     from symflex.equations import Continuum, Equations
     from symflex.expressions import Call
     from symflex.library.elements import Variable
     from symflex.model import ExactValue
-    from symflex.transfer.balls import Value
 
 
 SEED = 7

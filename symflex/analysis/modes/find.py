@@ -15,6 +15,7 @@ from flint import acb, acb_mat
 
 from symflex.analysis.modes.bound_equations import BoundEquations, SystemAt, null_space
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
+from symflex.balls import precision
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
@@ -22,7 +23,7 @@ from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMP
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Band, Modes, PoleZeroMap, Region, Root, precision
+from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.transfer import BoundNested, nested_transfer
 from symflex.transfer.bind import read_values

@@ -10,11 +10,12 @@ from fractions import Fraction
 from math import ceil, log2, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, arb, arb_mat, ctx
+from flint import acb, acb_mat, arb, arb_mat
 
+from symflex.balls import current_bits, precision
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.roots import Root, precision
+from symflex.roots import Root
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -66,7 +67,7 @@ class VaryingCarrier:
     def step(self, first: arb, second: arb) -> list[list[acb]]:
         """Return what takes the state, and the loads, from one distance from the start to another."""
         ends = (tuple(map(int, y.man_exp())) for x in (first, second) for y in (x.mid(), x.rad()))
-        key = ctx.prec, *ends
+        key = current_bits(), *ends
         if key in self._known:
             return self._known[key]
         self._known[key] = rows = [[acb(int(i == j)) for j in range(self.size)] for i in range(self.size)]

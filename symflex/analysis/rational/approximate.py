@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, arb
 
 from symflex.analysis.rational.approximation import (
     Approximant,
@@ -24,13 +24,13 @@ from symflex.analysis.rational.approximation import (
 from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
 from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import check_band, default_band
+from symflex.balls import current_bits, precision, to_complex_mpmath, to_mpmath
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root, precision
+from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate, lumped
 from symflex.roots.pole_zero_map import is_right
-from symflex.roots.precision import to_complex_mpmath, to_mpmath
 from symflex.roots.root import count_roots
 from symflex.transfer import BoundNested
 from symflex.transfer.bind import EnclosedTransferFunction
@@ -357,7 +357,7 @@ def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...],
 
     They are those of the function itself, to the working precision.
     """
-    function = bound.enclosed(ctx.prec)
+    function = bound.enclosed(current_bits())
     if not isinstance(function, EnclosedTransferFunction):
         message = f"{bound.name} is not rational"
         raise TypeError(message)

@@ -21,16 +21,25 @@ from functools import partial
 from math import pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, ctx
+from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.interval_newton import narrowed
 from symflex.algebra.vanishing import OriginSeries
 from symflex.analysis.rational.networks import NetworkSides, Taylor
+from symflex.balls import (
+    Value,
+    at_centre,
+    bits_for_digits,
+    current_bits,
+    narrowed,
+    precision,
+    precisions,
+    series_terms,
+)
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Region, Root, precision
+from symflex.roots import Region, Root
 from symflex.roots.counting.local_series import (
     BITS_A_POINT,
     REACH,
@@ -43,10 +52,8 @@ from symflex.roots.counting.local_series import (
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS
 from symflex.transfer import BoundNested
-from symflex.transfer.balls import Value, at_centre, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -105,9 +112,10 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
         origin.order(Factored(bound.ratio.ring, Fraction(1), ((f, branches),)))
         for f, _ in bound.ratio.factors
     ]
-    bits = max(FIRST_BITS, 2 * bits_for_digits(digits))
+    finer = precisions(max(FIRST_BITS, 2 * bits_for_digits(digits)), LAST_BITS)
+    bits = next(finer, None)
     terms = max((o for o in orders if o is not None), default=0) + branches * (max(last, 0) + 4) + SLACK
-    while bits <= LAST_BITS:
+    while bits is not None:
         with precision(bits), series_terms(terms):
             evaluator = bound.kernel_values()
             values = local_values(evaluator, acb(0), terms, branches)
@@ -120,7 +128,7 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
         if found == "longer" and terms < LONGEST:
             terms *= 2
         else:
-            bits *= 2
+            bits = next(finer, None)
             if found == "unproved":
                 orders = [None] * len(orders)
     message = f"the behaviour of {bound.name} near s = 0 could not be determined"
@@ -162,7 +170,7 @@ def _quotient(
         if known is None:
             if apart is None:
                 return "longer"
-            if not _all_zero(coefficients[:apart]) and ctx.prec < DETECTION_BITS:
+            if not _all_zero(coefficients[:apart]) and current_bits() < DETECTION_BITS:
                 return "finer"
             firsts.append(apart)
             continue
@@ -171,7 +179,7 @@ def _quotient(
         if apart is not None and apart < known:
             return "unproved"
         if coefficients[known].contains(0):
-            return "finer" if ctx.prec < DETECTION_BITS else "unproved"
+            return "finer" if current_bits() < DETECTION_BITS else "unproved"
         firsts.append(known)
     total_order = sum(e * first for (_, e), first in zip(ratio.factors, firsts, strict=True))
     if total_order % branches:
@@ -235,8 +243,7 @@ def _sides(
 ) -> Iterator[tuple[int, tuple[Taylor, Taylor]]]:
     """Yield the Taylor coefficients of numerator and denominator next to a pole, ever more precise."""
     ratio = bound.ratio
-    bits = max(FIRST_BITS, 2 * bits_for_digits(digits), root.working_bits())
-    while bits <= LAST_BITS:
+    for bits in precisions(max(FIRST_BITS, 2 * bits_for_digits(digits), root.working_bits()), LAST_BITS):
         with precision(bits):
             evaluator = bound.kernel_values()
         above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
@@ -245,7 +252,6 @@ def _sides(
             smooth = _smooth_sides(bound, root, bits)
         if smooth is not None:
             yield bits, smooth
-        bits *= 2
 
 
 def _network_sides(sides: NetworkSides, digits: int) -> Iterator[tuple[int, tuple[Taylor, Taylor]]]:
@@ -344,7 +350,7 @@ def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[
 def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[acb] | None:
     """Return the Taylor coefficients at a point close to where a series was found."""
     off = (centre - series.centre).abs_upper()
-    radius = (2 * off).max(series.reach * arb(2) ** -(ctx.prec // TERMS)).upper()
+    radius = (2 * off).max(series.reach * arb(2) ** -(current_bits() // TERMS)).upper()
     found = series.around(centre, radius)
     if found is None or terms > len(found[0]):
         return None

@@ -14,15 +14,14 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-from flint import acb, ctx
+from flint import acb
 
+from symflex.balls import UndecidedError, bits_for_digits, current_bits, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.locate import equations_of
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
 from symflex.roots.networks.disc_search import SERIES_BITS, DiscSearch, DiscSide
 from symflex.roots.networks.disc_series import DiscSeries, ball_about_zero
-from symflex.roots.networks.members import UndecidedError
-from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
     from symflex.transfer import BoundNested
@@ -88,7 +87,7 @@ class NetworkSides:
 
 
 def _coefficients(series: DiscSeries, centre: acb, terms: int) -> list[acb] | None:
-    with ctx.workprec(max(ctx.prec, series.bits)):
+    with precision(max(current_bits(), series.bits)):
         x = centre / series.radius
         room = 1 - abs(x)
         if not room > 0:

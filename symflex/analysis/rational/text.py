@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.analysis.rational.toolboxes import PERCENTS
+from symflex.balls import to_complex_mpmath
 from symflex.print.text import Passage, passages_text
-from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

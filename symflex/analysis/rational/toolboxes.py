@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, fmpz_mpoly
 
+from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.roots.locate import locate
-from symflex.roots.precision import to_complex_mpmath
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
 from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space
 from symflex.state_space.popov import FieldElement

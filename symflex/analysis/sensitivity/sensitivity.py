@@ -29,6 +29,16 @@ from symflex.algebra import (
 from symflex.algebra.minors import MinorSums
 from symflex.algebra.modal_sum import ModalSums
 from symflex.algebra.vanishing import OriginSeries
+from symflex.balls import (
+    Arithmetic,
+    EvaluationPlan,
+    Value,
+    ball,
+    bits_for_digits,
+    plan,
+    precision,
+    precisions,
+)
 from symflex.budget import spend
 from symflex.expressions import Call, Expression, fold
 from symflex.loops import pick_gain
@@ -37,9 +47,8 @@ from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer.balls import Arithmetic, EvaluationPlan, Value, ball, enclosure, later, plan
+from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.enclose_varying import VaryingMatrices
 from symflex.transfer.of_model import derive_all
@@ -151,8 +160,8 @@ def _complex_json(value: acb | None, digits: int) -> dict[str, str] | None:
     return {"re": printed.re, "im": printed.im, "radius": printed.radius}
 
 
-ROUNDS = 4
-"""Doublings of the precision before a derivative that is nearly zero is taken as it is."""
+MOST_TIMES = 8
+"""The first precision; beyond it, rounding is not why a derivative is not known or roots are not apart."""
 
 
 def differentiate(
@@ -216,9 +225,9 @@ class _Side:
         if not isinstance(branch, RootBranch):
             return branch, root.enclosure(), None
         wanted = bits_for_digits(self.digits)
-        bits = max(root.working_bits(), 2 * wanted)
+        first = max(root.working_bits(), 2 * wanted)
         derivative = None
-        for _ in range(ROUNDS):
+        for bits in precisions(first, MOST_TIMES * first):
             closer = branch.refined(bits)
             if closer is None:
                 return "undecided", root.enclosure(), None
@@ -226,7 +235,6 @@ class _Side:
             derivative = branch.derivative(parameter, bits)
             if derivative.is_finite() and derivative.rel_accuracy_bits() >= wanted:
                 break
-            bits *= 2
         if derivative is None or not derivative.is_finite():
             return "undecided", branch.root, None
         return "certified", branch.root, derivative
@@ -245,9 +253,6 @@ def _conjugate(value: acb) -> acb:
 
 
 Obstacle = Literal["multiple", "undecided"]
-
-ROUNDS_OF_ROOTS = 4
-"""After so many doublings of the precision, rounding is no longer the reason."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -298,8 +303,8 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | 
     Else ``"multiple"``, where a root of higher multiplicity splits, or several factors meet in it: it has no
     derivative; or ``"undecided"``, where the enclosure of the root does not tell.
     """
-    place, bits = root.enclosure(), root.working_bits()
-    for _ in range(ROUNDS_OF_ROOTS):
+    place, first = root.enclosure(), root.working_bits()
+    for bits in precisions(first, MOST_TIMES * first):
         found = _meeting(tangents, [f for f, _ in part.factors], place, bits)
         if found is not None and len(found) == 1 and root.multiplicity > 1:
             # Twice the same factor, multiplied out: such a root stays double, and moves.
@@ -309,7 +314,6 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | 
             return RootBranch(tangents, found[0], place)
         if found == []:
             return "undecided"
-        bits *= 2
     return "multiple" if root.multiplicity > 1 and root.certified else "undecided"
 
 

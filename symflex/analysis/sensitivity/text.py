@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import sympy
 from flint import arb
 
-from symflex.roots.precision import precision
+from symflex.balls import precision
 from symflex.roots.root import decimals
 
 if TYPE_CHECKING:

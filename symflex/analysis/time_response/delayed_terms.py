@@ -24,8 +24,8 @@ from flint import acb, arb, arb_poly
 
 from symflex.algebra import Factored, Ring
 from symflex.algebra.exponential_sum import Argument, Exponent, arguments_of, exponential_sum
+from symflex.balls import at_centre, ball
 from symflex.roots.problem import PolynomialInS, RealConstant
-from symflex.transfer.balls import at_centre, ball
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

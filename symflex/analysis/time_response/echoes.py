@@ -38,10 +38,10 @@ from symflex.analysis.time_response.partial_fractions import (
     values_of,
 )
 from symflex.analysis.time_response.sampled import Gathered, Sampled
+from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
 
 if TYPE_CHECKING:

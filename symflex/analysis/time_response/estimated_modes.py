@@ -18,12 +18,12 @@ from symflex.analysis.time_response.function_size import ring_about
 from symflex.analysis.time_response.modal import BITS, at_origin, term_of
 from symflex.analysis.time_response.partial_fractions import values_of
 from symflex.analysis.time_response.sampled import PartialSum, Sampled
+from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.distributed.proof import holes_about
 from symflex.roots.distributed.side import accumulation_points
 from symflex.roots.locate import locate
-from symflex.roots.precision import precision
 from symflex.roots.region import Modes
 from symflex.transfer import BoundNested
 
@@ -118,17 +118,13 @@ def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -
 
     It is known to something ``small``, or to as many digits.
     """
-    bits = BITS
     # Between many members exponentials take each other out, and so far out these are large.
-    while True:
+    for bits in precisions(BITS, EFFORT.begun_bits):
         spend()
         found = (bound.enclosed(bits)(acb(far)) / far ** (integrations - 1)).real
-        if (
-            found.rad() <= max(small, EFFORT.begun_closely * float(abs(found).mid()))
-            or bits >= EFFORT.begun_bits
-        ):
-            return found
-        bits *= 2
+        if found.rad() <= max(small, EFFORT.begun_closely * float(abs(found).mid())):
+            break
+    return found
 
 
 def _rings(

@@ -43,6 +43,7 @@ from symflex.analysis.time_response.sampled import (
     is_precise,
 )
 from symflex.analysis.time_response.wave_echoes import wave_quotient
+from symflex.balls import at_centre, bits_for_digits, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -51,11 +52,9 @@ from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import equations_of, lumped
 from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 from symflex.transfer import BoundNested
-from symflex.transfer.balls import at_centre
 from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:

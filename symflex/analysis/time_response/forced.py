@@ -24,11 +24,10 @@ from symflex.analysis.time_response.enclosed_response import EnclosedResponse
 from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
 from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.options import exact
-from symflex.roots.precision import precision
-from symflex.transfer.balls import ball
 from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:

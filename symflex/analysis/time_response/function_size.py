@@ -18,12 +18,11 @@ from flint import acb, acb_series, arb
 from symflex.algebra.exponential_sum import REAL
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.roots.counting.argument_principle import LogarithmicLine
 from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.precision import precision
-from symflex.transfer.balls import at_centre, ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

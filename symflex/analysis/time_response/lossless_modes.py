@@ -34,11 +34,11 @@ from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import ModesBound, Rest
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
 from symflex.analysis.time_response.sampled import Refused
+from symflex.balls import precision
 from symflex.budget import spend
 from symflex.roots.axes.axis_function import IMAGINARY, AxisFunction, bits_of
 from symflex.roots.axes.harmonic_sum import UNITS, lossless_function
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from symflex.algebra.exponential_sum import Polynomial

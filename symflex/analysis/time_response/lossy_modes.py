@@ -34,10 +34,9 @@ from flint import arb
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import ZERO, BoundBySize, Rest, SizeOfExponentials
 from symflex.analysis.time_response.sampled import Refused
+from symflex.balls import ball, precision
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.precision import precision
-from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from symflex.analysis.time_response.sample_times import SampleTimes

@@ -26,6 +26,7 @@ from symflex.analysis.time_response.lossy_modes import lossy_bound
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
 from symflex.analysis.time_response.passive_modes import passive_bound
 from symflex.analysis.time_response.sampled import PartialSum, Refused
+from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
@@ -33,7 +34,6 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.region import Modes
 
 if TYPE_CHECKING:

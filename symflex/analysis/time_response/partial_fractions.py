@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_mat
 
-from symflex.transfer.balls import series_terms
+from symflex.balls import series_terms
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:

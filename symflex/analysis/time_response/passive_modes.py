@@ -37,13 +37,12 @@ from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, m
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
 from symflex.analysis.time_response.sampled import Refused
+from symflex.balls import ball, precision
 from symflex.expressions import Attribute, Expression, Name, Negative, Sum
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import is_passive
 from symflex.roots.passive import observed
-from symflex.roots.precision import precision
-from symflex.transfer.balls import ball
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
 

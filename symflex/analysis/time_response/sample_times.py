@@ -20,10 +20,10 @@ import numpy as np
 from flint import acb, arb
 
 from symflex.analysis.response import roots_if_found
+from symflex.balls import at_centre, ball
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
 from symflex.transfer import BoundNested
-from symflex.transfer.balls import at_centre, ball
 
 if TYPE_CHECKING:
     import numpy.typing as npt

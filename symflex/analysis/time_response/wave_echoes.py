@@ -36,11 +36,10 @@ from symflex.analysis.time_response.delayed_terms import (
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.sampled import Gathered, Sampled
+from symflex.balls import Value, at_centre, ball, bits_for_digits, precision, series_terms
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import polynomial_in_s
-from symflex.transfer.balls import Value, at_centre, ball, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -29,8 +29,9 @@ from fractions import Fraction
 from math import inf, log2, prod, sqrt, tau
 from typing import TYPE_CHECKING
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, fmpq
 
+from symflex.balls import precision
 from symflex.codegen.program.forge import Forge, schedule
 from symflex.codegen.program.nodes import RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
@@ -326,7 +327,7 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
 def _two_doubles(x: arb) -> tuple[float, float]:
     if x.contains(0):
         return 0.0, 0.0
-    with ctx.workprec(max(BITS, x.bits())):
+    with precision(max(BITS, x.bits())):
         high = float(x.mid())
         return high, float((x.mid() - arb(high)).mid())
 
@@ -371,7 +372,7 @@ def _fit(values: EnclosedValues, made: BandForm, count: int) -> tuple[float, lis
             return None
         nodes.append((x, *_left(made, acb(s), enclosed.value, enclosed.slope)))
     (lowest, first, slope), *_ = nodes
-    with ctx.workprec(BITS):
+    with precision(BITS):
         at_zero = first * (acb(0, -lowest * made.end) * slope.real).exp()
         gain = (-1.0 if at_zero.real < 0 else 1.0) * float(abs(first).mid())
         even, odd, angle, before, tilt = [], [], arb(0), 0.0, float(slope.real.mid())
@@ -396,7 +397,7 @@ def _node(count: int, i: int) -> arb:
 
 def _left(made: BandForm, s: acb, value: acb, slope: acb) -> tuple[acb, acb]:
     """Return what is left of a value where roots are taken out, and its logarithmic derivative."""
-    with ctx.workprec(BITS):
+    with precision(BITS):
         value, slope = value / s**made.power, slope - made.power / s
         for roots, sign in ((made.zeros, 1), (made.poles, -1)):
             for root in roots:

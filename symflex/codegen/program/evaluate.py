@@ -14,10 +14,11 @@ from sys import float_info
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 
 from symflex.algebra.line_networks import network_value
 from symflex.algebra.varying_minors import fundamental_minors
+from symflex.balls import precision
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
 
@@ -53,7 +54,7 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
         if pi_power == 0:
             result = float(value)
         else:
-            with ctx.workprec(CONSTANT_BITS):
+            with precision(CONSTANT_BITS):
                 result = float((arb(fmpq(value.numerator, value.denominator)) * arb.pi() ** pi_power).mid())
     except OverflowError:
         result = float("inf")

@@ -13,8 +13,9 @@ from math import inf, isfinite, tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from flint import acb, arb, ctx
+from flint import acb, arb
 
+from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.codegen.program.band import BandForm, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
@@ -478,8 +479,7 @@ class EnclosedValues:
     def at(self, s: complex) -> EnclosedValue | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
         point = acb(s.real, s.imag)
-        bits = self._first_bits
-        while bits <= LAST_BITS:
+        for bits in precisions(self._first_bits, LAST_BITS):
             spend()
             function = self._function(bits)
             value, slope = function.value_and_slope(point)
@@ -490,7 +490,6 @@ class EnclosedValues:
                 if isinstance(function, EnclosedNested):
                     self._first_bits = bits  # the next point most likely needs as many
                 return EnclosedValue(value, slope, bits)
-            bits *= 2
         return None
 
     def _function(self, bits: int) -> Enclosed | EnclosedNested:
@@ -549,7 +548,7 @@ def _reference(values: EnclosedValues, s: complex) -> _Reference | None:
     found = values.at(s)
     if found is None:
         return None
-    with ctx.workprec(found.bits):
+    with precision(found.bits):
         size = found.value.abs_lower() * (1 + (acb(s.real, s.imag) * found.slope).abs_lower())
         return _Reference(found.value, found.bits, size)
 
@@ -565,7 +564,7 @@ class _Reference:
     def error_of(self, computed: complex) -> float:
         if not isfinite(computed.real) or not isfinite(computed.imag):
             return inf
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             distance = (acb(computed.real, computed.imag) - self.value).abs_upper()
             if distance < TINY:
                 return 0.0

@@ -49,7 +49,7 @@ from symflex.expressions import (
 from symflex.expressions.format import number_text
 from symflex.model.model import IMAGINARY
 from symflex.print.forms.arrange import length
-from symflex.transfer.balls import enclosure, principal_values
+from symflex.transfer.enclose import enclosure, principal_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

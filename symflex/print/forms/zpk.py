@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from flint import arb, fmpz
 
 from symflex.algebra import LAPLACE
+from symflex.balls import precision
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.printed import PrintedForm
-from symflex.roots import precision
 from symflex.roots.locate import locate
 from symflex.transfer import EnclosedTransferFunction, bind
 

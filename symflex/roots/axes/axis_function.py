@@ -21,9 +21,8 @@ import numpy as np
 import numpy.typing as npt
 from flint import arb
 
-from symflex.algebra.interval_newton import stays_inside
+from symflex.balls import bits_for_digits, precision, stays_inside
 from symflex.budget import spend
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS
 
 if TYPE_CHECKING:

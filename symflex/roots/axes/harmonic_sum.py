@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import Value, at_centre, precision
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
@@ -32,8 +33,6 @@ from symflex.roots.axes.axis_function import (
 )
 from symflex.roots.counting.winding import SPREAD, WIDENED, total_turn
 from symflex.roots.functions.kernel_function import ROOM, deviation
-from symflex.roots.precision import precision
-from symflex.transfer.balls import Value, at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

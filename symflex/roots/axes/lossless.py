@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import arb
 
+from symflex.balls import precision
 from symflex.budget import spend
 from symflex.roots.axes.axis_function import (
     IMAGINARY,
@@ -29,7 +30,6 @@ from symflex.roots.axes.axis_function import (
 )
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.precision import precision
 from symflex.roots.root import Root
 
 if TYPE_CHECKING:

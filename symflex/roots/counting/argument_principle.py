@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import precision, precisions
 from symflex.roots.counting.local_series import SeriesSteps
 from symflex.roots.counting.winding import (
     SPREAD,
@@ -26,7 +27,6 @@ from symflex.roots.counting.winding import (
     total_turn,
 )
 from symflex.roots.functions.kernel_function import ROOM, angle
-from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
@@ -196,12 +196,11 @@ class CertifiedWinding(Winding):
 
     def _sufficient(self, s: acb, bits: int) -> int:
         """Return a precision at which no factor of F is lost at a point."""
-        while bits <= max(LAST_BITS, 4 * s.bits()):
-            with precision(bits):
-                factors = self.function.enclosed(s, bits)
+        for enough in precisions(bits, max(LAST_BITS, 4 * s.bits())):
+            with precision(enough):
+                factors = self.function.enclosed(s, enough)
                 if all(value.is_finite() and not value.contains(0) for value, _, _ in factors):
-                    return bits
-            bits *= 2
+                    return enough
         raise RootOnPathError
 
 

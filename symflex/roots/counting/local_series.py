@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
+from symflex.balls import precision
 from symflex.roots.functions.kernel_function import ROOM, angle
-from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction

@@ -20,11 +20,11 @@ from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
+from symflex.balls import ball, precision
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
-from symflex.roots.precision import precision
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-from symflex.transfer.balls import ball, summed
+from symflex.transfer.enclose import summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.precision import precision
 from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import FLOAT_BITS, Root, are_apart, count_roots, root_at_zero
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from symflex.algebra import Factored
+from symflex.balls import precision
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
@@ -39,7 +40,6 @@ from symflex.roots.functions.simplified import without_reflections, without_squa
 from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
-from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Modes, Region
 from symflex.roots.root import Root, are_apart, count_roots, groups, mirror_images, overlap

@@ -28,7 +28,7 @@ from symflex.algebra.exponential_sum import (
     exponential_sum,
     parts,
 )
-from symflex.transfer.balls import Value, at_centre, ball, raised
+from symflex.balls import Value, at_centre, ball, raised
 from symflex.transfer.enclose_kernels import KernelValues
 
 if TYPE_CHECKING:

@@ -21,6 +21,7 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
 from symflex.algebra.exponential_sum import REAL, Exponent, combination
 from symflex.algebra.vanishing import OriginSeries
+from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.functions.exponential_values import (
@@ -30,8 +31,6 @@ from symflex.roots.functions.exponential_values import (
     Summed,
     exponential_sums,
 )
-from symflex.roots.precision import precision
-from symflex.transfer.balls import Value, at_centre, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -348,8 +347,7 @@ class KernelFunction:
         return Sample(self.power * total, self.power * slope)
 
     def _settled(self, point: Callable[[], acb]) -> tuple[list[tuple[acb, acb, int]], acb] | None:
-        bits = self._bits
-        while bits <= LAST_BITS:
+        for bits in precisions(self._bits, LAST_BITS):
             with precision(bits):
                 s = point()
                 found = self._factors(s, bits)
@@ -357,7 +355,6 @@ class KernelFunction:
                     return None
                 if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in found):
                     return found, s
-            bits *= 2
         return None
 
     def _spend(self, bits: int) -> None:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, ctx
+from flint import acb, acb_poly
 
+from symflex.balls import precision, precisions
 from symflex.roots.functions.kernel_function import Sample
-from symflex.transfer.balls import FIRST_BITS, LAST_BITS
+from symflex.transfer.double_value import FIRST_BITS, LAST_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,7 +59,7 @@ class NestedFunction:
     def reach(self, s: float) -> float:
         """Return how many radians all members together hold of their waves at a positive ``s``."""
         self.work += self.bound.source.size
-        with ctx.workprec(FIRST_BITS):
+        with precision(FIRST_BITS):
             total = 0.0
             for coefficients, shift, length in self.bound.enclosed(FIRST_BITS).wave_arguments(acb(s)):
                 sizes = [float(abs(x).mid()) for x in acb_poly([*coefficients, acb(1)]).roots()]
@@ -66,10 +67,9 @@ class NestedFunction:
             return total
 
     def _settled(self, point: Callable[[], acb]) -> Sample | None:
-        bits = self._bits
-        while bits <= LAST_BITS:
+        for bits in precisions(self._bits, LAST_BITS):
             self.work += self.bound.source.size
-            with ctx.workprec(bits):
+            with precision(bits):
                 s = point()
                 value, slope = self.bound.enclosed(bits).value_and_slope(s)
                 if value.is_finite() and value == 0:
@@ -78,5 +78,4 @@ class NestedFunction:
                     self._bits = bits
                     middle = value.mid()
                     return Sample(complex(float(abs(middle).log()), float(middle.arg())), complex(s * slope))
-            bits *= 2
         return None

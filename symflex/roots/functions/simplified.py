@@ -21,8 +21,8 @@ from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
 from symflex.algebra.ring import by_powers
+from symflex.balls import at_centre
 from symflex.errors import Diagnostic, ModelError
-from symflex.transfer.balls import at_centre
 from symflex.transfer.transfer_function import HiddenFactor
 
 if TYPE_CHECKING:

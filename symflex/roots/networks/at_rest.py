@@ -13,7 +13,7 @@ from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
 from symflex.roots.networks.cramer import columns_of
-from symflex.transfer.balls import rational_value
+from symflex.transfer.enclose import rational_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

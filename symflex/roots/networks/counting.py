@@ -11,11 +11,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
+from symflex.balls import current_bits, precision, settled
 from symflex.budget import spend
 from symflex.roots.networks.inertia import elimination_order, pivots
-from symflex.roots.networks.members import MemberBalls, Stiffness, settled
+from symflex.roots.networks.members import MemberBalls, Stiffness
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -58,7 +59,7 @@ class Counter:
 
         UndecidedError at an eigenvalue, or too close to one.
         """
-        return settled(lambda: self.level(ctx.prec).sample(value), bits)
+        return settled(lambda: self.level(current_bits()).sample(value), bits)
 
     def level(self, bits: int) -> Level:
         """Return the network's numbers at a precision."""
@@ -82,7 +83,7 @@ class Level:
     def of(counter: Counter, bits: int) -> Level:
         """Return the numbers of what is counted."""
         network = counter.network
-        with ctx.workprec(bits):
+        with precision(bits):
             numbers = network.numbers
             known = numbers.known()
             entries = [(i, j, *numbers.even(v, known)) for (i, j), v in network.entries.items()]
@@ -108,7 +109,7 @@ class Level:
     def sample(self, value: arb) -> NetworkSample:
         """Return the network at an exact real lambda; UndecidedError where a sign is not decided."""
         spend()
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             size = self.counter.network.size
             rows: list[dict[int, arb]] = [{} for _ in range(size + len(self.borders))]
             for i, j, constant, slope in self.entries:

@@ -17,15 +17,24 @@ from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, fmpq
 
 from symflex.algebra import LAPLACE, terms_of
 from symflex.algebra.factored import least_common_multiple
 from symflex.algebra.propagators import EXPONENTIAL
+from symflex.balls import (
+    UndecidedError,
+    Value,
+    at_centre,
+    balancing,
+    binary_exponent,
+    current_bits,
+    precision,
+    settled,
+)
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
-from symflex.roots.networks.members import UndecidedError, settled
-from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent, later
+from symflex.transfer.enclose import later
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
@@ -115,13 +124,13 @@ class CramerEquations:
         factors: dict[int, acb] = {}
         rows = self._rows(values, factors)
         den, last = self._eliminated(rows, len(rows) - 1)
-        if ctx.prec <= MOST_LOST * len(self.entries):
-            self._least_bits = max(self._least_bits, ctx.prec // 2)
+        if current_bits() <= MOST_LOST * len(self.entries):
+            self._least_bits = max(self._least_bits, current_bits() // 2)
         return CramerValue(den * self._value(self.divisor, values, factors), den * last)
 
     def _rows(self, values: Mapping[str, acb], factors: dict[int, acb]) -> list[dict[int, acb]]:
         """Return all entries; of those free of s, which are many, as they were."""
-        bits = ctx.prec
+        bits = current_bits()
         if bits not in self._resting:
             self._resting[bits] = [
                 {j: self._value(c, values, factors) for j, c in row.items() if j not in moving}
@@ -149,7 +158,7 @@ class CramerEquations:
 
     def _values(self, s: acb) -> dict[str, acb]:
         equations = self.equations
-        bits = ctx.prec
+        bits = current_bits()
         factors: dict[int, acb] = {}
         if bits not in self._constants:
             known = {c.generator: acb(later(c.expression, {"pi": arb.pi})()) for c in equations.constants}
@@ -215,7 +224,7 @@ class CramerEquations:
 
     def _plan(self, value: Factored, values: Mapping[str, acb]) -> Plan:
         """Return how to evaluate a value, with the products of constants, made once for each precision."""
-        key = ctx.prec, id(value)
+        key = current_bits(), id(value)
         if key in self._plans:
             return self._plans[key][1]
         constant, powers, sums = acb(fmpq(value.unit.numerator, value.unit.denominator)), [], []
@@ -249,11 +258,11 @@ class CramerEquations:
                 return _eliminate([dict(row) for row in rows], order)
             except UndecidedError:
                 # Mostly nothing is wanting but bits.
-                if ctx.prec < 2 * bits:
+                if current_bits() < 2 * bits:
                     raise
         order = pivot_order(rows, size)
         found = _eliminate(rows, order)
-        self._orders[size] = order, ctx.prec
+        self._orders[size] = order, current_bits()
         return found
 
     def alone(self, s: acb, bits: int, *, is_num: bool) -> acb:
@@ -276,7 +285,7 @@ class CramerEquations:
 
         EssentialSingularityError where a denominator may vanish there.
         """
-        with ctx.workprec(64):
+        with precision(64):
             values = self._majorants(radius)
             sizes = [{j: _bound(c, values) for j, c in row.items()} for row in self.entries]
             divisor = _bound(self.divisor, values)

@@ -12,8 +12,9 @@ from functools import partial
 from math import ceil, exp, inf, log, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, arb, ctx
+from flint import acb, arb
 
+from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
 from symflex.budget import spend
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue, EssentialSingularityError
@@ -23,8 +24,6 @@ from symflex.roots.networks.disc_series import (
     RootNearCircleError,
     points_needed,
 )
-from symflex.roots.networks.members import UndecidedError
-from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import Root, mirror_images
 
 if TYPE_CHECKING:
@@ -78,11 +77,12 @@ class DiscSide:
 
     def refined(self, box: acb, digits: int) -> acb:
         """Return a smaller enclosure of a simple root, to so many digits."""
-        bits = bits_for_digits(digits) + GUARD_BITS
-        wanted = arb(10) ** -(digits + 2)
+        first = bits_for_digits(digits) + GUARD_BITS
+        finer = precisions(first, first << REFINEMENTS)
+        bits, wanted = next(finer), arb(10) ** -(digits + 2)
         slope = self.series.slope_on(box)
         for _ in range(REFINEMENTS):
-            with ctx.workprec(bits):
+            with precision(bits):
                 if max(box.real.rad(), box.imag.rad()) <= abs(box).mid() * wanted:
                     return box
                 middle = box.mid()
@@ -97,7 +97,7 @@ class DiscSide:
                     not closer.is_finite()
                     or closer.real.rad() + closer.imag.rad() > (box.real.rad() + box.imag.rad()) / 4
                 ):
-                    bits *= 2
+                    bits = next(finer)
                 if closer.is_finite() and closer.rad() < box.rad():
                     box = closer
         return box
@@ -108,7 +108,7 @@ class DiscSide:
             box = self.refined(box, digits)
         on_axis = self.is_even and count == 1 and bool(box.real.mid() == 0)
         is_real = count == 1 and bool(box.imag == 0)
-        with ctx.workprec(2 * bits_for_digits(digits) + GUARD_BITS):
+        with precision(2 * bits_for_digits(digits) + GUARD_BITS):
             s = box * self.series.radius
         re = arb(0) if on_axis else s.real
         return Root(re, s.imag, count, on_imaginary_axis=on_axis, is_real=is_real, certified=count == 1)
@@ -273,7 +273,7 @@ class DiscSearch:
                 GUARD_BITS + extra + max(ceil((a - b) / log(2)) for a, b in zip(largest, least, strict=True))
             )
             # Points so narrow that values do not gain from more bits of theirs.
-            with ctx.workprec(8 * bits):
+            with precision(8 * bits):
                 values = circle_values(
                     partial(self._value, bits=bits), middle, count, symmetric=all(self.symmetric)
                 )
@@ -301,7 +301,7 @@ class DiscSearch:
         boxes = enclosed_roots(series, at_zero, is_even=is_even)
 
         def value(x: acb, bits: int) -> acb:
-            with ctx.workprec(4 * bits):
+            with precision(4 * bits):
                 s = x * series.radius
             return self.equations.alone(s, bits, is_num=name == "num")
 

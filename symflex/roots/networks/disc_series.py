@@ -15,11 +15,10 @@ from dataclasses import dataclass
 from math import ceil, exp, log, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, acb_series, arb, ctx
+from flint import acb, acb_poly, acb_series, arb
 
-from symflex.algebra.interval_newton import stays_inside
+from symflex.balls import precision, series_terms, stays_inside
 from symflex.budget import spend
-from symflex.transfer.balls import series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -62,7 +61,7 @@ class DiscSeries:
         ``log_bound`` is ln of a bound on abs(f) within ratio times the radius.
         """
         n = len(values)
-        with ctx.workprec(bits):
+        with precision(bits):
             most, shrink = arb(log_bound).exp(), 1 / arb(ratio)
             last = most * shrink**n / (1 - shrink)
             coefficients = acb.dft(list(values))
@@ -79,7 +78,7 @@ class DiscSeries:
     def slope_on(self, box: acb) -> acb:
         """Return the derivative by x on a box within the unit disc."""
         # What the polynomial's terms take from each other is lost on wide boxes, but not about a point.
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             reach = acb(box.real.rad(), box.imag.rad()).abs_upper()
             local = self.about(box.mid())
             off = self.slope_off
@@ -115,7 +114,7 @@ class DiscSeries:
 
     def _turns(self, centre: acb, size: float, stop: float, unit: Callable[[], arb]) -> int:
         """Follow the argument along a circle in steps on which the function stays close to an exponential."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             angle, total, end = 0.0, arb(0), acb(-1 if stop == pi else 1)
             before: tuple[acb, acb, acb] | None = None
             while True:
@@ -176,7 +175,7 @@ class DiscSeries:
 
         An even function's are sought in x squared. Empty where they are not told apart.
         """
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             first, *others = (c.mid() for c in self.polynomial.coeffs()[at_zero :: 1 + is_even])
             # So slight a change splits roots that coincide exactly: none but simple ones are found.
             polynomial = acb_poly([first * (1 + arb(2) ** (1 - self.bits)).mid(), *others])
@@ -193,7 +192,7 @@ class DiscSeries:
 
     def proved(self, guess: acb) -> acb | None:
         """Return a box about a guess that holds exactly one root; ``None`` where none is proved."""
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             x = guess.mid()
             # Horner's rule would turn a box at every step, and widen it.
             value = self.about(x)[0] + ball_about_zero(self.off)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.roots.networks.members import UndecidedError
+from symflex.balls import UndecidedError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -18,39 +18,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import frexp, ldexp, log2
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from symflex.algebra.varying_growth import balanced
+from symflex.balls import UndecidedError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-Settled = TypeVar("Settled")
-MOST_BITS = 20_000
-"""No value asked for so far needed a tenth of it."""
 HALF = 0.5
 """What the bound on a piece's energy must stay below; 1 would do, and the rest is for rounding in doubles."""
 MOST_HALVINGS = 60
 SERIES_TERMS = 40
 """Of exp(abs(A) h), whose norm is at most 1: 1/40! is far below the rounding of doubles."""
-
-
-class UndecidedError(Exception):
-    """A sign is not decided at this precision, or at this point."""
-
-
-def settled(compute: Callable[[], Settled], bits: int) -> Settled:
-    """Return what is computed with at least so many bits; UndecidedError where too many would be needed."""
-    while True:
-        try:
-            with ctx.workprec(bits):
-                return compute()
-        except UndecidedError:
-            bits *= 2
-            if bits > MOST_BITS:
-                raise
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,12 +14,13 @@ from collections import deque
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NoReturn
 
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_poly
 
 from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.balls import ball, precision
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.signs import is_passive
-from symflex.transfer.balls import ball, later, summed
+from symflex.transfer.enclose import later, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -354,7 +355,7 @@ class _NetworkReading:
         is_passive: bool,
     ) -> None:
         """Prove that the equations are real in lambda, and their inertia not negative."""
-        with ctx.workprec(MASS_BITS):
+        with precision(MASS_BITS):
             known = self._known
             mass: dict[int, dict[int, arb]] = {}
             for (i, j), value in entries.items():

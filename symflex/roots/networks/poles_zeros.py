@@ -12,15 +12,15 @@ from functools import partial
 from math import pi
 from typing import TYPE_CHECKING
 
-from flint import arb, ctx
+from flint import arb
 
+from symflex.balls import UndecidedError, precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.networks.anywhere import CRAMER, roots_in_disc, wanted_modes
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError, is_zero
-from symflex.roots.networks.members import UndecidedError
 from symflex.roots.networks.network import OtherNetworkError, network_of
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
@@ -347,7 +347,7 @@ def _pair(each: Eigenvalue, multiplicity: int) -> list[Root]:
     """Return s and its conjugate of so many eigenvalues."""
     if multiplicity <= 0:
         return []
-    with ctx.workprec(max(each.low.value.bits(), each.high.value.bits()) + 32):
+    with precision(max(each.low.value.bits(), each.high.value.bits()) + 32):
         omega = each.low.value.sqrt().union(each.high.value.sqrt())
     is_one = multiplicity == 1
     return [

@@ -13,11 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from flint import arb, ctx
+from flint import arb
 
+from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
 from symflex.budget import spend
-from symflex.roots.networks.members import UndecidedError
-from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,6 +31,8 @@ NEAR = 1e-3
 """Relative width of an interval in which secants begin."""
 NUDGE = 2.0**-20
 """Parts of an interval by which a point moves that is an eigenvalue itself, of the network or of a member."""
+MOST_TIMES = 4
+"""The precision of samples, where a sign is not decided with it."""
 LOWEST = 2.0**-40
 """Lambda [rad^2/s^2] below which no eigenvalue but 0 is expected, 1e-6 rad/s."""
 SHRINKING = 2.0**-30
@@ -95,15 +96,13 @@ class EigenvalueSearch:
     def at(self, value: arb, room: arb) -> NetworkSample:
         """Return the network at a lambda, or within some room of it where that is an eigenvalue."""
         spend()
-        bits = self.bits
-        for _ in range(3):
+        for bits in precisions(self.bits, MOST_TIMES * self.bits):
             try:
                 sample = self.counter.sample(value, bits)
                 self.count(sample)
             except UndecidedError:
-                with ctx.workprec(2 * bits):
+                with precision(2 * bits):
                     value = (value + room * NUDGE).mid()
-                    bits *= 2
             else:
                 return sample
         raise UndecidedError
@@ -112,7 +111,7 @@ class EigenvalueSearch:
         """Return a sample above so many eigenvalues."""
         sample = low
         while self._number(sample) < count:
-            with ctx.workprec(self.bits):
+            with precision(self.bits):
                 value = (RISE * sample.value).mid()
                 sample = self.at(value, value)
         return sample
@@ -158,14 +157,14 @@ class EigenvalueSearch:
         return self.count(sample) - self.base
 
     def _between(self, a: NetworkSample, b: NetworkSample) -> NetworkSample:
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             low, high = a.value, b.value
             # Far apart the geometric mean: frequencies spread over decades.
             middle = (low * high).sqrt() if low > 0 and high > 4 * low else (low + high) / 2
             return self.at(middle.mid(), high - low)
 
     def _is_close(self, a: NetworkSample, b: NetworkSample) -> bool:
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             return bool(b.value - a.value <= self._tolerance(b.value))
 
     def _tolerance(self, value: arb) -> arb:
@@ -175,7 +174,7 @@ class EigenvalueSearch:
     def _enclose(self, low: NetworkSample, high: NetworkSample) -> None:
         """Enclose the one eigenvalue between two samples."""
         first = self._number(low)
-        with ctx.workprec(self.bits):
+        with precision(self.bits):
             before, last, stalled = low, high, 0
             while not self._is_close(low, high):
                 width, tolerance = high.value - low.value, self._tolerance(high.value)

@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra.interval_newton import stays_inside
+from symflex.balls import bits_for_digits, precision, precisions, stays_inside
 from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
-from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, Root
 
 if TYPE_CHECKING:
@@ -31,8 +30,8 @@ LEAST_BITS = 96
 """Of a box, whatever the digits wanted."""
 BOX_SHARE = 0.4
 """The box is so many of the bits smaller than the root is large."""
-DOUBLINGS = 5
-"""Of the precision, after which a root is left to other means."""
+MOST_TIMES = 16
+"""The first precision; beyond it a root is left to other means."""
 CLOSE = BOX_SHARE + 0.02
 """The last Newton step before a box is drawn is by so many of the bits smaller."""
 FIRST_BITS = 64
@@ -79,9 +78,9 @@ def prove_simple(
     """
     is_even = function.is_even if even is None else even
     wanted = bits_for_digits(digits + 2) + GUARD_BITS
-    bits = max(LEAST_BITS, wanted, first_bits)
+    first, used = max(LEAST_BITS, wanted, first_bits), 0
     found: Box | None = None
-    for _ in range(DOUBLINGS):
+    for bits in precisions(first, MOST_TIMES * first):
         try:
             box = _box(function, s, (first_bits, bits), factor, even=is_even)
         except _SlowError:
@@ -94,13 +93,13 @@ def prove_simple(
                 if not box.touching and error < size * arb(10) ** -digits:
                     return _root(box, box.exponent, certified=True)
                 s = acb(box.re.mid(), box.im.mid())
-        bits *= 2
+        used = bits
     if found is None:
         return None
     total = found.exponent
     for other in found.touching:
         try:
-            beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
+            beside = _box(function, s, (first_bits, used), other, even=is_even)
         except _SlowError:
             return None
         if beside is None:

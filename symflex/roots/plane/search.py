@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
+from symflex.balls import precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
@@ -22,7 +23,6 @@ from symflex.roots.plane.local_roots import (
     prove_simple,
     prove_together,
 )
-from symflex.roots.precision import precision
 from symflex.roots.root import Root, groups, overlap
 
 if TYPE_CHECKING:

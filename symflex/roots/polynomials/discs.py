@@ -25,10 +25,10 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from flint import acb, acb_poly, arb, arb_poly, ctx
+from flint import acb, acb_poly, arb, arb_poly
 
+from symflex.balls import current_bits, precision
 from symflex.budget import spend
-from symflex.roots.precision import precision
 
 Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 
@@ -112,7 +112,7 @@ class LevelPolynomial:
             size = step.abs_upper()
             # Where the coefficients' own balls end it, steps stop shrinking long before they are that small.
             is_at_its_end = last <= moved.abs_upper() * GROUPING and not size < last / 2
-            if is_at_its_end or size <= moved.abs_upper() * arb(2) ** (16 - ctx.prec):
+            if is_at_its_end or size <= moved.abs_upper() * arb(2) ** (16 - current_bits()):
                 break
             centre, shifted, last = moved, self.shifted(moved), size
         return centre, shifted
@@ -130,7 +130,7 @@ class LevelPolynomial:
         sizes = [abs(shifted[i]).upper() for i in range(self.degree + 1)]
         if not pivot > 0:
             return None
-        radius = (arb(2) ** -ctx.prec * centre.abs_upper()).upper()
+        radius = (arb(2) ** -current_bits() * centre.abs_upper()).upper()
         for i in range(count):
             scale = (sizes[i] / pivot).root(count - i).upper()
             radius = scale if scale > radius else radius

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
+from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.polynomials.discs import (
     Disc,
@@ -22,7 +23,6 @@ from symflex.roots.polynomials.discs import (
     middle_of,
     with_mirrors,
 )
-from symflex.roots.precision import bits_for_digits, precision
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

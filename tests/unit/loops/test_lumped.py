@@ -10,10 +10,10 @@ import pytest
 from flint import arb
 
 from symflex.algebra import Factored, Ring
+from symflex.balls import precision
 from symflex.loops.loop import GainPolynomial
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.stability_map import PoleCount
-from symflex.roots import precision
 
 RING = Ring(("s", "c"))
 

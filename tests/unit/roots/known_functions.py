@@ -7,7 +7,7 @@ from functools import cached_property
 
 from flint import acb
 
-from symflex.roots import precision
+from symflex.balls import precision
 
 
 def exact(value):

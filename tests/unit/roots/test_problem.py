@@ -7,8 +7,9 @@ from fractions import Fraction
 import pytest
 from flint import arb, fmpz_mpoly_ctx
 
+from symflex.balls import precision
 from symflex.errors import ModelError, UncertifiedError
-from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots, precision
+from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots
 from symflex.roots.problem import split
 from tests.unit.roots.root_problems import from_roots, problem, with_pi, with_root_of_two
 

@@ -12,8 +12,8 @@ import pytest
 from flint import arb, fmpz_poly
 from hypothesis import strategies as st
 
-from symflex.roots import Modes, Root, find_pole_zero_map, find_polynomial_roots, precision
-from symflex.roots.precision import bits_for_digits
+from symflex.balls import bits_for_digits, precision
+from symflex.roots import Modes, Root, find_pole_zero_map, find_polynomial_roots
 from symflex.roots.root import FLOAT_BITS, decimals, exact_fraction, mirror_images, overlap
 from tests.unit.roots.root_problems import problem, problem_of
 from tests.unit.roots.stand_ins import root

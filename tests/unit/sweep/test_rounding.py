@@ -9,7 +9,7 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symflex.roots import precision
+from symflex.balls import precision
 from symflex.sweep.points import doubles, rounded
 
 

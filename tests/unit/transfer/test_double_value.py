@@ -8,14 +8,7 @@ from math import inf, isnan, nan
 import pytest
 from flint import acb, arb, ctx
 
-from symflex.transfer.balls import (
-    DOUBLE_BITS,
-    FIRST_BITS,
-    LAST_BITS,
-    NEAR,
-    double_value,
-    order_near,
-)
+from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, NEAR, double_value, order_near
 
 FAIL = acb(arb("nan"), arb("nan"))
 

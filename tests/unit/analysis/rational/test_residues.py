@@ -13,9 +13,9 @@ from flint import acb
 
 from symflex import pipeline
 from symflex.analysis.rational import expand_at_pole, expand_at_zero, find_residues
+from symflex.balls import to_complex_mpmath
 from symflex.errors import UncertifiedError
 from symflex.roots import Modes
-from symflex.roots.precision import to_complex_mpmath
 from tests.independent import classics
 from tests.unit.analysis.rods import CLAMPED_ROD, FREE_ROD, bound, rational
 from tests.unit.roots import distributed_models as distributed

@@ -14,10 +14,10 @@ from flint import acb, ctx
 import symflex
 from symflex import pipeline
 from symflex.analysis.sensitivity.sensitivity import sensitivities
+from symflex.balls import to_complex_mpmath as to_complex
 from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
-from symflex.roots.precision import to_complex_mpmath as to_complex
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ON_A_FOUNDATION
 
 DERIVATIONS = Path(__file__).parents[4] / "derivations"

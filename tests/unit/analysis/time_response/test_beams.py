@@ -13,8 +13,8 @@ from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
 from symflex.analysis.time_response.lossless_modes import lossless_modes
 from symflex.analysis.time_response.modal import BoundedModes
+from symflex.balls import precision
 from symflex.errors import UncertifiedError
-from symflex.roots.precision import precision
 
 UNIT = 'E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3", l = "1 m"'
 TIMES = [0.0, 0.01, 0.1, 0.37, 1.0, 2.9]

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm, _Arc, _most
 from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.precision import precision
 
 
 @pytest.fixture(autouse=True)

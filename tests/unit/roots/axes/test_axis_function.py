@@ -11,6 +11,7 @@ from flint import arb
 from mpmath import mp, mpf
 
 from symflex.algebra.exponential_sum import AxisWave
+from symflex.balls import bits_for_digits, precision
 from symflex.roots.axes.axis_function import (
     CLOSER,
     FLOAT_BITS,
@@ -25,7 +26,6 @@ from symflex.roots.axes.axis_function import (
     bracketed,
     changes_sign,
 )
-from symflex.roots.precision import bits_for_digits, precision
 
 BITS = 300
 P, Q = mpf("1.25"), mpf("0.5")

@@ -11,7 +11,7 @@ from flint import arb
 from mpmath import mp, mpc, mpf
 
 from symflex.algebra.exponential_sum import ExponentialSum
-from symflex.roots import precision
+from symflex.balls import precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.functions.kernel_function import KernelFunction

@@ -10,7 +10,8 @@ import pytest
 from flint import acb, arb
 from mpmath import mp, mpf
 
-from symflex.roots import Mode, Modes, precision
+from symflex.balls import precision
+from symflex.roots import Mode, Modes
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.winding import RootOnPathError

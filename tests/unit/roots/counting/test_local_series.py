@@ -10,7 +10,7 @@ from math import comb, prod
 import pytest
 from flint import acb, arb
 
-from symflex.roots import precision
+from symflex.balls import precision
 from symflex.roots.counting.local_series import LocalSeries, bound_on_circle, local_series, sampled_series
 from tests.unit.roots.known_functions import KnownFunction
 

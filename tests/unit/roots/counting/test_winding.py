@@ -10,9 +10,9 @@ from math import asin, inf, pi
 import pytest
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError
-from symflex.roots import precision
 from symflex.roots.counting.argument_principle import (
     CertifiedWinding,
     LogarithmicLine,

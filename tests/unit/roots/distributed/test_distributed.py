@@ -15,8 +15,9 @@ from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sinh, sqrt, tan, 
 
 from symflex import pipeline
 from symflex.analysis.response import respond
+from symflex.balls import precision
 from symflex.errors import BudgetError, ModelError
-from symflex.roots import Band, Budget, Mode, Modes, Rectangle, precision
+from symflex.roots import Band, Budget, Mode, Modes, Rectangle
 from symflex.roots.counting import winding
 from symflex.roots.distributed.side import Proof, Side
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SEARCHES

@@ -12,7 +12,7 @@ from flint import acb, arb
 
 from symflex import pipeline
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS
-from symflex.roots import precision
+from symflex.balls import precision
 from symflex.roots.distributed.far_out import (
     ADVANCED,
     EVERY_DELAYED,

@@ -15,9 +15,9 @@ import pytest
 from mpmath import mpc, mpf, sqrt, workdps
 
 from symflex import pipeline
+from symflex.balls import to_complex_mpmath, to_mpmath
 from symflex.roots import Band, Modes
 from symflex.roots.locate import locate
-from symflex.roots.precision import to_complex_mpmath, to_mpmath
 
 BEAM = """
 symflex = 1

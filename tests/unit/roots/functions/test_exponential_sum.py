@@ -14,9 +14,8 @@ from mpmath import mp, mpc
 
 from symflex.algebra import Dispersion
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
+from symflex.balls import expansion, precision
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues
-from symflex.roots.precision import precision
-from symflex.transfer.balls import expansion
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]

@@ -12,6 +12,7 @@ from flint import acb, arb
 from mpmath import mp, mpc
 
 from symflex.algebra import Factored
+from symflex.balls import precision
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots.functions.kernel_function import (
     KernelFactors,
@@ -21,7 +22,6 @@ from symflex.roots.functions.kernel_function import (
     has_kernels,
     split_off_kernels,
 )
-from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import (
     DELAY_LOOP,
     FREE,

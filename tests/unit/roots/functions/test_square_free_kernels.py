@@ -5,9 +5,9 @@ from __future__ import annotations
 from flint import acb
 
 from symflex.algebra import Factored
+from symflex.balls import precision
 from symflex.roots.functions import simplified
 from symflex.roots.functions.simplified import without_squares
-from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from flint import arb
 
+from symflex.balls import UndecidedError
 from symflex.roots.networks.inertia import elimination_order, pivots
-from symflex.roots.networks.members import UndecidedError
 
 
 def sparse(matrix, number=arb):

@@ -8,7 +8,8 @@ from math import cos, cosh, floor, pi, sin, sinh, sqrt, tan
 import pytest
 from flint import arb, ctx
 
-from symflex.roots.networks.members import MemberBalls, UndecidedError
+from symflex.balls import UndecidedError
+from symflex.roots.networks.members import MemberBalls
 
 
 def member(entries, slopes, states, length=1.0):

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.balls import UndecidedError
 from symflex.roots.locate import locate
 from symflex.roots.networks import poles_zeros
-from symflex.roots.networks.members import UndecidedError
 from symflex.roots.region import Band, Mode, Modes, Rectangle
 from symflex.transfer.nested_form import bind_nested
 from tests.unit.roots.networks.network_models import BEAM, located, omegas, specification

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.roots import Modes
 from symflex.roots.counting.local_series import local_series
 from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
-from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import bound
 
 STEEL = 'E = "200 GPa", I = "4000 mm^4", rho = "8000 kg/m^3", A = "500 mm^2", l = "1 m"'

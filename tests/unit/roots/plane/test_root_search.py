@@ -9,13 +9,13 @@ import pytest
 from flint import acb, arb
 
 from symflex.algebra import Factored
+from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.plane.search import RootSearch
-from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import DELAY_LOOP, bound
 
 DIGITS = 15

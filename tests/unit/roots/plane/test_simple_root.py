@@ -8,7 +8,7 @@ from itertools import pairwise, product
 import pytest
 from flint import acb, arb
 
-from symflex.roots import precision
+from symflex.balls import precision
 from symflex.roots.plane.local_roots import (
     BOX_SHARE,
     LEAST_BITS,

@@ -7,8 +7,8 @@ from itertools import product
 import pytest
 from flint import acb, arb
 
+from symflex.balls import precision
 from symflex.roots.plane.local_roots import in_disc, is_branched, prove_together, snapped
-from symflex.roots.precision import precision
 from tests.unit.roots.known_functions import KnownFunction
 
 DIGITS = 12

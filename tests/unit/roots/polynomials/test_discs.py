@@ -9,8 +9,8 @@ from random import Random
 import pytest
 from flint import acb, acb_poly, arb
 
+from symflex.balls import precision
 from symflex.budget import Budget
-from symflex.roots import precision
 from symflex.roots.polynomials.discs import (
     CENTRE_STEPS,
     NEWTON_STEPS,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 from flint import acb, acb_poly, arb
 
+from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
-from symflex.roots import PolynomialInS, precision
+from symflex.roots import PolynomialInS
 from symflex.roots.polynomials.isolation import (
     first_bits,
     goal_of,

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from flint import acb, acb_poly, arb
 
+from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.roots.polynomials.discs import (
     LARGEST_LOGARITHM,
@@ -20,7 +21,6 @@ from symflex.roots.polynomials.discs import (
     guess_by_laguerre,
     propose_by_laguerre,
 )
-from symflex.roots.precision import precision
 
 
 @pytest.fixture(autouse=True)

@@ -9,7 +9,8 @@ from itertools import permutations, product
 import pytest
 from flint import acb, arb, fmpq
 
-from symflex.roots import PolynomialInS, Root, RootProblem, precision
+from symflex.balls import precision
+from symflex.roots import PolynomialInS, Root, RootProblem
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomial_roots import (
     _conjugates,

@@ -7,6 +7,7 @@ from itertools import count
 
 from flint import arb, fmpz_poly
 
+from symflex.balls import precision
 from symflex.errors import BudgetError
 from symflex.roots import (
     Band,
@@ -18,7 +19,6 @@ from symflex.roots import (
     RootProblem,
     find_pole_zero_map,
     find_polynomial_roots,
-    precision,
 )
 from tests.unit.roots.root_problems import problem, problem_of
 

@@ -11,8 +11,9 @@ from flint import acb, acb_poly, arb, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from symflex.balls import precision
 from symflex.errors import UncertifiedError
-from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots, precision
+from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots
 from symflex.roots.engines import GUESSES
 from symflex.roots.polynomials.discs import propose_by_laguerre
 from tests.unit.roots.root_problems import (

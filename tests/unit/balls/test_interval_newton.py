@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flint import acb, arb
 
-from symflex.algebra.interval_newton import narrowed, stays_inside
+from symflex.balls import narrowed, stays_inside
 
 
 def step(box):

@@ -1,0 +1,28 @@
+"""Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this room."""
+
+from symflex.balls.interval_newton import narrowed, stays_inside
+from symflex.balls.precision import (
+    UndecidedError,
+    bits_for_digits,
+    current_bits,
+    current_terms,
+    precision,
+    precisions,
+    series_terms,
+    settled,
+    to_complex_mpmath,
+    to_mpmath,
+)
+from symflex.balls.values import (
+    Arithmetic,
+    EvaluationPlan,
+    Value,
+    at_centre,
+    balancing,
+    ball,
+    binary_exponent,
+    expansion,
+    plan,
+    raised,
+    value_at,
+)

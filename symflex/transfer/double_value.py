@@ -1,0 +1,87 @@
+"""Values, limits and orders of a function at one point, to double precision.
+
+Input: what encloses the function, by the precision. Output: its value, rounded once; a limit where parts of
+the expression are not numbers. Example: ``sin(s)/s`` at 0 is 1, read off at 2^-200 and 2^-220. A ball that is
+accurate to 54 bits holds one double or two neighbours.
+"""
+
+from __future__ import annotations
+
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.balls import precision, precisions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Ball = Callable[[acb], acb]
+
+FIRST_BITS = 96
+LAST_BITS = 6144
+DOUBLE_BITS = 54
+"""One more than the significand of a double."""
+NEAR = (200, 220)
+"""Negative powers of two between which the behaviour at a point is read off, where there is no number."""
+
+
+def double_value(
+    enclosed: Callable[[int], Ball], s: complex, patience: int | None, first: int = FIRST_BITS
+) -> complex:
+    """Return a function's value at one complex frequency [rad/s] to double precision.
+
+    ``enclosed`` is the function by the precision, which begins with the ``first``. After ``patience``
+    doublings a value that is not a number is sought as a limit; never with None, where only a pole has none.
+    The value is nan where ``s`` is not finite, and ``inf + nan*1j`` at a pole.
+    """
+    if not (isfinite(s.real) and isfinite(s.imag)):
+        return complex(nan, nan)
+    point, last = acb(s.real, s.imag), None if patience is None else first << patience
+    for bits in precisions(first, LAST_BITS):
+        value = enclosed(bits)(point)
+        if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+            return complex(float(value.real.mid()), float(value.imag.mid()))
+        if last is not None and not value.is_finite() and bits >= last:
+            return _limit_at(enclosed, s)
+    return 0j if value.is_finite() else complex(inf, nan)
+
+
+def _limit_at(enclosed: Callable[[int], Ball], s: complex) -> complex:
+    """Return the value where parts of an expression are not numbers, by continuity."""
+    order, value = order_near(enclosed, s)
+    if value is None or order < 0:
+        return complex(inf, nan)
+    return 0j if order > 0 else complex(float(value.real.mid()), float(value.imag.mid()))
+
+
+def order_near(enclosed: Callable[[int], Ball], s: complex) -> tuple[int, acb | None]:
+    """Return the order of the zero (negative: of the pole) at ``s``, and a value close by if one is found."""
+    near, nearer = (_beside(enclosed, s, -e) for e in NEAR)
+    if near is None or nearer is None:
+        return 0, None
+    with precision(LAST_BITS):
+        ratio = abs(nearer / near).log() / arb(2).log() / (NEAR[0] - NEAR[1])
+        return round(float(ratio.mid())), nearer
+
+
+def limit_at_zero(enclosed: Callable[[int], Ball]) -> float:
+    """Return the limit from two values close to zero, where it goes like an integer power of s."""
+    order, value = order_near(enclosed, 0j)
+    if value is None:
+        return nan
+    if order < 0:
+        return inf if value.real > 0 else -inf
+    return float(value.real.mid()) if order == 0 else 0.0
+
+
+def _beside(enclosed: Callable[[int], Ball], s: complex, exponent: int) -> acb | None:
+    """Return a ball around the value at ``s + 2^exponent``, ``None`` when it is not found."""
+    for bits in precisions(FIRST_BITS * 8, LAST_BITS):
+        with precision(bits):
+            point = acb(s.real, s.imag) + (arb(2) ** exponent) * max(abs(s), 1.0)
+            value = enclosed(bits)(point)
+            if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+                return value
+    return None

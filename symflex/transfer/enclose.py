@@ -1,0 +1,167 @@
+"""Values of expressions, rational functions and polynomials, exactly or in balls."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import FUNCTIONS, terms_of
+from symflex.balls import Arithmetic, ball, raised
+from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import Call, Expression, Number, fold, format_expression, names
+from symflex.quantities import IMAGINARY_UNIT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.algebra import Factored
+    from symflex.algebra.sparse import Monomial
+    from symflex.expressions import Call
+    from symflex.model import ExactValue
+
+
+def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:
+    """Return the exact value of an expression of rational numbers, ``None`` when it is anything else.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Number, Quotient
+    >>> rational_value(Quotient(Number(Fraction(8)), Number(Fraction(6))), {})
+    Fraction(4, 3)
+    """
+
+    def named(name: str) -> Fraction:
+        if values[name].pi_power:
+            raise KeyError(name)
+        return values[name].rational
+
+    def none(*_: object) -> Fraction:
+        raise KeyError
+
+    try:
+        return fold(expression, number=Fraction, name=named, power=none, call=none)
+    except (KeyError, ZeroDivisionError):
+        return None
+
+
+def enclosure(value: ExactValue) -> Callable[[], arb]:
+    """Return what encloses an exact value at the precision of the time it is called."""
+    if value.is_imaginary:
+        unit: Arithmetic = acb(0, 1)
+        return lambda: unit
+    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
+
+
+def later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
+    """Return what encloses an expression at the precision of the time it is called; see :func:`enclose`."""
+    return lambda: enclose(expression, values)
+
+
+def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
+    """Return a ball that contains the value of an expression at the current precision.
+
+    It is one of numbers, ``pi``, named constants and elementary functions. Raises ModelError: SF228 when the
+    value is not a finite real number.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Call, Number
+    >>> from fractions import Fraction
+    >>> enclose(Call("sqrt", Number(Fraction(4))), {}).contains(2)
+    True
+    """
+    result = _enclose(expression, values)
+    if not result.is_finite():
+        message = f"'{format_expression(expression)}' is not a finite real number for these values"
+        raise ModelError(Diagnostic("SF228", message, expression.span, _imaginary_hint(expression)))
+    return result
+
+
+def _imaginary_hint(expression: Expression) -> str | None:
+    """Name j where the root of a negative number stands for it."""
+    if isinstance(expression, Call) and expression.name == "sqrt" and not names(expression.argument):
+        return IMAGINARY_UNIT
+    return None
+
+
+def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
+    return fold(
+        expression,
+        number=ball,
+        name=lambda name: arb.pi() if name == "pi" else values[name](),
+        power=lambda base, exponent: base ** _enclose(exponent, values),
+        call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
+    )
+
+
+def principal_values(
+    expression: Expression,
+    count: int,
+    name: Callable[[str], list[acb]],
+    call: Callable[[Call, list[acb]], list[acb]] | None = None,
+    number: Callable[[Fraction], arb] = ball,
+) -> list[acb]:
+    """Return balls around the principal values of an expression at so many points, in one walk.
+
+    ``name`` gives the values of a name, ``call`` those of a function that is none of the language's, and
+    ``number`` that of a number, which is exact by default. A value is not finite where the expression divides
+    by zero.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Call, Name
+    >>> principal_values(Call("sqrt", Name("s")), 2, lambda _: [acb(4), acb(-4)])
+    [2.00000000000000, 2.00000000000000j]
+    """
+
+    def raised(base: list[acb], exponent: Expression) -> list[acb]:
+        power = exponent.value if isinstance(exponent, Number) else rational_value(exponent, {})
+        if power is not None and power.denominator == 1:
+            return [x ** int(power) for x in base]
+        exponents = principal_values(exponent, count, name, call)
+        return [x**y for x, y in zip(base, exponents, strict=True)]
+
+    def called(node: Call, argument: list[acb]) -> list[acb]:
+        if node.name in FUNCTIONS or call is None:
+            function: Callable[[Arithmetic], Arithmetic] = FUNCTIONS[node.name].evaluate
+            return [function(x) for x in argument]
+        return call(node, argument)
+
+    return fold(
+        expression,
+        number=lambda value: [acb(number(value))] * count,
+        name=name,
+        power=raised,
+        call=called,
+        negative=lambda values: [-x for x in values],
+        total=lambda terms: [sum(xs, acb(0)) for xs in zip(*terms, strict=True)],
+        product=lambda factors: [prod(xs, start=acb(1)) for xs in zip(*factors, strict=True)],
+        quotient=lambda above, below: [x / y for x, y in zip(above, below, strict=True)],
+    )
+
+
+def evaluated(value: Factored, number: Callable[[str], Arithmetic], one: Arithmetic) -> Arithmetic:
+    """Return a rational function with a number in place of every generator; ``one`` is 1 of their kind."""
+    total, names = one * ball(value.unit), value.ring.names
+    for factor, exponent in value.factors:
+        total = total * raised(summed(terms_of(factor), names, number, one), exponent)
+    return total
+
+
+def summed(
+    terms: Sequence[tuple[Monomial, int]],
+    names: Sequence[str],
+    number: Callable[[str], Arithmetic],
+    one: Arithmetic,
+) -> Arithmetic:
+    """Return the same of a polynomial, by its terms."""
+    total = one * 0
+    for monomial, coefficient in terms:
+        term = one * coefficient
+        for i, exponent in monomial:
+            term = term * raised(number(names[i]), exponent)
+        total = total + term
+    return total
