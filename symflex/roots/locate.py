@@ -232,6 +232,8 @@ def locate_distributed(
     reason, code = None, None
     try:
         searched.find()
+        if not with_zeros and searched.may_cancel():
+            return locate_distributed(bound, region, digits, judged=judged)
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
@@ -316,12 +318,17 @@ class _Searched:
         _find((hidden,), within)
         self._hide(shared)
 
+    def may_cancel(self) -> bool:
+        """Tell whether wavenumbers vanish or meet at a root: the numerator may have it, too."""
+        points = degenerate_points(self.bound)
+        return any(overlap(root, point) for side in self._pair[:1] for root in side.roots for point in points)
+
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""
         within = self._within
         sides = self.sides if self.bound.ratio.is_zero else self.sides[2:]
         gone = [root for side in sides for root in side.roots]
-        degenerate = _degenerate_points(self.bound)
+        degenerate = degenerate_points(self.bound)
         self.hidden = [
             HiddenRoot(root)
             for root in _chosen(gone, within)
@@ -377,7 +384,7 @@ class _Searched:
             side.restore()
         shared = _match(*pair)
         # Where wavenumbers vanish or meet, both may have a root; one of them was perhaps not yet met.
-        degenerate = _degenerate_points(self.bound)
+        degenerate = degenerate_points(self.bound)
         for side, other in (pair, pair[::-1]):
             side.roots = [
                 root
@@ -406,7 +413,7 @@ class _Searched:
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h for h in self.hidden if h.cause == "coincident"]
-        degenerate = _degenerate_points(bound)
+        degenerate = degenerate_points(bound)
         proof, rests = _passivity_of(bound)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
@@ -545,7 +552,7 @@ def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
 
 
-def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:
+def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
     """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
     roots: list[Root] = []
     for law in bound.kernels.dispersions:

@@ -32,9 +32,12 @@ from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.locate import degenerate_points
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Modes
+from symflex.roots.root import overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -103,6 +106,7 @@ class BoundedModes:
         self._bounding, self._integrations, self._times = bounding, integrations, times
         self._bound = bounding.bound
         self._side = Side(self._bound, self._bound.den, EFFORT.pole_digits)
+        self._degenerate = degenerate_points(self._bound)
         self._rings: dict[Cell, Ring] = {}
         self._known: dict[float, PartialSum] = {}
         # What one count of modes found serves the next: roots from one reach on, and terms of roots.
@@ -244,7 +248,15 @@ class BoundedModes:
     def _may_be_pole(self, root: Root, radius: arb) -> bool:
         """Tell whether a root of the denominator, in the upper half plane, may be a pole within a radius."""
         is_outside = root.is_zero or root.im < 0 or root.natural_frequency() > radius
-        return not is_outside and self._bounding.may_be_pole(root)
+        return not is_outside and self._bounding.may_be_pole(root) and not self._is_removable(root)
+
+    def _is_removable(self, root: Root) -> bool:
+        """Tell whether numerator and denominator share a root where wavenumbers vanish or meet."""
+        if not any(overlap(root, point) for point in self._degenerate):
+            return False
+        numerator = KernelFunction(self._bound, self._bound.num)
+        zero = prove_simple(numerator, root.enclosure().mid(), EFFORT.pole_digits)
+        return zero is not None and overlap(zero, root) and zero.multiplicity >= root.multiplicity
 
 
 def _root_of(pole: Root) -> complex:

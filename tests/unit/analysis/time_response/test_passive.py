@@ -424,3 +424,44 @@ outputs.X = "x"
         # Echoes bend it: the series of de Hoog, Knight & Stokes (1982), not Talbot's contour.
         y = mpmath.invertlaplace(lambda s: receptance(s) / s, t, method="dehoog", degree=60)
         assert abs(value.mid() - float(y)) <= value.rad() < 1e-4
+
+
+def finite_elements(n, k, b, times):
+    """Return a cantilever's tip under a unit step, on a foundation k, with a dashpot b at the tip."""
+    h, mass, stiffness = 1 / n, *np.zeros((2, 2 * n + 2, 2 * n + 2))
+    for i in range(n):
+        part = slice(2 * i, 2 * i + 4)
+        element = np.array(
+            [
+                [156, 22 * h, 54, -13 * h],
+                [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                [54, 13 * h, 156, -22 * h],
+                [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
+            ]
+        )
+        mass[part, part] += element * h / 420
+        bending = [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]]
+        bending += [[-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]
+        stiffness[part, part] += np.array(bending) / h**3 + k * element * h / 420
+    mass, stiffness = mass[2:, 2:], stiffness[2:, 2:]
+    size, loss, force = 2 * n, np.zeros((2 * n, 2 * n)), np.zeros(2 * n)
+    loss[-2, -2], force[-2] = b, 1
+    slopes = [np.linalg.solve(mass, x) for x in (stiffness, loss)]
+    system = np.block([[np.zeros((size, size)), np.eye(size)], [-slopes[0], -slopes[1]]])
+    poles, modes = np.linalg.eig(system)
+    shares = np.linalg.solve(modes, np.concatenate([np.zeros(size), np.linalg.solve(mass, force)]))
+    return [((modes[size - 2] * shares) @ ((np.exp(poles * t) - 1) / poles)).real for t in times]
+
+
+@pytest.mark.slow
+def test_a_root_that_the_numerator_shares_where_wavenumbers_vanish_adds_nothing_to_a_step():
+    # At s = j sqrt(3) the foundation carries the beam's inertia, and no pole is.
+    found = time_response(clamped(damper(0.1), ', k_f = "3 N/m^2"'), "step", SampleTimes.of([0.95, 1.9, 200]))
+    assert found.certified
+    assert found.values[:2] == pytest.approx(finite_elements(40, 3, 0.1, [0.95, 1.9]), abs=3e-6)
+    # Hetenyi 1946, Beams on Elastic Foundation, section 23: the deflection under a load at the free end
+    q = (3 / 4) ** 0.25
+    at_rest = (
+        2 * q / 3 * (np.sinh(q) * np.cosh(q) - np.sin(q) * np.cos(q)) / (np.cosh(q) ** 2 + np.cos(q) ** 2)
+    )
+    assert found.values[2] == pytest.approx(at_rest, rel=1e-9)
