@@ -53,6 +53,11 @@ THINGS: tuple[Thing, ...] = (
     Thing(("dry_friction", "coulomb_friction", "stiction", "backlash"), "", "it is not linear; linearise it"),
     Thing(("force", "actuator_force"), "force_source", 'or give it as an input, { force = "x" }'),
     Thing(("torque", "moment"), "torque_source", 'or give it as an input, { torque = "theta" }'),
+    Thing(
+        ("imposed_motion", "displacement", "velocity", "acceleration", "base_excitation", "ground_motion"),
+        "[inputs]",
+        'z = { displacement = "base" }, or velocity or acceleration',
+    ),
     # Transmissions
     Thing(
         ("gear", "gearbox", "gears", "reducer"),
