@@ -271,7 +271,7 @@ class FrameMember(LineElement):
     motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of
     its direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond
     it on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and
-    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is an axial force at rest, positive in
+    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in
     tension. ``c_f`` and ``k_f`` are a foundation per length that acts along and across the member. An
     ``inextensible`` member only bends. Everything else is as for ``beam`` and ``rod``. Valid for small
     motions, in which bending and stretching do not act on each other. Source: Clough & Penzien 1993,
