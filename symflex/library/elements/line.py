@@ -175,7 +175,7 @@ class Shaft(LineElement):
 
 
 class String(LineElement):
-    """A string of length l [m], cross-section A [m^2] and tension N [N], deflected across its length.
+    """A string of length l [m], cross-section A [m^2] and tension N [N], in transverse motion.
 
     ``f`` [N] is the transverse force the string delivers at its second end. ``c_f`` and ``k_f`` are a
     viscous and an elastic foundation per length.
@@ -183,7 +183,7 @@ class String(LineElement):
     """
 
     type_name = "string"
-    summary = "Stretched string, deflected across its length, uniform or not"
+    summary = "Stretched string in transverse motion, uniform or not"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("N", "N", "a tension", sign="positive", varies=True),
