@@ -159,7 +159,7 @@ class Budget:
             _ENTERED.reset(token)
 
     def besides(self) -> Budget:
-        """Return this budget, to be entered while the one that is entered now is heeded as well."""
+        """Return this budget with the limits of the one that is entered now in addition."""
         both = self._changed(replace(self))
         object.__setattr__(both, "_outer", _ENTERED.get())
         return both

@@ -225,7 +225,7 @@ def input_shaper(
         for root in chosen:
             impulses = _convolved(impulses, _of_mode(bound, root, kind))
         impulses.sort(key=lambda impulse: impulse[0].mid())
-    note = "joint shapers are not computed: one shaper for each mode, in a row" if joint and modes > 1 else ""
+    note = "joint shapers are not computed: one for each mode, in series" if joint and modes > 1 else ""
     return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, note)
 
 

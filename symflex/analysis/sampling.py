@@ -193,7 +193,7 @@ def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Contin
         raise not_rational(bound.name)
     if len(quotient.below) > 1:
         message = f"{bound.name} has a delay in a loop, or waves: infinitely many states between samples"
-        hint = "sample the plant and the controller apart, and close the loop in z"
+        hint = "sample the plant and the controller separately, and close the loop in z"
         raise ModelError(Diagnostic("SF235", message, None, hint))
     durations = quotient.durations
     ((first, below),) = quotient.below.items()

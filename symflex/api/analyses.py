@@ -98,7 +98,7 @@ class Analyses(Plotted):
     ) -> TimeResponse:
         r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
 
-        If the input passes straight through to the output, the response contains an impulse, which has no
+        If the function has direct feedthrough, the response contains an impulse, which has no
         value: ``impulses`` holds its time and weight, and those of its derivatives.
 
         Examples
@@ -322,7 +322,7 @@ class Analyses(Plotted):
         return approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
-        """Return how everything moves in one mode; the largest displacement is 1.
+        """Return how the model moves in one mode; the largest displacement is 1.
 
         The shape comes from the model's equations, not from the transfer function, so hidden modes have one
         too.
@@ -350,8 +350,8 @@ class Analyses(Plotted):
     def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
         """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
 
-        Several are a basis: in each, one of as many places is at 1 and the others are at rest, before the
-        largest displacement is made 1. See :meth:`mode_shape`.
+        Several shapes form a basis: each is 1 at one of as many places and 0 at the others, before it is
+        scaled to a largest displacement of 1. See :meth:`mode_shape`.
         """
         from symflex.analysis.modes import mode_shapes
 

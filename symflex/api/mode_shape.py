@@ -29,7 +29,7 @@ END_TOLERANCE = 1e-12
 
 @dataclass(frozen=True)
 class ModeShape:
-    """The motion of everything at one pole, up to a common factor; the largest displacement found is 1.
+    """The motion of the model at one pole, up to a common factor; the largest displacement found is 1.
 
     Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
     unknown [m]. If none of them moves, the largest angle is 1, else the largest voltage. At an undamped
@@ -40,7 +40,7 @@ class ModeShape:
     enclosed : symflex.analysis.modes.EnclosedModeShape
         With a ball around every amplitude.
     model : symflex.model.Model
-        What moves.
+        The model that moves.
 
     Examples
     --------
@@ -57,7 +57,7 @@ class ModeShape:
 
     @property
     def pole(self) -> Root:
-        """Where."""
+        """The pole."""
         return Root(self.enclosed.pole)
 
     @property

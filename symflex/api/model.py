@@ -178,7 +178,7 @@ class Model:
         return tuple(o.name for o in self.resolved.outputs)
 
     def transfer_function(self, output: str, input: str | None = None) -> TransferFunction:
-        """Derive output over input, which may be one name as well: ``"X/F"``, as the command line has it.
+        """Derive output over input; one name for both works too, as on the command line: ``"X/F"``.
 
         Raises
         ------
@@ -395,8 +395,8 @@ class Model:
     ) -> Figure:
         """Return the Nyquist plot of the loop that a gain closes, about the point -1.
 
-        It says how many poles of the open loop lie in the right half plane, and whether the closed one is
-        stable. Parameters and errors are those of :meth:`locus`; ``band`` holds the frequencies drawn [Hz].
+        The heading says how many poles of the open loop lie in the right half plane, and whether the closed
+        loop is stable. Parameters and errors are those of :meth:`locus`; ``band`` gives the frequencies [Hz].
 
         Examples
         --------
@@ -469,7 +469,7 @@ class Model:
         averages : int
             Records averaged, with half an overlap and a Hann window.
         noise : float
-            Of the sensor over its signal, rms.
+            Ratio of sensor noise to signal, rms.
         rolloff : float, optional
             Corner of the accelerometer [Hz]; ``None`` for none.
         seed : int
@@ -527,9 +527,9 @@ class Model:
         modes, band : int, (float, float), optional
             Which roots: a number of the lowest modes, or those in a band [Hz].
         frequencies : sequence of float
-            Of a response [Hz].
+            Frequencies of a response [Hz].
         gain : str
-            That closes the loop, for margins.
+            Parameter that is the loop's gain, for ``margins``.
         draws, seed : int
             How many points are drawn from ranges, as a Latin hypercube, and the seed of the random numbers.
         output : str or Path, optional

@@ -334,8 +334,8 @@ class NestedTransferFunction(_Derived):
     def bind(self, **values: Number) -> BoundNestedTransferFunction:
         """Return the function with the declared values, or with the given ones.
 
-        Numbers are in SI units; strings may carry a unit, ``k="95 kN/m"``. Of what it returns, ``H(2j)`` is a
-        value to double precision, from balls, and ``H.at(s)`` evaluates arrays.
+        Numbers are in SI units; strings may carry a unit, ``k="95 kN/m"``. The result ``H`` gives
+        a value in double precision, ``H(2j)``, and arrays of values, ``H.at(s)``.
 
         Raises
         ------
@@ -482,7 +482,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
     ) -> ZeroExplanation:
         """Return the system whose poles are the zeros, with the proof; print the result to read it.
 
-        Parameters and errors are those of :meth:`zeros`: which zeros are spoken of one by one.
+        Parameters and errors are those of :meth:`zeros`; they choose the zeros that the text names.
         """
         from symflex.analysis.explanation import explain_zeros  # not needed for roots
 

@@ -25,7 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "roots": ("analyses", "Print poles and zeros with proved enclosures."),
     "rational": ("analyses", "Print rational approximations and the frequencies where they hold."),
     "respond": ("respond", "Print the response to a step, an impulse or a ramp, with proved bounds."),
-    "shape": ("respond", "Print an input shaper: impulses that leave no mode ringing."),
+    "shape": ("respond", "Print an input shaper: impulses that leave no vibration."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
     "stability": ("analyses", "Print the gains for which a feedback loop is stable."),
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
@@ -96,7 +96,7 @@ class LazyGroup(click.Group):
 def group() -> None:
     """Derive closed-form transfer functions of flexible electromechanical systems.
 
-    A model is one TOML file; its poles and zeros are proved, its formulas printed, its functions exported.
+    A model is one TOML file. You get its formulas, proved poles and zeros, figures, and code.
     """
 
 

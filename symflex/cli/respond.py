@@ -30,12 +30,12 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     after the last. This is exact, too. --shaped passes the input through the shaper that 'symflex shape'
     prints for the same transfer function.
 
-    An impulse that passes straight through to the output is printed separately, not among the values. The
-    value at t = 0 is the limit from above.
+    An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
+    from above.
 
-    Where no method proves the response, as for lossless beams with controllers, the lowest 25 modes are
-    summed (12 in a network where the rest is small) and the contribution of the others is estimated. The
-    first line then says that the values are not certified.
+    If no method proves the response, as for lossless beams with controllers, the lowest 25 modes are
+    summed (12 in a large network whose higher modes are small) and the contribution of the others is
+    estimated. The first line then says that the values are not certified.
 
     Exit code 4: the response could not be found, or, with --strict, is not certified.
     """

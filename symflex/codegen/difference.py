@@ -288,7 +288,7 @@ def _product(factor: float, name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class DifferenceExporter:
-    """Transfer functions as code that takes one step a sample, in C or in Python."""
+    """Transfer functions as code that takes one step per sample, in C or in Python."""
 
     language: str  # ``c`` or ``numpy``
     sampling: Sampling
@@ -304,7 +304,7 @@ class DifferenceExporter:
     @property
     def summary(self) -> str:
         """What is made, in a line."""
-        return "difference equations, one step a sample"
+        return "difference equations, one step per sample"
 
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
@@ -348,14 +348,15 @@ class _StepCode:
             "matched": "with poles and zeros matched",
         }[sampling.method]
         if sampling.prewarp is not None:
-            how += f", right at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
-        lines = ["Difference equations, one step a sample.", "", *origin_lines(self.model, width)]
+            how += f", exact at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
+        lines = ["Difference equations, one step per sample.", "", *origin_lines(self.model, width)]
         lines += [""] if lines[-1] else []
         lines += wrapped(
             f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width
         )
         valued = [
-            f"{p.name} = {value_as_written(p) or f'{default_value(p)} {p.unit}'.rstrip()}"
+            f"{p.name} = "
+            + (value_as_written(p) or f"{default_value(p).removesuffix('.0')} {p.unit}".rstrip())
             for p in self.model.parameters
             if p.value is not None
         ]
@@ -379,8 +380,8 @@ class _StepCode:
         lines = [*self.introduction(WIDTH), ""]
         example = names[0]
         lines += wrapped(
-            f"w = {example}_start() are the states at rest, and y = {example}_step(w, u) takes the input of "
-            "this sample, gives the output and moves the states on. u may be an array of many inputs.",
+            f"w = {example}_start() are the initial states, all zero, and y = {example}_step(w, u) takes the "
+            "input of this sample, returns the output and advances the states. u may be an array of inputs.",
             WIDTH,
         )
         blocks = [f"SAMPLE_TIME = {self.dt!r}  # [s]\n"]
@@ -395,7 +396,7 @@ class _StepCode:
             described = docstring([first, *(f"    {x}" for x in others)], "    ").rstrip("\n")
             blocks.append(
                 f"def {name}_start() -> list[Any]:\n"
-                f'    """Return the states at rest: those of sections, then past inputs."""\n'
+                f'    """Return the initial states: those of sections, then past inputs."""\n'
                 f"    return [0.0] * {order + late}\n"
             )
             blocks.append(
@@ -423,9 +424,9 @@ class _StepCode:
         room = WIDTH - 3
         lines = [*self.introduction(room), ""]
         lines += wrapped(
-            f"A {names[0]}_state that is all zero is at rest; {names[0]}_step takes the input of this "
-            "sample, returns the output and moves the states on. Nothing is allocated, and nothing kept "
-            "elsewhere. Fused operations (-ffp-contract) change the last digits.",
+            f"Begin with a {names[0]}_state that is all zero; {names[0]}_step takes the input of this "
+            "sample, returns the output and advances the state. It allocates no memory and has no other "
+            "state. Fused operations (-ffp-contract) change the last digits.",
             room,
         )
         declared, defined = [], []

@@ -419,10 +419,11 @@ def _write_number(
 
 
 def _write(axes: Axes, text: str, box: Box, size: float, colour: str) -> None:
-    """Write a line below the upper left corner of a rectangle."""
-    place = (box[0], box[3])
+    """Write a line below the top of a rectangle; in the right half, from its right side leftwards."""
+    is_right = box[0] + box[2] > inches_of(axes)[0] * POINTS_PER_INCH
+    place, side = (box[2 if is_right else 0], box[3]), "right" if is_right else "left"
     written = axes.annotate(
-        text, place, xycoords="axes points", ha="left", va="top", fontsize=size, color=colour
+        text, place, xycoords="axes points", ha=side, va="top", fontsize=size, color=colour
     )
     written.set_in_layout(False)
 

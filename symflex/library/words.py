@@ -53,6 +53,11 @@ THINGS: tuple[Thing, ...] = (
     Thing(("dry_friction", "coulomb_friction", "stiction", "backlash"), "", "it is not linear; linearise it"),
     Thing(("force", "actuator_force"), "force_source", 'or give it as an input, { force = "x" }'),
     Thing(("torque", "moment"), "torque_source", 'or give it as an input, { torque = "theta" }'),
+    Thing(
+        ("imposed_motion", "displacement", "velocity", "acceleration", "base_excitation", "ground_motion"),
+        "[inputs]",
+        'z = { displacement = "base" }, or velocity or acceleration',
+    ),
     # Transmissions
     Thing(
         ("gear", "gearbox", "gears", "reducer"),
@@ -81,9 +86,7 @@ THINGS: tuple[Thing, ...] = (
         ("truss", "truss_member", "portal", "frame_member"), "frame", "at an angle; pins join without moments"
     ),
     Thing(("axial_bar", "strut", "tie_rod", "drill_string"), "rod"),
-    Thing(
-        ("rope", "cable", "wire", "thread"), "string", "deflected across; a rope that pulls along is a rod"
-    ),
+    Thing(("rope", "cable", "wire", "thread"), "string", "in transverse motion; a rope that pulls is a rod"),
     Thing(("torsion_bar", "drive_shaft", "driveshaft", "drill_pipe"), "shaft"),
     Thing(("clamp", "clamped", "wall", "encastre", "built_in"), "fixed"),
     Thing(("hinge", "hinged", "pinned", "simply_supported", "simple_support", "revolute"), "pin"),

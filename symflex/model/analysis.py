@@ -209,7 +209,7 @@ def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction 
     if entry is None:
         return None
     if kind not in IN_TIME:
-        hint = "kinds with an end in time: " + ", ".join(IN_TIME)
+        hint = "kinds that take 'until': " + ", ".join(IN_TIME)
         reader.note("SF207", f"{what} is of kind '{kind}', which has no 'until'", entry.key_span, hint)
         return None
     quantity = _quantity(reader, entry.value, "a time", "s")
@@ -400,7 +400,7 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
     described = readable.varying.get(node.name)
     if described is not None:
         message = f"'{node.name}' is {described}; a printed formula holds s and constants only"
-        hint = "define it in 'where' if the print means something else"
+        hint = "define it in 'where' if the formula means something else"
         return Diagnostic("SF212", message, node.span, hint)
     close = nearest(node.name, {*known, *readable.constants})
     hint = f"{close} else define it in 'where'" if close else "define it in 'where'"

@@ -157,5 +157,6 @@ def _empty_sections(spec: Spec) -> list[Diagnostic]:
         if entry is None or (isinstance(entry.value, TableValue) and not entry.value.entries):
             span = entry.key_span if entry else Span(spec.source, 0, 0)
             message = f"the specification has no [{name}]"
-            found.append(Diagnostic("SF214", message, span, f"for instance: {example}"))
+            hint = f"below a heading [{name}], for instance: {example}"
+            found.append(Diagnostic("SF214", message, span, hint))
     return found

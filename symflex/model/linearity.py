@@ -48,7 +48,7 @@ NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
-RATIO = "the ratio of two is a transfer function: let the lower one be an input, and the upper an output"
+RATIO = "a quotient of two is a transfer function: make the denominator an input, and the numerator an output"
 
 
 def integer_exponent(exponent: Expression) -> int | None:

@@ -152,6 +152,8 @@ class ModelScope:
             return WHERE_J
         if name in IMAGINARY_NAMES:
             return f"if it is meant, {IMAGINARY_UNIT}"
+        if name == "dt" or (name[:1] == "d" and name[1:] in self.meanings):
+            return "a derivative in time is written with s: s*x"
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:
@@ -313,7 +315,7 @@ def build_scope(
         # A voltage input has always been allowed to bear the name of an element, whose current is then read.
         if kind is None or not kind.is_imposed or (source.name, "i") in attributes:
             continue
-        described = f"what the input '{source.name}' takes"
+        described = f"the reaction of the input '{source.name}'"
         offer(
             source.name,
             kind.quantity,

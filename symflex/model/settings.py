@@ -98,7 +98,7 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
         if (own.cycles or quantity.cycles) and turns[0] != turns[1]:
             # Whether 60 is 60 Hz or 60 rad/s, and 1 mm one per turn or per radian, nobody can tell.
             what = f"is in '{quantity.unit}'" if quantity.unit else "has no unit"
-            hint = f"give it with one that turns, such as '{own.unit or quantity.unit}'"
+            hint = f"give it in a unit that counts turns, such as '{own.unit or quantity.unit}'"
             reader.note("SF203", f"{declared}, the value given {what}", text.span, hint)
             return parameter
         if not quantity.unit:

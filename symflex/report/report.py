@@ -224,7 +224,7 @@ def write_chapters(
         if stem not in done:
             done |= _in_processes({stem: path}, 1, progress, measured, allow_outside)
         if stem not in done:
-            reason = "its process ended, perhaps for want of memory"
+            reason = "its process ended, perhaps for lack of memory"
             done[stem] = failed_chapter(path, stem, reason, BudgetError.exit_code, allow_outside)
     return tuple(done[stem] for stem in named)
 

@@ -108,7 +108,7 @@ def _element(name: str, element: Element) -> str:
         *map(_choice_row, element.choices),
     ]
     quantities = ", ".join(f"`{name}.{quantity}`" for quantity in element.through)
-    through = [f"Offers, for an element named `{name}`: {quantities}."] if quantities else []
+    through = [f"Quantities of an element named `{name}`: {quantities}."] if quantities else []
     about = " ".join((element.__doc__ or "").replace("``", "`").split())
     return "\n\n".join([f"### `{name}`", _escaped(about), _table(rows), *through])
 

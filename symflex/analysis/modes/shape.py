@@ -216,7 +216,7 @@ def _log2(value: acb) -> float:
 
 @dataclass(frozen=True, slots=True)
 class EnclosedModeShape:
-    """The motion of everything at one pole, up to a complex factor."""
+    """The motion of the model at one pole, up to a complex factor."""
 
     pole: Root
     # One for every unknown of the equations: nodes, forces and currents, signals, and constants of fields.

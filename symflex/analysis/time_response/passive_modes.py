@@ -105,7 +105,7 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
     """
     model = bound.source.model
     if model.fields:
-        return Refused("what is stored is known of elements, not of fields")
+        return Refused("stored energy is known for elements, not for fields")
     if not bound.is_of_model or not is_passive(observed(model, bound.source.output), bound.all_values):
         return Refused("something in the model may supply energy")
     model = in_one_way(model)

@@ -420,8 +420,8 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
         if left.size:
             places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[left][:NAMED_LINES])
             more = ", ..." if left.size > NAMED_LINES else ""
-            word = "line" if left.size == 1 else "lines"
-            warnings.append(f"{left.size} wild {word}{fit.of_response(r)} left out, at {places}{more} Hz")
+            word = "outlier" if left.size == 1 else "outliers"
+            warnings.append(f"{left.size} {word}{fit.of_response(r)} left out, at {places}{more} Hz")
     for r, corner in enumerate(np.abs(found.real_z).tolist()):
         if np.isfinite(corner) and not low <= corner <= high:
             place = f"{corner / (2 * np.pi):.4g} Hz"

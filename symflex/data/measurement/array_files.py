@@ -167,7 +167,7 @@ def read_array(content: bytes) -> npt.NDArray[Any]:
     header = bytes(reader.take(reader.integer("u2" if major == 1 else "u4"))).decode("latin-1")
     description, order, shape = (pattern.search(header) for pattern in (_DESCRIPTION, _ORDER, _SHAPE))
     if description is None or order is None or shape is None:
-        message = "an array is of no plain numbers or texts"
+        message = "an array holds neither plain numbers nor text"
         raise ValueError(message)
     sizes = [int(size) for size in re.findall(r"\d+", shape[1])]
     reader.order = description[1] or "="

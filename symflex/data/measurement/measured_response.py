@@ -99,8 +99,8 @@ class MeasuredResponse:
         """Return the standard deviation of the real and of the imaginary part, over the magnitude.
 
         sqrt((1 - gamma^2)/(2 gamma^2 n)) for an H1 estimate with n independent averages (Bendat & Piersol,
-        Random Data, 4th ed. 2010, section 9.1, equation 9.90). Without a number of averages n = 1 stands,
-        which is right up to one factor for all lines; None without coherence.
+        Random Data, 4th ed. 2010, section 9.1, equation 9.90). Without a number of averages n is 1,
+        and the result is right up to a factor common to all lines. None without coherence.
         """
         if self.coherence is None:
             return None

@@ -290,8 +290,8 @@ class Piston(Element):
 class Piezo(Element):
     """A piezoelectric stack, linear: a voltage pushes its ends apart, and their motion drives a charge.
 
-    With v the voltage of the first terminal over the second and x_a, x_b the displacements of the ends,
-    ``f = alpha*v + k*(x_a - x_b)`` [N] pushes the second end, with its reaction on the first, and
+    With v the voltage of the first terminal relative to the second, and x_a, x_b the displacements of the
+    ends, ``f = alpha*v + k*(x_a - x_b)`` [N] pushes the second end, with its reaction on the first, and
     ``i = C*s*v - alpha*s*(x_a - x_b)`` [A] flows from the first terminal to the second. alpha [N/V] equals
     C/m, or A*s/m; C [F] is the capacitance with the ends held, k [N/m] the stiffness with the terminals
     short-circuited. Charge sensitivity d [m/V] is alpha/k, and the open-circuit voltage per extension alpha/C
@@ -381,8 +381,8 @@ class CoupledInductors(Element):
 class OpAmp(Element):
     """An operational amplifier: ``out = A(s)*(p - n)``, without input current and output resistance.
 
-    Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at one voltage. With the gain A at
-    rest and the unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``; the term of a parameter that is
+    Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at one voltage. With a DC gain A
+    and a unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``; the term of a parameter that is
     not given is zero. ``i`` [A] is delivered at the output. Source: Sedra & Smith 2004, Microelectronic
     Circuits, chapter 2.
     """

@@ -175,7 +175,7 @@ class Shaft(LineElement):
 
 
 class String(LineElement):
-    """A string of length l [m], cross-section A [m^2] and tension N [N], deflected across its length.
+    """A string of length l [m], cross-section A [m^2] and tension N [N], in transverse motion.
 
     ``f`` [N] is the transverse force the string delivers at its second end. ``c_f`` and ``k_f`` are a
     viscous and an elastic foundation per length.
@@ -183,7 +183,7 @@ class String(LineElement):
     """
 
     type_name = "string"
-    summary = "Stretched string, deflected across its length, uniform or not"
+    summary = "Stretched string in transverse motion, uniform or not"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("N", "N", "a tension", sign="positive", varies=True),
@@ -271,7 +271,7 @@ class FrameMember(LineElement):
     motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of
     its direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond
     it on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and
-    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is an axial force at rest, positive in
+    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in
     tension. ``c_f`` and ``k_f`` are a foundation per length that acts along and across the member. An
     ``inextensible`` member only bends. Everything else is as for ``beam`` and ``rod``. Valid for small
     motions, in which bending and stretching do not act on each other. Source: Clough & Penzien 1993,

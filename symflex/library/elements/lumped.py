@@ -220,7 +220,7 @@ class AcrossSource(Element):
 
 
 class VoltageSource(AcrossSource):
-    """A voltage v [V] of a node, over ground or a second node; ``i`` [A] is delivered into the first."""
+    """A voltage v [V] between a node and ground or a second node; ``i`` [A] is delivered into the first."""
 
     type_name = "voltage_source"
     summary = "Voltage imposed on a node"
@@ -283,7 +283,7 @@ class FlowSource(ThroughSource):
 
 
 class PressureSource(AcrossSource):
-    """A pressure p [Pa] of a node, or over a second node; ``q`` [m^3/s] is delivered into the first."""
+    """A pressure p [Pa] of a node, or between two nodes; ``q`` [m^3/s] is delivered into the first."""
 
     type_name = "pressure_source"
     summary = "Pressure imposed on a node"

@@ -156,7 +156,7 @@ def _blocks(
             message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
     if model.settable:
-        values = f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
+        values = f"Values are rounded to {VALUE_DIGITS} significant digits."
         if all(p.value is None for p in model.settable):
             values = "All parameters are symbolic."
         yield _Block(f"\\section{{Parameters}}\n\n{values}{_BEFORE_TABLE}")

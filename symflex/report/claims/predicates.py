@@ -155,7 +155,7 @@ def interlacing(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether poles and zeros listed lie on the imaginary axis and take turns there, proved."""
     found = [f for _, f in functions(models, of)]
     is_true = all(f.alternates and f.certified for f in found)
-    words = "lie exactly on the axis (proved) and take turns" if is_true else "do not take turns there"
+    words = "lie exactly on the axis (proved) and alternate" if is_true else "do not alternate there"
     listed = [f"{len(f.poles)} poles and {len(f.zeros)} zeros of {f.tf}" for f in found]
     return judged(is_true, "\n".join(f"The {these} listed {words}." for these in listed))
 

@@ -185,9 +185,7 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
     scale = audit.published.scale
     blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))
     if scale is not None:
-        blocks.append(
-            text("times ", mathematics(scale, audit.tf.model), ", a scale that the print leaves out.")
-        )
+        blocks.append(text("times ", mathematics(scale, audit.tf.model), ", a scale that is not printed."))
     if audit.verdict == "equal":
         return tuple(blocks)
     if audit.verdict != "differs":

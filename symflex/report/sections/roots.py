@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 DIGITS: Final = 10
 LONGEST: Final = 80
 LEFT_OUT: Final = (
-    "Loss factors describe steady motion, s = j*omega with omega > 0. The report lists the roots above the "
+    "Loss factors describe harmonic motion, s = j*omega with omega > 0. The report lists the roots above the "
     "real axis. It has no mode shapes, responses in time, stability, state equations, or code in languages "
     "other than Python."
 )

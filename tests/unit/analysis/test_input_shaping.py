@@ -148,4 +148,4 @@ def test_asked_for_a_joint_shaper_those_of_the_modes_stand_in_a_row():
     bound = rational("1/((s^2 + 1)*(s^2 + 2))")
     shaper = input_shaper(bound, 2, joint=True)
     assert shaper.times == input_shaper(bound, 2).times
-    assert "one shaper for each mode, in a row" in str(shaper)
+    assert "one for each mode, in series" in str(shaper)

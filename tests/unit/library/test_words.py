@@ -9,13 +9,15 @@ from symflex.library.words import THINGS, hint_of_type
 
 def test_engineers_words_lead_to_elements_and_blocks_that_exist():
     for each in THINGS:
-        assert set(each.use.split(", ")) <= {*ELEMENTS, *BLOCKS, "[fields]", "[signals]", ""}, each
+        sections = {"[fields]", "[inputs]", "[signals]", ""}
+        assert set(each.use.split(", ")) <= {*ELEMENTS, *BLOCKS, *sections}, each
         assert each.use or each.how, each
     words = [word for each in THINGS for word in each.words]
     assert len(words) == len(set(words))
     for word, hint in (
         ("voice coil actuator", "did you mean 'voice_coil'?"),
         ("rack", "for rack write transformer"),
+        ("displacement", "for displacement write [inputs]"),
         ("Op-Amp", "for Op-Amp write op_amp"),
         ("sprnig", "did you mean 'spring'?"),
         ("pid", "'pid' is a block"),

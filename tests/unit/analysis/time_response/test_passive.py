@@ -372,7 +372,7 @@ outputs.back = "T(l)"
 def test_a_field_is_not_said_to_supply_energy():
     model = pipeline.loads(WALL)
     (wall,) = pipeline.derive_bound(model, model.transfer_functions)
-    assert passive_bound(wall, 1) == Refused("what is stored is known of elements, not of fields")
+    assert passive_bound(wall, 1) == Refused("stored energy is known for elements, not for fields")
 
 
 @pytest.mark.slow

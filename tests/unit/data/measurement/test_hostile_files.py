@@ -154,7 +154,7 @@ def test_a_matlab_file_that_grows_beyond_the_limit_is_refused():
 def test_objects_in_an_archive_are_refused():
     buffer = io.BytesIO()
     np.savez(buffer, f=np.array([{}], object))
-    with pytest.raises(ValueError, match="no plain numbers or texts"):
+    with pytest.raises(ValueError, match="neither plain numbers nor text"):
         read_archive(buffer.getvalue(), 10_000, 9)
 
 
