@@ -196,21 +196,38 @@ class KernelValues:
 
 def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] | None) -> dict[str, Value]:
     """Return the roots by their names; every branch serves, because functions are symmetric in them."""
-    if near is None:
-        return law.roots(c, square_root)
     if law.kind == "pair":
-        first, second = (_middle(near[name]) for name in law.wavenumbers)
-        middle = -c[2] / 2
-        root = square_root(middle * middle - c[0])
-        root = _closest((root, -root), (first * first - second * second) / 2)
-        found = (square_root(middle + root), square_root(middle - root))
-        named = dict(zip(law.wavenumbers, found, strict=True))
+        known = [_middle(near[name]) ** 2 for name in law.wavenumbers] if near else []
+        named = dict(zip(law.wavenumbers, map(square_root, _squares(c, *known)), strict=True))
     else:
         named = law.roots(c, square_root)
+    if near is None:
+        return named
     return {
         name: _closest(_turned(value, 4 if law.kind == "bending" else 2), _middle(near[name]))
         for name, value in named.items()
     }
+
+
+def _squares(c: Sequence[Value], *near: acb) -> tuple[Value, Value]:
+    """Return the squares of a pair of wavenumbers, the smaller one from their product if that is sharper.
+
+    Their difference cancels where one is far larger, as at high frequencies of beams with rotary inertia.
+    """
+    middle = -c[2] / 2
+    root = square_root(middle * middle - c[0])
+    if near:
+        root = _closest((root, -root), (near[0] - near[1]) / 2)
+    plus, minus = middle + root, middle - root
+    if abs(_middle(plus)) < abs(_middle(minus)):
+        return _sharper(plus, c[0], minus), minus
+    return plus, _sharper(minus, c[0], plus)
+
+
+def _sharper(direct: Value, product: Value, other: Value) -> Value:
+    if at_centre(other).contains(0):
+        return direct
+    return min((direct, product / other), key=lambda value: float(at_centre(value).rad()))
 
 
 def _middle(value: Value) -> acb:

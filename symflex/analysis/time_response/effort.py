@@ -49,6 +49,7 @@ class Effort:
     long: int = 100  # exponentials of a function of which no more are searched than at first: a frame has 274
     enough: float = 0.8  # of the radius allowed: the rest is for what values are known to
     rounds: int = 3  # rounds of that decision
+    beside: float = 0.01  # of ln(abs(s)): zeros are sought a little farther than the root that may be one
     next_to: float = 0.05  # how far a mode may be from where those before point to, over the last step
 
     # Beams without loss

@@ -32,7 +32,6 @@ from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
-from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import degenerate_points
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
@@ -107,6 +106,7 @@ class BoundedModes:
         self._bound = bounding.bound
         self._side = Side(self._bound, self._bound.den, EFFORT.pole_digits)
         self._degenerate = degenerate_points(self._bound)
+        self._zeros = Side(self._bound, self._bound.num, EFFORT.pole_digits)
         self._rings: dict[Cell, Ring] = {}
         self._known: dict[float, PartialSum] = {}
         # What one count of modes found serves the next: roots from one reach on, and terms of roots.
@@ -120,6 +120,15 @@ class BoundedModes:
 
         Where they are hard to find, fewer are taken; where the bound holds farther out only, more.
         """
+        try:
+            return self._summed(count)
+        except BudgetError as error:
+            if any(d.code != SEARCHED_TOO_LONG for d in error.diagnostics):
+                raise
+            self.is_exhausted = True
+            return None
+
+    def _summed(self, count: int) -> PartialSum | None:
         side, least = self._side, self._bounding.least
         if side.is_finite:
             return None
@@ -130,15 +139,8 @@ class BoundedModes:
             reached, roots = continued
         else:
             wanted = Modes(min(count, EFFORT.axis_modes if side.engine == LOSSLESS else EFFORT.plane_modes))
-            try:
-                side.extend(wanted.count, least)
-                is_complete = side.prove(wanted).is_complete
-            except BudgetError as error:
-                if any(d.code != SEARCHED_TOO_LONG for d in error.diagnostics):
-                    raise
-                self.is_exhausted = True
-                return None
-            if not is_complete:
+            side.extend(wanted.count, least)
+            if not side.prove(wanted).is_complete:
                 return None
             reached, roots = side.reached, side.roots
         if reached in self._known:
@@ -254,9 +256,10 @@ class BoundedModes:
         """Tell whether numerator and denominator share a root where wavenumbers vanish or meet."""
         if not any(overlap(root, point) for point in self._degenerate):
             return False
-        numerator = KernelFunction(self._bound, self._bound.num)
-        zero = prove_simple(numerator, root.enclosure().mid(), EFFORT.pole_digits)
-        return zero is not None and overlap(zero, root) and zero.multiplicity >= root.multiplicity
+        self._zeros.extend(0, float(root.natural_frequency().log().mid()) + EFFORT.beside)
+        return any(
+            overlap(zero, root) and zero.multiplicity >= root.multiplicity for zero in self._zeros.roots
+        )
 
 
 def _root_of(pole: Root) -> complex:

@@ -426,8 +426,8 @@ outputs.X = "x"
         assert abs(value.mid() - float(y)) <= value.rad() < 1e-4
 
 
-def finite_elements(n, k, b, times):
-    """Return a cantilever's tip under a unit step, on a foundation k, with a dashpot b at the tip."""
+def finite_elements(n, k, rotary, b, times):
+    """Return a cantilever's tip under a unit step: foundation, rotary inertia, dashpot at the tip."""
     h, mass, stiffness = 1 / n, *np.zeros((2, 2 * n + 2, 2 * n + 2))
     for i in range(n):
         part = slice(2 * i, 2 * i + 4)
@@ -439,7 +439,9 @@ def finite_elements(n, k, b, times):
                 [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
             ]
         )
-        mass[part, part] += element * h / 420
+        turned = [[36, 3 * h, -36, 3 * h], [3 * h, 4 * h * h, -3 * h, -h * h]]
+        turned += [[-36, -3 * h, 36, -3 * h], [3 * h, -h * h, -3 * h, 4 * h * h]]
+        mass[part, part] += element * h / 420 + rotary * np.array(turned) / (30 * h)
         bending = [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]]
         bending += [[-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]
         stiffness[part, part] += np.array(bending) / h**3 + k * element * h / 420
@@ -458,10 +460,27 @@ def test_a_root_that_the_numerator_shares_where_wavenumbers_vanish_adds_nothing_
     # At s = j sqrt(3) the foundation carries the beam's inertia, and no pole is.
     found = time_response(clamped(damper(0.1), ', k_f = "3 N/m^2"'), "step", SampleTimes.of([0.95, 1.9, 200]))
     assert found.certified
-    assert found.values[:2] == pytest.approx(finite_elements(40, 3, 0.1, [0.95, 1.9]), abs=3e-6)
+    assert found.values[:2] == pytest.approx(finite_elements(40, 3, 0, 0.1, [0.95, 1.9]), abs=3e-6)
     # Hetenyi 1946, Beams on Elastic Foundation, section 23: the deflection under a load at the free end
     q = (3 / 4) ** 0.25
     at_rest = (
         2 * q / 3 * (np.sinh(q) * np.cosh(q) - np.sin(q) * np.cos(q)) / (np.cosh(q) ** 2 + np.cos(q) ** 2)
     )
     assert found.values[2] == pytest.approx(at_rest, rel=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("b", [0, 0.1])
+def test_a_step_of_rayleighs_beam_is_certified_from_a_thousand_modes(b):
+    # One wavenumber grows with s, the other tends to a constant.
+    kind = ', theory = "rayleigh", rhoI = "0.01 kg*m"'
+    text = f"""
+elements.arm = {{ type = "beam", between = ["ground", "x"], EI = 1, rhoA = 1, l = 1{kind} }}
+{damper(b) if b else ""}
+inputs.F = {{ force = "x" }}
+outputs.X = "x"
+"""
+    found = time_response(of(text), "step", SampleTimes.of([0.95, 1.9]))
+    assert found.certified
+    assert found.radius.max() < 1e-6
+    assert found.values == pytest.approx(finite_elements(40, 0, 0.01, b, [0.95, 1.9]), abs=3e-6)
