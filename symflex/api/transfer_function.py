@@ -21,7 +21,7 @@ from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
-from symflex.options import RootsOptions
+from symflex.options import RootsOptions, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
@@ -432,7 +432,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         instants = SampleTimes.of(times)
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
-        found = forced_response(self.bound, exactly, given, exactly, digits, shaper)
+        found = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
         return face_of(TimeResponse, found)
 
     def sensitivities(

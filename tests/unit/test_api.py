@@ -240,6 +240,41 @@ def test_bound_values_replace_the_declared_ones(tip):
     assert [complex(p) for p in poles] == [0, 5j, -5j]
 
 
+def test_an_impossible_choice_is_a_usage_error(colocated):
+    bound = colocated.bind()
+    feedback = symflex.Model(
+        signals={"y": "K/s*(r - y)"}, parameters={"K": 1}, inputs={"r": {}}, outputs={"Y": "y"}
+    )
+    for call in [
+        lambda: bound.poles(modes=-1),
+        lambda: bound.poles(mode=0),
+        lambda: bound.zeros(band=(2, 1)),
+        lambda: bound.zeros(band=(math.nan, 1)),
+        lambda: bound.residues(band=np.array([1.0, math.inf])),
+        lambda: bound.pole_zero_map(region=(1, -1, 0, 1)),
+        lambda: bound.poles(digits=0),
+        lambda: bound.residues(digits=math.nan),
+        lambda: bound.step_response([1.0], digits=0),
+        lambda: bound.mode_shape(1, digits=-3),
+        lambda: bound.to_frd([1j, 2j]),
+        lambda: bound.discretise(math.inf),
+        lambda: feedback.stability("K", digits=0),
+        lambda: feedback.stability("K", up_to_hz=math.inf),
+    ]:
+        assert refusal(call) == "UsageError SF902"
+    for call in [lambda: bound.step_response([1j]), lambda: bound.forced_response([0, 1], [0, 1j])]:
+        assert refusal(call) == "UsageError SF811"
+
+
+def test_a_band_may_be_an_array_or_have_units(colocated):
+    bound = colocated.bind()
+    bands = ((1, 2000), np.array([1.0, 2000.0]), ("1 Hz", "2 kHz"))
+    assert len({bound.rational(band=band).valid_to(0.01) for band in bands}) == 1
+    figure = bound.bode(band=None, ylim=np.array([-200.0, 0.0]))
+    assert figure.axes[0].get_ylim() == (-200, 0)
+    assert bound.nyquist(xlim=np.array([-1.0, 2.0])).axes[0].get_xlim() == (-1, 2)
+
+
 def test_a_value_that_does_not_fit_is_a_usage_error(colocated):
     for values, code in (({"q": 1}, "SF902"), ({"k": "1 kg"}, "SF203"), ({"k": math.nan}, "SF902")):
         assert refusal(colocated.bind, **values) == f"UsageError {code}", values
