@@ -320,8 +320,10 @@ class Analyses(Plotted):
         """
         from symflex.analysis.rational import approximate  # not needed for roots
 
-        ends = None if band is None else tuple(float(end) for end in band_ends(band))
-        return approximate(self.bound, modes, form, ends)
+        if band is not None:
+            low, high = band_ends(band)
+            band = float(low), float(high)
+        return approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how everything moves in one mode; the largest displacement is 1.

@@ -321,8 +321,7 @@ class Model:
         """
         from symflex.loops.of_model import stability  # imports numpy
 
-        digits = None if digits is None else checked_digits(digits)
-        given = StabilityOptions(gain, limits, up_to_hz, digits)
+        given = StabilityOptions(gain, limits, up_to_hz, checked_digits(digits))
         with budget_of(budget).besides().entered():
             return Stability(stability(self.resolved, given, values))
 

@@ -221,6 +221,14 @@ def test_a_bound_function_evaluates_over_an_array_of_any_shape(colocated):
     np.testing.assert_allclose(colocated.bind()(s), receptance(s), rtol=1e-13)
 
 
+def test_a_nested_function_evaluates_over_an_array_too(model):
+    nested = model.nested("X_act", "F").bind()
+    points = np.array([[1j, 50j], [3 + 2j, -40j]])
+    assert nested(points).shape == (2, 2)
+    np.testing.assert_allclose(nested(points), receptance(points), rtol=1e-13)
+    assert isinstance(nested(np.array(2j)), complex)
+
+
 def test_a_value_may_be_any_number_or_a_quantity(colocated):
     for k in (
         120_000,
