@@ -238,8 +238,19 @@ def test_a_value_may_be_any_number_or_a_quantity(colocated):
         "120 kN/m",
         "120000",
         np.float64(1.2e5),
+        np.float32(1.2e5),
+        np.int64(120_000),
+        np.array(1.2e5),
+        sympy.Integer(120_000),
     ):
         assert colocated.bind(k=k).bound.values == colocated.bind(k=120_000).bound.values, k
+        stiffness = symflex.loads(TEXT, values={"k": k}).parameters[2]
+        assert (stiffness.name, stiffness.value.rational) == ("k", 120_000), k
+    third = colocated.bind(k=sympy.Rational(1, 3)).bound.values
+    assert third == colocated.bind(k=Fraction(1, 3)).bound.values
+    for wrong in (mpmath.mpf(3), 1j, None, [3, 4], np.nan, sympy.Symbol("k")):
+        assert refusal(colocated.bind, k=wrong) == "UsageError SF902", wrong
+        assert refusal(symflex.loads, TEXT, values={"k": wrong}) == "UsageError SF902", wrong
 
 
 def test_bound_values_replace_the_declared_ones(tip):
@@ -248,7 +259,7 @@ def test_bound_values_replace_the_declared_ones(tip):
     assert [complex(p) for p in poles] == [0, 5j, -5j]
 
 
-def test_an_impossible_choice_is_a_usage_error(colocated):
+def test_an_impossible_choice_is_a_usage_error(model, colocated):
     bound = colocated.bind()
     feedback = symflex.Model(
         signals={"y": "K/s*(r - y)"}, parameters={"K": 1}, inputs={"r": {}}, outputs={"Y": "y"}
@@ -270,14 +281,19 @@ def test_an_impossible_choice_is_a_usage_error(colocated):
         lambda: feedback.stability("K", up_to_hz=math.inf),
     ]:
         assert refusal(call) == "UsageError SF902"
+    for band in [(50, 1), (0, 50), (1, math.inf)]:  # the search would begin at 0 and never end
+        expected = "SF804" if math.isfinite(band[1]) else "SF902"
+        assert refusal(model.colocation, "X_act", "X_act", "F", band=band) == f"UsageError {expected}"
     for call in [lambda: bound.step_response([1j]), lambda: bound.forced_response([0, 1], [0, 1j])]:
         assert refusal(call) == "UsageError SF811"
 
 
-def test_a_band_may_be_an_array_or_have_units(colocated):
+def test_a_band_may_be_an_array_or_have_units(model, colocated):
     bound = colocated.bind()
     bands = ((1, 2000), np.array([1.0, 2000.0]), ("1 Hz", "2 kHz"))
     assert len({bound.rational(band=band).valid_to(0.01) for band in bands}) == 1
+    lines = [model.measure("X_act", "F", band=band, spacing=0.5, averages=1).omega for band in bands]
+    assert all((line == lines[0]).all() for line in lines)
     figure = bound.bode(band=None, ylim=np.array([-200.0, 0.0]))
     assert figure.axes[0].get_ylim() == (-200, 0)
     assert bound.nyquist(xlim=np.array([-1.0, 2.0])).axes[0].get_xlim() == (-1, 2)
