@@ -626,6 +626,20 @@ def exact(number: float | Fraction) -> Fraction:
     return number if isinstance(number, Fraction) else Fraction(Decimal(repr(float(number))))
 
 
+def finite(number: float | Fraction, flag: str) -> Fraction:
+    """Return the shortest decimal that prints a number; SF902 unless it is finite."""
+    if not isfinite(number):
+        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
+    return exact(number)
+
+
+def checked_digits(digits: int) -> int:
+    """Return how many digits are asked for; SF902 unless there is at least one."""
+    if not 1 <= digits < inf:
+        raise UsageError(Diagnostic("SF902", f"digits must be at least 1, not {digits}"))
+    return digits
+
+
 def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fraction]:
     """Return the ends of a band [Hz].
 
@@ -653,7 +667,7 @@ def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fracti
 def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False) -> Fraction:
     """Return a frequency in Hz, or in rad/s, from a number or a quantity that counts per second."""
     if not isinstance(given, str):
-        return exact(given)
+        return finite(given, flag.removeprefix("--"))
     from symflex.model.analysis import in_limits
     from symflex.model.dimensions import PER_SECOND
     from symflex.model.model import PI_NEARLY

@@ -326,7 +326,7 @@ def respond(
     Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
     counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend on
     how fine the grid is. ``roots`` are all poles and zeros, of a distributed system those in the band, when
-    they are known already. ValueError unless ``omega`` [rad/s] is one-dimensional and finite.
+    they are known already. SF902 unless ``omega`` [rad/s] is real, one-dimensional and finite.
 
     Examples
     --------
@@ -345,10 +345,10 @@ def respond(
     >>> response.values.real.tolist(), np.degrees(response.phase).tolist(), response.unit
     ([-2.0, -0.5], [-180.0, -180.0], 'm/N')
     """
-    grid = np.atleast_1d(np.array(omega, dtype=np.float64))
+    grid = real_numbers(omega, "omega")
     if grid.ndim != 1 or not np.isfinite(grid).all():
         message = "omega must be a one-dimensional array of finite numbers"
-        raise ValueError(message)
+        raise UsageError(Diagnostic("SF902", message))
     settled = bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
     if settled is not bound:
         bound, roots = settled, None
@@ -576,6 +576,16 @@ def grid_about(
         # A hair less than the gap, so that the points placed at the gap itself survive rounding.
         grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
     return _followed(values, grid) if found.certificate.is_exceeded else grid
+
+
+def real_numbers(given: npt.ArrayLike, name: str, code: str = "SF902") -> npt.NDArray[np.float64]:
+    """Return numbers as a new array of doubles; UsageError for others, as complex ones, which numpy cuts."""
+    try:
+        if not np.iscomplexobj(given):
+            return np.atleast_1d(np.array(given, dtype=np.float64))
+    except (TypeError, ValueError, OverflowError):
+        pass  # refused like complex numbers
+    raise UsageError(Diagnostic(code, f"{name} must be real numbers, found {str(given)[:60]}"))
 
 
 def check_band(low_hz: float, high_hz: float) -> None:

@@ -22,7 +22,7 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import RootsOptions
+from symflex.options import RootsOptions, band_ends, checked_digits
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
@@ -91,7 +91,7 @@ class Analyses(Plotted):
         """
         from symflex.analysis.time_response import find_step_info
 
-        return find_step_info(self.bound, digits)
+        return find_step_info(self.bound, checked_digits(digits))
 
     def impulse_response(
         self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
@@ -134,13 +134,14 @@ class Analyses(Plotted):
         """
         from symflex.analysis.input_shaping import input_shaper
 
-        return input_shaper(self.bound, modes, kind, digits, joint=joint)
+        return input_shaper(self.bound, modes, kind, checked_digits(digits), joint=joint)
 
     def _in_time(
         self, kind: str, times: ArrayLike | None, digits: int, shaper: InputShaper | None
     ) -> TimeResponse:
         from symflex.analysis.time_response import SampleTimes, responses_by_default, time_response
 
+        checked_digits(digits)
         if times is None:
             (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
@@ -222,7 +223,7 @@ class Analyses(Plotted):
         return face_of(PoleZeroMap, self._map(given, budget).complete())
 
     def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
-        digits = 15 if given.digits is None else given.digits
+        digits = checked_digits(15 if given.digits is None else given.digits)
         with budget_of(budget).besides().entered():
             return locate(self.bound, region_of(given), digits)
 
@@ -292,7 +293,7 @@ class Analyses(Plotted):
 
         region = region_of(RootsOptions(None, modes, mode, band))
         with budget_of(budget).besides().entered():
-            return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits))
+            return ResidueTable(Residue(r) for r in find_residues(self.bound, region, checked_digits(digits)))
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
@@ -319,6 +320,9 @@ class Analyses(Plotted):
         """
         from symflex.analysis.rational import approximate  # not needed for roots
 
+        if band is not None:
+            low, high = band_ends(band)
+            band = float(low), float(high)
         return approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
@@ -345,7 +349,9 @@ class Analyses(Plotted):
         """
         from symflex.analysis.modes import mode_shape
 
-        return ModeShape(mode_shape(self.bound, plain_mode(mode), digits), self.bound.source.model)
+        return ModeShape(
+            mode_shape(self.bound, plain_mode(mode), checked_digits(digits)), self.bound.source.model
+        )
 
     def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
         """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
@@ -355,7 +361,7 @@ class Analyses(Plotted):
         """
         from symflex.analysis.modes import mode_shapes
 
-        found = mode_shapes(self.bound, plain_mode(mode), digits)
+        found = mode_shapes(self.bound, plain_mode(mode), checked_digits(digits))
         return tuple(ModeShape(shape, self.bound.source.model) for shape in found)
 
 

@@ -16,7 +16,14 @@ from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
 from symflex.errors import BudgetError
 from symflex.model.spec import write
-from symflex.options import ColocationOptions, MeasureOptions, PlotOptions, StabilityOptions, SweepOptions
+from symflex.options import (
+    ColocationOptions,
+    MeasureOptions,
+    PlotOptions,
+    StabilityOptions,
+    SweepOptions,
+    checked_digits,
+)
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -314,7 +321,7 @@ class Model:
         """
         from symflex.loops.of_model import stability  # imports numpy
 
-        given = StabilityOptions(gain, limits, up_to_hz, digits)
+        given = StabilityOptions(gain, limits, up_to_hz, checked_digits(digits))
         with budget_of(budget).besides().entered():
             return Stability(stability(self.resolved, given, values))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex import state_space as state_space_room
 from symflex.codegen.state_space import StateEquations
-from symflex.options import duration, exact
+from symflex.options import duration, finite
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
@@ -201,7 +201,7 @@ class StateSpace:
         from symflex.state_space.sampled import sampled_state_space, sampling_of  # numpy
 
         sampling = sampling_of(dt, method, prewarp, "a sampling time")
-        late = duration(delay, "a dead time") if isinstance(delay, str) else exact(delay)
+        late = duration(delay, "a dead time") if isinstance(delay, str) else finite(delay, "a dead time")
         return sampled_state_space(self.exact, self._known(values), sampling, late)
 
     def _known(self, values: dict[str, int | float | Fraction | Decimal | str]) -> dict[str, ExactValue]:

@@ -21,16 +21,17 @@ from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
-from symflex.options import RootsOptions
+from symflex.options import RootsOptions, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
 from symflex.state_space import not_rational
 from symflex.transfer import BoundNested, bind_nested
+from symflex.transfer.balls import FIRST_BITS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import numpy as np
     import sympy
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from symflex import transfer as transfer_room
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.model import Model
 
 
 Number = int | float | Fraction | Decimal | str
@@ -385,15 +387,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
 
     def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
         """Return the value at s [rad/s], a number or an array, to double precision."""
-        import numpy as np
-
-        points = np.asarray(s, dtype=complex)
-        if not ((points.real == 0) & (points.imag > 0)).all():
-            check_causal(self.bound.source.model, "a value at another s")
-        if points.ndim == 0:
-            return self.bound(complex(points))
-        values = np.array([self.bound(complex(p)) for p in points.ravel()], dtype=complex)
-        return values.reshape(points.shape)
+        return _values(self.bound.source.model, self.bound, s)
 
     def forced_response(
         self, times: ArrayLike, u: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
@@ -432,7 +426,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         instants = SampleTimes.of(times)
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
-        found = forced_response(self.bound, exactly, given, exactly, digits, shaper)
+        found = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
         return face_of(TimeResponse, found)
 
     def sensitivities(
@@ -505,6 +499,12 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
     ([-1, -3], [0.157691])
     """
 
+    def __call__(  # type: ignore[override]
+        self, s: ArrayLike, bits: int = FIRST_BITS
+    ) -> complex | NDArray[np.complex128]:
+        """Return the value at s [rad/s], a number or an array, to double precision."""
+        return _values(self.source.model, lambda p: BoundNested.__call__(self, p, bits), s)
+
     @property
     def bound(self) -> BoundNestedTransferFunction:
         """The function itself, which is already bound."""
@@ -521,3 +521,18 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
             raise not_rational(self.name)
         numbered = with_numbers(model, (), dict(self.values), in_kernels=True)
         return pipeline.derive_bound(numbered, [(self.source.output.name, self.source.input.name)])[0]
+
+
+def _values(
+    model: Model, function: Callable[[complex], complex], s: ArrayLike
+) -> complex | NDArray[np.complex128]:
+    """Return the values of a function at a number or an array; SF251 where loss factors do not hold."""
+    import numpy as np
+
+    points = np.asarray(s, dtype=complex)
+    if not ((points.real == 0) & (points.imag > 0)).all():
+        check_causal(model, "a value at another s")
+    if points.ndim == 0:
+        return function(complex(points))
+    values = np.array([function(complex(p)) for p in points.ravel()], dtype=complex)
+    return values.reshape(points.shape)

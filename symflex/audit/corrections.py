@@ -90,7 +90,8 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
         return None
     numbers = numbers_of(reading.formula, tf, tf.model)
     lines = _mended_lines(reading, numbers), _other_lines(reading, numbers)
-    for found in chain(lines[0], _in_expression(reading), _both_sums(reading), lines[1]):
+    exchanged = _exchanged_names(reading, numbers)
+    for found in chain(lines[0], _in_expression(reading), exchanged, _both_sums(reading), lines[1]):
         corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
@@ -129,19 +130,20 @@ def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
 
 
 def _parts(expression: Expression) -> Iterator[tuple[Expression, str]]:
-    """Yield every part with where it stands, outer ones first."""
-    pending = [(expression, "numerator")]
+    """Yield every part with where it stands, outer ones first; a bar within a sum does not count."""
+    pending = [(expression, "numerator", False)]
     while pending:
-        node, place = pending.pop()
+        node, place, within = pending.pop()
         yield node, place
         match node:
-            case Quotient(above, below):
+            case Quotient(above, below) if not within:
                 other = "denominator" if place == "numerator" else "numerator"
-                pending += [(below, other), (above, place)]
+                pending += [(below, other, False), (above, place, False)]
             case Power(base, _):
-                pending.append((base, place))
+                pending.append((base, place, within))
             case _:
-                pending += [(child, place) for child in reversed(node.children)]
+                inner = within or isinstance(node, Sum | Call)
+                pending += [(child, place, inner) for child in reversed(node.children)]
 
 
 def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
@@ -215,7 +217,7 @@ def _other_exponent(wanted: _Wanted) -> Iterator[Correction]:
     """Yield the part with another exponent."""
     field, part = wanted.reading.field, wanted.part
     base, known = (part.base, part.exponent) if isinstance(part, Power) else (part, Number(Fraction(1)))
-    if not isinstance(base, Name | Call | Sum):
+    if not isinstance(part, Power | Name | Call | Sum | Quotient):
         return
     inner = wanted.reading.value(base)
     for exponent in EXPONENTS:
@@ -367,21 +369,36 @@ def _with_sums(
 def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
     """Yield terms that are not printed."""
     reading, part = wanted.reading, wanted.part
-    if not isinstance(part, Sum):
+    if not isinstance(part, Sum | Name | Product):
         return
     field = reading.field
     missing = field.reduced(wanted.value - reading.value(part))
     term = monomial_expression(field, missing)
-    if term is None:
+    if term is None and isinstance(part, Sum):
         term = in_symbols(field, missing, symbols_of(reading))
     if term is not None:
-        yield wanted.replaced_by(sum_of([*part.terms, term]), Change(wanted.place, number(0), term))
+        printed = part.terms if isinstance(part, Sum) else (part,)
+        yield wanted.replaced_by(sum_of([*printed, term]), Change(wanted.place, number(0), term))
+
+
+def _exchanged_names(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
+    """Yield the formula with two names exchanged, everywhere or in one of its sums."""
+    formula = reading.formula
+    parts = list(_parts(formula.expression))[:MOST_PARTS]
+    for part, place in [p for p in parts if isinstance(p[0], Sum)] + parts[:1]:
+        names = dict.fromkeys(n for n in nodes(part) if isinstance(n, Name) and n.name != LAPLACE)
+        for one, other in combinations(names, 2):
+            new = substitute(part, {one.name: other, other.name: one})
+            expression = _replaced(formula.expression, part, new)
+            if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
+                changes = Change(place, one, other), Change(place, other, one)
+                yield Correction(changes, expression, formula.scale, formula.lines)
 
 
 def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield slips in a line: what is turned over or exchanged, another name, a sign, a factor."""
     for i, (name, line) in enumerate(reading.formula.lines):
-        if line == Name(LAPLACE):  # another name for s, and no slip
+        if _only_renames(line):
             continue
         earlier = (other for other, _ in reading.formula.lines[:i])
         others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
@@ -427,7 +444,7 @@ def _other_powers(part: Expression) -> Iterator[Expression]:
 
 def _other_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield two lines exchanged, a line times a number, its square or root, a square or 1 left out."""
-    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if line[1] != Name(LAPLACE)]
+    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
     for (i, one, first), (j, other, second) in combinations(own, 2):
         yield from _with_lines(reading, numbers, {i: (one, first, second), j: (other, second, first)})
     for i, name, line in own:
@@ -455,12 +472,23 @@ def _with_lines(
         if any((name, old) == (d.name, d.expression) for d in given):
             return
     try:
-        both = replace(numbers, formula=replace(formula, lines=tuple(lines))).both_at(REAL_POINT, FEW_DIGITS)
+        is_right = _agrees(replace(numbers, formula=replace(formula, lines=tuple(lines))))
     except KeyError:  # a line would use one that comes later
         return
-    if both is not None and both[0].overlaps(both[1]):
+    if is_right:
         changes = tuple(Change(f"line {name}", old, line) for name, old, line in new.values())
         yield Correction(changes, formula.expression, formula.scale, tuple(lines))
+
+
+def _agrees(numbers: Numbers) -> bool:
+    """Return whether a formula has the derived function's value at a point."""
+    both = numbers.both_at(REAL_POINT, FEW_DIGITS)
+    return both is not None and bool(both[0].overlaps(both[1]))
+
+
+def _only_renames(line: Expression) -> bool:
+    """Return whether a line is s in other words, such as -s^2 for the square of a frequency, and no slip."""
+    return all(n.name == LAPLACE for n in nodes(line) if isinstance(n, Name))
 
 
 def _replaced(expression: Expression, part: Expression, new: Expression) -> Expression:

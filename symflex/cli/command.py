@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import note, reporting, show
+from symflex.cli.reporting import keep, note, reporting, show
 from symflex.options import OUTSIDE, option
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def command_of(
         ) -> int:
             from symflex.model import read_settings  # a command's help needs none of it
 
+            keep(spec, given.get("output"))
             return run(Specification(spec, allow_outside, read_settings(settings)), options(**given)) or 0
 
         called.__doc__ = run.__doc__

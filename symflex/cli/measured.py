@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.progress import ProgressBar
-from symflex.cli.reporting import answer, check_place, note, terminal_width
+from symflex.cli.reporting import answer, check_place, keep, note, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
 
@@ -51,6 +51,7 @@ def fit(given: FitOptions) -> int:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
     if given.loop and not given.output:
         raise UsageError(Diagnostic("SF902", "--loop is for the specification that -o writes"))
+    keep(given.base, given.output)
     for name, endings in (
         (given.output, (".toml",)),
         (given.figure, SUFFIXES),

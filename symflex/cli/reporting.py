@@ -86,6 +86,14 @@ def check_place(name: str, endings: Iterable[str]) -> Path:
     return path
 
 
+def keep(source: str | Path | None, output: object) -> None:
+    """Refuse to write over the specification that is read: SF903."""
+    if source and output and Path(source).is_file() and Path(str(output)).exists():
+        if Path(source).samefile(str(output)):
+            message = f"'{output}' is the specification that is read, and is not overwritten"
+            raise UsageError(Diagnostic("SF903", message, None, "choose another name with -o"))
+
+
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:
     """Print a text; what could drive a terminal is escaped, wherever it came from.
 

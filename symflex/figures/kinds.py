@@ -129,8 +129,8 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
     (Fraction(1, 1), Fraction(1000, 1))
     """
     band, xlim = given.band, given.xlim
-    if xlim and kind == "bode":
-        if band:
+    if xlim is not None and kind == "bode":
+        if band is not None:
             raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
         band, xlim = xlim, None
     is_plane = kind in S_PLANES

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -142,6 +143,9 @@ def dynamic_colocation(
         message = "no band of frequencies is given"
         raise UsageError(Diagnostic("SF804", message, None, "give --band LO HI, or band in [analysis]"))
     low, high = limits if limits is not None else (float(band[0]), float(band[1])) if band else (0.0, 0.0)
+    if not 0 < low < high < inf:
+        message = f"a band runs from a positive to a higher frequency, not from {low:g} to {high:g} Hz"
+        raise UsageError(Diagnostic("SF804", message))
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))

@@ -9,6 +9,7 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
+from numbers import Rational
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest
@@ -110,11 +111,25 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
 
 
 def _number(name: str, given: float | Fraction | Decimal) -> Quantity:
-    """Return a number in SI units; a double is the shortest decimal that prints it."""
-    if isinstance(given, float | Decimal) and not isfinite(given):
-        raise UsageError(Diagnostic("SF902", f"the value of '{name}' must be a finite number"))
-    value = Fraction(Decimal(repr(float(given)))) if isinstance(given, float) else Fraction(given)
-    return Quantity(value, 0, 0, DIMENSIONLESS, 0, "")
+    """Return a number in SI units."""
+    return Quantity(exact_number(name, given), 0, 0, DIMENSIONLESS, 0, "")
+
+
+def exact_number(name: str, given: object) -> Fraction:
+    """Return the value given for a parameter, of a double the shortest decimal that prints it.
+
+    Raises UsageError: SF902 for what is not a finite number of Python, SymPy, or numpy (an array has one).
+    """
+    if isinstance(given, float | Decimal) and isfinite(given):
+        # A numpy double is a float whose own repr is not a number.
+        return Fraction(Decimal(float.__repr__(given)) if isinstance(given, float) else given)
+    as_python = getattr(given, "item", None)
+    if callable(as_python) and getattr(given, "size", 1) == 1:
+        return exact_number(name, as_python())
+    if isinstance(given, Rational):
+        return Fraction(int(given.numerator), int(given.denominator))
+    hint = "give an int, float, Fraction or Decimal, or a text with a unit"
+    raise UsageError(Diagnostic("SF902", f"the value of '{name}' must be a finite number", None, hint))
 
 
 Values = tuple[tuple[str, "Expression"], ...]

@@ -178,20 +178,18 @@ def region_of(given: RootsOptions, mark: str = "") -> Region | None:
     if sum(choice is not None for choice in (given.modes, given.mode, given.band, given.region)) > 1:
         names = f"{mark}modes, {mark}mode, {mark}band and {mark}region"
         raise UsageError(Diagnostic("SF902", f"give only one of {names}"))
-    if given.modes is not None:
-        return Modes(given.modes)
-    if given.mode is not None:
-        if given.mode < 1:
-            raise UsageError(Diagnostic("SF902", f"modes are numbered from 1, not {given.mode}"))
-        return Mode(given.mode)
-    if given.band is not None:
-        return Band(*band_ends(given.band))
-    if given.region is None:
-        return None
-    sides = [frequency(side, "--region", "-10 or '3 rad/s'") for side in given.region]
-    if isinstance(given.region[0], str) and (sides[0] > sides[1] or sides[2] > sides[3]):
-        raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
-    return Rectangle(*sides)
+    try:
+        if given.modes is not None:
+            return Modes(given.modes)
+        if given.mode is not None:
+            return Mode(given.mode)
+        if given.band is not None:
+            return Band(*band_ends(given.band))
+        if given.region is None:
+            return None
+        return Rectangle(*(frequency(side, "--region", "-10 or '3 rad/s'") for side in given.region))
+    except ValueError as impossible:
+        raise UsageError(Diagnostic("SF902", str(impossible))) from None
 
 
 def _numbered(roots: Sequence[Root], first: int, last: int, *, at_zero: Position) -> tuple[Position, ...]:

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, isfinite
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +28,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY
-from symflex.options import duration, exact, frequency
+from symflex.options import duration, finite, frequency
 from symflex.state_space.numeric import Arrays, Matrices, rounding_of
 
 if TYPE_CHECKING:
@@ -121,19 +121,11 @@ def sampling_of(
     >>> sampling_of("2 ms", "tustin").sample
     Fraction(1, 500)
     """
-    time = duration(sample, flag) if isinstance(sample, str) else _finite(sample, flag)
+    time = duration(sample, flag) if isinstance(sample, str) else finite(sample, flag)
     if prewarp is None:
         return Sampling(time, method or "zoh")
-    if not isinstance(prewarp, str):
-        prewarp = _finite(prewarp, "prewarp")
     hertz = frequency(prewarp, "--prewarp", "10 or '0.1 kHz'", is_hertz=True)
     return Sampling(time, method or "zoh", hertz * 2 * PI_NEARLY)
-
-
-def _finite(number: float | Fraction, flag: str) -> Fraction:
-    if not isfinite(number):
-        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
-    return exact(number)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache, cached_property
 from itertools import combinations
-from math import inf, isfinite, lcm
+from math import inf, lcm
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb
@@ -33,6 +33,7 @@ from symflex.expressions import format_expression, names
 from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.declarations import assuming
+from symflex.model.settings import exact_number
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.against_equations import agreement, compare
 from symflex.transfer.derive import derive, nested_transfer
@@ -387,15 +388,7 @@ def _read_value(
             return ExactValue(quantity.magnitude / Fraction(2) ** turns, quantity.pi_power - turns)
         angular = not parameter.cycles and (wanted is None or bool(wanted.radians))
         return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
-    if isinstance(given, float) and isfinite(given):
-        # A numpy double is a float whose own repr is not a number.
-        return ExactValue(Fraction(Decimal(float.__repr__(given))))
-    if isinstance(given, int | Fraction) or (isinstance(given, Decimal) and given.is_finite()):
-        return ExactValue(Fraction(given))
-    as_python = getattr(given, "item", None)
-    if callable(as_python) and getattr(given, "size", 1) == 1:
-        return _read_value(parameter, as_python())
-    raise UsageError(Diagnostic("SF902", f"the value of '{parameter.name}' must be a finite number"))
+    return ExactValue(exact_number(parameter.name, given))
 
 
 def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> BoundTransferFunction:

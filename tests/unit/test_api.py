@@ -221,6 +221,14 @@ def test_a_bound_function_evaluates_over_an_array_of_any_shape(colocated):
     np.testing.assert_allclose(colocated.bind()(s), receptance(s), rtol=1e-13)
 
 
+def test_a_nested_function_evaluates_over_an_array_too(model):
+    nested = model.nested("X_act", "F").bind()
+    points = np.array([[1j, 50j], [3 + 2j, -40j]])
+    assert nested(points).shape == (2, 2)
+    np.testing.assert_allclose(nested(points), receptance(points), rtol=1e-13)
+    assert isinstance(nested(np.array(2j)), complex)
+
+
 def test_a_value_may_be_any_number_or_a_quantity(colocated):
     for k in (
         120_000,
@@ -230,14 +238,65 @@ def test_a_value_may_be_any_number_or_a_quantity(colocated):
         "120 kN/m",
         "120000",
         np.float64(1.2e5),
+        np.float32(1.2e5),
+        np.int64(120_000),
+        np.array(1.2e5),
+        sympy.Integer(120_000),
     ):
         assert colocated.bind(k=k).bound.values == colocated.bind(k=120_000).bound.values, k
+        stiffness = symflex.loads(TEXT, values={"k": k}).parameters[2]
+        assert (stiffness.name, stiffness.value.rational) == ("k", 120_000), k
+    third = colocated.bind(k=sympy.Rational(1, 3)).bound.values
+    assert third == colocated.bind(k=Fraction(1, 3)).bound.values
+    for wrong in (mpmath.mpf(3), 1j, None, [3, 4], np.nan, sympy.Symbol("k")):
+        assert refusal(colocated.bind, k=wrong) == "UsageError SF902", wrong
+        assert refusal(symflex.loads, TEXT, values={"k": wrong}) == "UsageError SF902", wrong
 
 
 def test_bound_values_replace_the_declared_ones(tip):
     # undamped: omega^2 = k (1/m_1 + 1/m_2)
     poles = tip.bind(b=0, k="30 N/m", m_1=2, m_2=3).poles()
     assert [complex(p) for p in poles] == [0, 5j, -5j]
+
+
+def test_an_impossible_choice_is_a_usage_error(model, colocated):
+    bound = colocated.bind()
+    feedback = symflex.Model(
+        signals={"y": "K/s*(r - y)"}, parameters={"K": 1}, inputs={"r": {}}, outputs={"Y": "y"}
+    )
+    for call in [
+        lambda: bound.poles(modes=-1),
+        lambda: bound.poles(mode=0),
+        lambda: bound.zeros(band=(2, 1)),
+        lambda: bound.zeros(band=(math.nan, 1)),
+        lambda: bound.residues(band=np.array([1.0, math.inf])),
+        lambda: bound.pole_zero_map(region=(1, -1, 0, 1)),
+        lambda: bound.poles(digits=0),
+        lambda: bound.residues(digits=math.nan),
+        lambda: bound.step_response([1.0], digits=0),
+        lambda: bound.mode_shape(1, digits=-3),
+        lambda: bound.to_frd([1j, 2j]),
+        lambda: bound.discretise(math.inf),
+        lambda: feedback.stability("K", digits=0),
+        lambda: feedback.stability("K", up_to_hz=math.inf),
+    ]:
+        assert refusal(call) == "UsageError SF902"
+    for band in [(50, 1), (0, 50), (1, math.inf)]:  # the search would begin at 0 and never end
+        expected = "SF804" if math.isfinite(band[1]) else "SF902"
+        assert refusal(model.colocation, "X_act", "X_act", "F", band=band) == f"UsageError {expected}"
+    for call in [lambda: bound.step_response([1j]), lambda: bound.forced_response([0, 1], [0, 1j])]:
+        assert refusal(call) == "UsageError SF811"
+
+
+def test_a_band_may_be_an_array_or_have_units(model, colocated):
+    bound = colocated.bind()
+    bands = ((1, 2000), np.array([1.0, 2000.0]), ("1 Hz", "2 kHz"))
+    assert len({bound.rational(band=band).valid_to(0.01) for band in bands}) == 1
+    lines = [model.measure("X_act", "F", band=band, spacing=0.5, averages=1).omega for band in bands]
+    assert all((line == lines[0]).all() for line in lines)
+    figure = bound.bode(band=None, ylim=np.array([-200.0, 0.0]))
+    assert figure.axes[0].get_ylim() == (-200, 0)
+    assert bound.nyquist(xlim=np.array([-1.0, 2.0])).axes[0].get_xlim() == (-1, 2)
 
 
 def test_a_value_that_does_not_fit_is_a_usage_error(colocated):

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, fmpz_mpoly
 
+from symflex.analysis.response import real_numbers
 from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -271,7 +272,7 @@ def frequency_response_data(
     frequencies, and at a pole.
     """
     control = installed("control")
-    grid = np.atleast_1d(np.array(omega, dtype=np.float64))
+    grid = real_numbers(omega, "omega")
     is_increasing = grid.ndim == 1 and bool(np.all(np.diff(grid) > 0))
     if not (is_increasing and grid.size and np.isfinite(grid).all() and grid[0] >= 0):
         message = "omega must be an increasing array of finite numbers that are not negative [rad/s]"

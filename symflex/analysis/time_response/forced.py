@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import arb, arb_poly
 
+from symflex.analysis.response import real_numbers
 from symflex.analysis.time_response.enclosed_response import EnclosedResponse
 from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
@@ -133,7 +134,7 @@ def exact_values(values: npt.ArrayLike, count: int) -> list[Fraction]:
     >>> exact_values([0, 0.1], 2)
     [Fraction(0, 1), Fraction(1, 10)]
     """
-    given = np.atleast_1d(np.array(values, dtype=np.float64))
+    given = real_numbers(values, "values of an input", "SF811")
     if given.shape != (count,) or count < 2 or not np.isfinite(given).all():  # noqa: PLR2004 (a line has two ends)
         message = (
             f"an input needs two or more finite values, one for each time: {given.size} values for {count} "

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, arb
 
-from symflex.analysis.response import roots_if_found
+from symflex.analysis.response import real_numbers, roots_if_found
 from symflex.balls import at_centre, ball
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
@@ -73,7 +73,7 @@ class SampleTimes:
         >>> SampleTimes.of([0, 0.5, 2.0]).step is None
         True
         """
-        given = np.atleast_1d(np.array(times, dtype=np.float64))
+        given = real_numbers(times, "times", "SF811")
         if given.ndim != 1 or given.size > MOST_TIMES:
             raise _refused(f"times must be a list of at most {MOST_TIMES} numbers")
         if not np.isfinite(given).all():

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from symflex.budget import spend
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import Diagnostic, UsageError
+from symflex.options import band_ends
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,7 +65,7 @@ class MeasurementPlan:
         if given.band is None and band is None:
             message = "the specification has no [analysis] band"
             raise UsageError(Diagnostic("SF902", message, None, "give one with --band LO HI"))
-        low, high = (float(end) for end in given.band or band or ())
+        low, high = map(float, (band or ()) if given.band is None else band_ends(given.band))
         spacing = high / 800 if given.spacing is None else given.spacing
         plan = MeasurementPlan(low, high, spacing, given.averages, given.noise, given.rolloff, given.seed)
         plan.check()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from symflex.analysis.response import SampledResponse, respond
+from symflex.errors import UsageError
 from symflex.transfer import bind
 from tests.unit.analysis.systems import derived, rational
 
@@ -117,7 +118,10 @@ def test_negative_frequencies_have_the_opposite_phase():
 
 def test_frequencies_must_be_a_row_of_finite_numbers():
     for omega in [[[1.0]], [math.nan], [1.0, math.inf]]:
-        with pytest.raises(ValueError, match="one-dimensional array of finite numbers"):
+        with pytest.raises(UsageError, match="one-dimensional array of finite numbers"):
+            respond(rational("1/(s + 1)"), omega)
+    for omega in [2j, [1.0, 2j], "fast", [10**400], [[1.0], [1.0, 2.0]]]:
+        with pytest.raises(UsageError, match=r"SF902.*omega must be real numbers"):
             respond(rational("1/(s + 1)"), omega)
 
 

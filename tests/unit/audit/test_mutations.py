@@ -94,6 +94,36 @@ def test_a_wrong_formula_is_proved_to_differ_and_what_was_made_wrong_is_found(na
     assert changes == expected
 
 
+ISOLATOR = """symflex = 1
+parameters = { m = { unit = "kg" }, k = { unit = "N/m" }, b = { unit = "N*s/m" } }
+inputs.y = { displacement = "y" }
+outputs.X = "x"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "y"], k = "k" }
+damper = { type = "damper", between = ["x", "y"], b = "b" }
+[published."X/y"]
+"""
+MODAL = "w = 'sqrt(k/m)', z = 'b/(2*sqrt(k*m))'"
+ISOLATOR_SLIPS = [
+    ("(b*s + k)/(k*s^2 + b*s + m)", "", [("denominator", "k", "m"), ("denominator", "m", "k")]),
+    ("(b*s + k)/(m*s^2 + s/b + k)", "", [("denominator", "b", "b^-1")]),
+    ("k/(m*s^2 + b*s + k)", "", [("numerator", "0", "s*b")]),
+    ("(1 + 2*z*(s/w))/(1 + 2*z*(s/w) + (s/w)^3)", MODAL, [("denominator", "(s/w)^3", "(s/w)^2")]),
+    ("(1 + 2*z*s/w)/(1 + 2*z*s/w + s^2/w)", MODAL, [("denominator", "w", "w^2")]),
+    ("(b*s + k)/(k + m*w2 + b*s)", "w2 = '-s^2'", [("denominator", "m*w2", "-m*w2")]),
+]
+
+
+def test_slips_in_the_formula_of_an_isolator_are_found():
+    for expr, where, expected in ISOLATOR_SLIPS:
+        (found,) = audit(pipeline.loads(f"{ISOLATOR}expr = '{expr}'\nwhere = {{ {where} }}\n"))
+        changes = [
+            (c.place, format_expression(c.printed), format_expression(c.derived)) for c in found.changes
+        ]
+        assert (found.verdict, changes) == ("differs", expected), expr
+
+
 RATIOS = {
     "twice": (COLOCATED.replace("-1/2", "-1"), SCALE, "2"),
     "with the other sign": (COLOCATED.replace("-1/2", "1/2"), SCALE, "-1"),

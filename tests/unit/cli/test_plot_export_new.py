@@ -35,6 +35,16 @@ def test_as_many_modes_are_drawn_as_asked_for(shell):
     assert sizes[0] < sizes[1]
 
 
+def test_the_specification_that_is_read_is_never_overwritten(shell):
+    read = shell.folder / "x.toml"
+    before = read.read_bytes()
+    (shell.folder / "data.csv").write_text("", encoding="utf-8")
+    for arguments in (("export", "x.toml", "--to", "c"), ("fit", "data.csv", "--base", "x.toml")):
+        done = shell(*arguments, "-o", "../" + shell.folder.name + "/x.toml")
+        assert (done.code, read.read_bytes()) == (2, before), arguments
+        assert "SF903" in done.err
+
+
 @pytest.mark.slow
 def test_a_figure_is_named_after_specification_and_kind_by_default_and_drawn_by_its_own_name(shell):
     assert shell("plot", "x.toml", "later").code == 0
