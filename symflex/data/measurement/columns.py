@@ -66,14 +66,17 @@ _SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()", 
 _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
 """Functions by which circuit simulators name columns: VDB(out), P(V(out))."""
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
+_JOINED = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)")
+"""Where words are joined: FrequencyHz, magdB."""
 _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
 _OTHER_SIZE = re.compile(
     r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|^log_?10|[([]\s*(?:np|nepers?)\s*[])]", re.I
 )
 """Names of squares and logarithms of magnitudes, which are no magnitudes."""
+_FORCE = re.compile(r"force|hammer|excitation|kraft", re.I)
 _RATIO: Final = "ratio"
-_CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
+CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 _LETTERS: Final = {
     ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
     ("r", "x"): ("real", "imaginary"),  # of impedances
@@ -271,6 +274,10 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     """
     below = list(units_below) or [""] * len(names)
     found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
+    apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
+    found = [
+        one if one.kind else other if other.kind else one for one, other in zip(found, apart, strict=True)
+    ]
     kinds = {m.kind for m in found}
     if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
         turned = {m.label for m in found if m.kind == "phase"}
@@ -351,7 +358,7 @@ def assembled(
     """
     guesses: list[str] = []
     columns = _over_input(_with_frequency(list(columns), file, header, guesses), guesses)
-    crossed = next((c for c in columns if _CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
+    crossed = next((c for c in columns if CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
     if crossed is not None and not is_asked:
         message = f"column '{crossed.name[:40]}' is a cross spectrum by its name, which is no response"
         hint = "divide it by the spectrum of the input, or say with --columns what the columns are"
@@ -463,6 +470,9 @@ def _plain_size(column: DataColumn) -> Real:
 def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assembled]:
     """Return one response for two, of which one is what goes in and the other what comes out."""
     ends = [match[1].lower() if (match := _END.fullmatch(m.label)) else "" for m in made]
+    forces = [bool(_FORCE.fullmatch(m.label)) and "/" not in m.columns[1].meaning.unit for m in made]
+    if sorted(forces) == [False, True]:
+        ends = ["in" if is_force else "out" for is_force in forces]
     if sorted(ends) != ["in", "out"] or not np.array_equal(made[0].frequency_hz, made[1].frequency_hz):
         return made
     over, result = (made[ends.index(end)] for end in ("in", "out"))

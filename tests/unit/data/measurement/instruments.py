@@ -524,6 +524,15 @@ def files_of_tables():
     yield Saved(
         "receptance.csv", ("Frequency (Hz),Receptance (m/N),Phase (deg)\n" + rows(F, SIZE, DEG)).encode()
     )
+    yield Saved("joined.csv", ("freqHz,magdB,PhaseDeg\n" + rows(F, DB, DEG)).encode())
+    twice = 2 * H * (1 + 0.5j)
+    yield Saved(
+        "spectra.csv",
+        (
+            "Frequency (Hz),Force Re (N),Force Im (N),Accel Re (m/s^2),Accel Im (m/s^2)\n"
+            + rows(F, 0 * F + 2, 0 * F + 1, twice.real, twice.imag)
+        ).encode(),
+    )
     yield Saved("ratio.csv", ("f (Hz),Vout/Vin,Phase (deg)\n" + rows(F, SIZE, DEG)).encode())
     yield Saved(
         "errors.csv",

@@ -69,6 +69,7 @@ GUESSES = {
     "whole.csv": "numbers such as 1,000 are read in thousands",
     "whole_de.csv": "'|H| [%]' is read in per cent",
     "volts.csv": "the magnitude is 'CH2 Amplitude (V)' over 'CH1 Amplitude (V)'",
+    "spectra.csv": "the response is 'Accel' over 'Force'",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 
@@ -117,6 +118,12 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert option, (name, caught.value.diagnostics[0].hint)
         (found,) = read_measurement(path, option[1])
         assert found.values == pytest.approx(values, rel=1e-3), name
+
+
+def test_a_cross_spectrum_among_arrays_is_no_response(tmp_path):
+    (tmp_path / "a.npz").write_bytes(npz(f=F, Pxy=H, Pxx=abs(H)))
+    with pytest.raises(DataError, match=r"has no array values; it has f \(99\), Pxy \(99\)"):
+        read_measurement(tmp_path / "a.npz")
 
 
 def test_responses_are_called_what_stands_in_the_brackets_of_their_columns(tmp_path):
