@@ -71,6 +71,8 @@ def fit(given: FitOptions) -> int:
     with ProgressBar() as bar, budget.told(bar).entered():
         found = fitted(every, given)
     shapes = mode_shapes(found, every) if given.driving else None
+    if given.driving and len(every) > 1 and (given.output or given.figure):
+        note(f"files and figures have {given.driving} alone: leave out --driving to fit all responses")
     if given.strict and found.poor:
         hint = "leave out --strict to print it anyway"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))

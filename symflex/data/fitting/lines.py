@@ -131,11 +131,12 @@ def written_step(numbers: Real) -> Real:
     """
     size = np.abs(numbers)
     found: Real = np.zeros(size.size)
-    decade = np.floor(np.log10(np.maximum(size, SMALLEST)) + EXACT) + 1
+    least = SMALLEST * max(float(np.max(size, initial=0.0)), np.finfo(float).tiny)
+    decade = np.floor(np.log10(np.maximum(size, least)) + EXACT) + 1
     for place in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
         for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS + 1):
             step = 10 ** (place - digits)
-            if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + SMALLEST):
+            if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + least):
                 found = np.maximum(found, step)
                 break
     return found

@@ -342,11 +342,13 @@ def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -
     Each row of ``known`` is a part of it, of which at most the whole is there.
     """
     x = omega / np.exp(np.mean(np.log(omega)))
-    shapes = np.stack([size**2, *(x ** float(p) for p in POWERS)])
+    unit = float(np.mean(size**2))  # whose square may be no number
+    power = power / unit
+    shapes = np.stack([size**2 / unit, *(x ** float(p) for p in POWERS)])
     shapes = shapes / np.mean(shapes, axis=1, keepdims=True)
     most = np.full(shapes.shape[0], np.inf)
     if known is not None and known.size:
-        shapes, most = np.concatenate((shapes, known)), np.append(most, np.ones(known.shape[0]))
+        shapes, most = np.concatenate((shapes, known / unit)), np.append(most, np.ones(known.shape[0]))
     # The square of a variance has to be a number, of exact data too.
     floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny ** 0.4)
     power = np.maximum(power, floor)
@@ -357,4 +359,4 @@ def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -
         bounded = np.minimum(power, LARGEST * expected)
         shares = shares * np.sqrt((shapes @ (bounded / expected**2)) / (shapes @ (1 / expected)))
         shares = np.minimum(shares, most)
-    return np.asarray(shares @ shapes, np.float64)
+    return np.asarray(unit * (shares @ shapes), np.float64)

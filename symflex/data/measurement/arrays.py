@@ -21,6 +21,7 @@ from symflex.data.measurement.array_files import (
     require,
 )
 from symflex.data.measurement.columns import (
+    CROSS,
     Assembled,
     ColumnMeaning,
     DataColumn,
@@ -345,6 +346,7 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
 def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredResponse, ...]:
     """Read the one complex array and the one that goes up and is as long, whatever they are called."""
     complexes = {k: a for k, a in arrays.items() if a.dtype.kind == "c" and a.size > 2}  # noqa: PLR2004
+    complexes = {k: a for k, a in complexes.items() if not CROSS.fullmatch(k.rpartition(".")[2])}
     rising = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.ndim == 1 and _goes_up(a)}
     named = {k: a for k, a in rising.items() if k.rpartition(".")[2].lower() in (*FREQUENCY, *ANGULAR)}
     pairs = [(f, h) for f, a in (named or rising).items() for h, b in complexes.items() if a.size in b.shape]

@@ -31,21 +31,21 @@ Complex = npt.NDArray[np.complex128]
 _WORDS: Final = {
     "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence coherencia coerenza",
     "phase": "phase phas phs pha phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas "
-    "faza фаза 相位 位相",
+    "phasenwinkel phasengang déphasage faza фаза 相位 位相",
     "imaginary": "im imag imaginary imaginär imaginärteil imaginaire imaginaria immaginaria zim zimag zimg "
-    "z'' zs'' quadrature",
-    "real": "re real realteil réel réelle reale zre zreal z' zs' inphase",
+    "z'' zs'' quadrature 虚部",
+    "real": "re real realteil réel réelle reale zre zreal z' zs' inphase 実部 实部",
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
     "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
-    "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
+    "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン 利得",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
 }  # fmt: skip
 """Words by which a column is known, the first kind that has one of them."""
 KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
-_SPREAD: Final = frozenset("std stdev sd sigma unc uncertainty var variance snr thd".split())
+_SPREAD: Final = frozenset("std stdev sd sigma err unc uncertainty var variance snr thd".split())
 """Words of columns that say how accurate others are."""
 _PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
 _OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
@@ -66,10 +66,17 @@ _SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()", 
 _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
 """Functions by which circuit simulators name columns: VDB(out), P(V(out))."""
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
+_JOINED = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)")
+"""Where words are joined: FrequencyHz, magdB."""
 _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
+_OTHER_SIZE = re.compile(
+    r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|^log_?10|[([]\s*(?:np|nepers?)\s*[])]", re.I
+)
+"""Names of squares and logarithms of magnitudes, which are no magnitudes."""
+_FORCE = re.compile(r"force|hammer|excitation|kraft", re.I)
 _RATIO: Final = "ratio"
-_CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
+CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 _LETTERS: Final = {
     ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
     ("r", "x"): ("real", "imaginary"),  # of impedances
@@ -79,8 +86,8 @@ _LETTERS: Final = {
 """Letters that mean something as a pair alone."""
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
 _SUFFIX = re.compile(
-    r"(?:[\s_/,:.]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|град)"
-    r"\s*$"
+    r"(?:[\s_/,:.]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|"
+    r"grad|град)\s*$"
     r"|(?<=\S)\s+/\s+(\S+)\s*$",
     re.I,
 )
@@ -206,15 +213,16 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         )
         is_impedance = unit.lower() in _OHMS and low.startswith("z")
         kind = "magnitude" if unit.lower() in _LEVELS or is_impedance else kind
-    if not kind and text.strip().lower() in _OHMS:
-        kind, unit = "magnitude", text.strip()
+    kind, unit = ("magnitude", text.strip()) if not kind and text.strip().lower() in _OHMS else (kind, unit)
     if unit.lower() in _FREQUENCY_UNITS and {"frequency", "freq"} & set(words):
         kind = "frequency"  # "Frequency - Phase (Hz)", beside the phase
     if kind == "phase" and unit.lower() not in _PHASE_UNITS and set(_DEGREES) & set(words):
         unit = "deg"
-    is_of_other = kind in ("frequency", "omega") and {"response", "function"} & set(words)
-    if is_of_other or _SPREAD & set(words):
-        kind = ""
+    is_of_other = kind in ("frequency", "omega") and (
+        {"response", "function", "ln"} & set(words) or re.search(r"\b[fwω]\s*/\s*[fwω]", low)
+    )
+    is_other_size = kind == "magnitude" and unit.lower() not in _LEVELS and _OTHER_SIZE.search(written)
+    kind = "" if is_of_other or is_other_size or _SPREAD & set(words) else kind
     word = next((w for w in words if KINDS.get(w) == kind), "")
 
     def kept(match: re.Match[str]) -> str:
@@ -266,11 +274,19 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     """
     below = list(units_below) or [""] * len(names)
     found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
+    apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
+    found = [
+        one if one.kind else other if other.kind else one for one, other in zip(found, apart, strict=True)
+    ]
     kinds = {m.kind for m in found}
     if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
-        turned = {m.label for m in found if m.kind == "phase" and m.label}
+        turned = {m.label for m in found if m.kind == "phase"}
+        ratios = {m.label for m in found if not m.kind and "/" in m.unit + m.label}
+        turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
         found = [
-            meaning_of(f"magnitude {m.label}", m.unit) if not m.kind and m.unit and m.label in turned else m
+            meaning_of(f"magnitude {m.label}", m.unit)
+            if not m.kind and m.label in turned and "/" in m.unit + m.label
+            else m
             for m in found
         ]
         kinds = {m.kind for m in found}
@@ -342,7 +358,7 @@ def assembled(
     """
     guesses: list[str] = []
     columns = _over_input(_with_frequency(list(columns), file, header, guesses), guesses)
-    crossed = next((c for c in columns if _CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
+    crossed = next((c for c in columns if CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
     if crossed is not None and not is_asked:
         message = f"column '{crossed.name[:40]}' is a cross spectrum by its name, which is no response"
         hint = "divide it by the spectrum of the input, or say with --columns what the columns are"
@@ -421,6 +437,9 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     """
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
     ends = {c: match[1].lower() for c in sizes if (match := _END.fullmatch(c.meaning.label))}
+    turned = [re.split(r"\s*[-/]\s*", c.meaning.label) for c in columns if c.meaning.kind == "phase"]
+    if not ends and len(turned) == 1 and len(turned[0]) == 2:  # noqa: PLR2004 (phase CH2-CH1)
+        ends = {c: ("out", "in")[turned[0].index(x)] for c in sizes if (x := c.meaning.label) in turned[0]}
     labels = {c.meaning.label for c in ends}
     if any(c.meaning.label in labels for c in columns if c.meaning.kind and c not in ends):
         return columns
@@ -451,6 +470,9 @@ def _plain_size(column: DataColumn) -> Real:
 def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assembled]:
     """Return one response for two, of which one is what goes in and the other what comes out."""
     ends = [match[1].lower() if (match := _END.fullmatch(m.label)) else "" for m in made]
+    forces = [bool(_FORCE.fullmatch(m.label)) and "/" not in m.columns[1].meaning.unit for m in made]
+    if sorted(forces) == [False, True]:
+        ends = ["in" if is_force else "out" for is_force in forces]
     if sorted(ends) != ["in", "out"] or not np.array_equal(made[0].frequency_hz, made[1].frequency_hz):
         return made
     over, result = (made[ends.index(end)] for end in ("in", "out"))
@@ -568,7 +590,12 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
     if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
         own = [c for c in sizes if c.meaning.label and phases[0].meaning.label.startswith(c.meaning.label)]
         sizes = sorted(
-            own or sizes, key=lambda c: (c.meaning.scale != "decibel", c.meaning.word.startswith("amp"))
+            own or sizes,
+            key=lambda c: (
+                bool(re.search(r"\b(?:min|max)", c.meaning.label, re.I)),
+                c.meaning.scale != "decibel",
+                c.meaning.word.startswith("amp"),
+            ),
         )[:1]
     first, second = ("real", "imaginary"), ("magnitude", "phase")
     for (a, b), one, two in (
@@ -631,7 +658,7 @@ def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Co
 
 
 def _size(column: DataColumn, scale: str) -> Real:
-    numbers = column.numbers.real
+    numbers = column.numbers.real / (100 if column.meaning.unit == "%" else 1)
     return np.asarray(10 ** (numbers / 20) if scale == "decibel" else np.where(numbers < 0, np.nan, numbers))
 
 
@@ -653,7 +680,7 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
         raise DataError(Diagnostic("SF602", message, phase.span, hint))
     scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED / 2)
-    if scale is None and is_gain:
+    if scale is None and (is_gain or costs["linear", factor] - costs["decibel", factor] > UNDECIDED / 6):
         message = (
             f"column '{magnitude.name[:40]}' has no unit, and its numbers fit dB as well as a plain ratio"
         )
@@ -665,6 +692,8 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         guesses.append(f"'{phase.name[:30]}' has no unit and is read in {unit}, which fits the magnitude")
     elif phase.meaning.factor < 0:
         guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
+    if magnitude.meaning.unit == "%":
+        guesses.append(f"'{magnitude.name[:30]}' is read in per cent")
     if magnitude.meaning.scale == "unknown":
         said = "in dB" if scale == "decibel" else "as a ratio, not in dB"
         guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")

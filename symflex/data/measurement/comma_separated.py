@@ -37,7 +37,16 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.text_table import COMMENTS, SIGNS, NumberBlock, TextTable, bare, cut, number
+from symflex.data.measurement.text_table import (
+    COMMENTS,
+    SIGNS,
+    WHOLE,
+    NumberBlock,
+    TextTable,
+    bare,
+    cut,
+    number,
+)
 from symflex.errors import DataError, Diagnostic, Source, Span
 
 _COMMENT_FIELD = re.compile(r"\W*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
@@ -226,6 +235,9 @@ def _columns(
     numbers = [block.numbers(i) for i in range(width)]
     if numbers[0][0].dtype.kind == "c" and not np.any(numbers[0][0].imag):  # numpy writes all as complex
         numbers[0] = numbers[0][0].real, numbers[0][1]
+    whole = next((c for row in block.rows for c in row if WHOLE[table.decimal].fullmatch(c)), None)
+    if whole:
+        guesses.append(f"numbers such as {whole} are read in thousands")
     line, cells, under, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
     if table.delimiter == "," and 0 < 2 * sum(map(bool, cells)) == width:
         message = f"{width} cells where the header has {width // 2} names: decimal commas between commas?"

@@ -42,6 +42,8 @@ _APART = re.compile(r"(?<=\d),\s+(?=[-+.\d])")
 """Between real and imaginary part, where blanks are between columns: ngspice."""
 _SPACED = re.compile(r"(?<!\s)\s*([-+])\s*(?=[\d.]+(?:e[-+]?\d+)?[ij]m?\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
+WHOLE: Final = {d: re.compile(rf"[-+]?[1-9]\d{{0,2}}(?:\{t}\d{{3}})+") for d, t in ((".", ","), (",", "."))}
+"""Whole numbers in groups of three digits by decimal sign: numbers where others show the sign."""
 _CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
 _CANDIDATES: Final = (
     (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (" ", "."), (" ", ","), (",", ","),
@@ -99,6 +101,8 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
     text = cell.strip("\"' ").replace("\u2212", "-")
     if _GAPPED.fullmatch(text):
         text = re.sub(r"[^-+\d.,]", "", text)
+    if WHOLE[decimal].fullmatch(text):
+        return float(re.sub("[.,]", "", text))
     if decimal == ",":
         if "." in text:
             if not _GROUPED.fullmatch(text):
@@ -312,7 +316,9 @@ def _format(lines: Sequence[str]) -> tuple[str, str]:
         found = 0.0
         for line in sample:
             cells = cut(line, candidate[0])
-            numbers = sum(number(cell, candidate[1]) is not None for cell in cells)
+            numbers = sum(
+                number(c, candidate[1]) is not None and not WHOLE[candidate[1]].fullmatch(c) for c in cells
+            )
             if numbers >= 2 and 2 * numbers > len(cells):  # noqa: PLR2004
                 found += numbers / len(cells)
         return round(found, 6)

@@ -302,7 +302,9 @@ def test_responses_to_one_force_give_mass_normalised_mode_shapes(shell, tmp_path
     assert found["responses"] == ["a/F", "b/F"]
     assert found["unit"] == "kg^(-1/2)"
     assert np.array(found["shapes"]) == pytest.approx(np.array([low, [low[1], -low[0]]]), rel=1e-4)
-    text = shell("fit", *files, "--driving", "a/F", "--modes", "2").out
+    done = shell("fit", *files, "--driving", "a/F", "--modes", "2", "-o", "driven.toml")
+    assert "files and figures have a/F alone: leave out --driving" in done.err
+    text = done.out
     assert "mass-normalised mode shapes [kg^(-1/2)], driven at a/F" in text
     assert max(map(len, text.splitlines())) <= 80
     refused = shell("fit", *files, "--driving", "c/F")

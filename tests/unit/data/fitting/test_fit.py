@@ -60,6 +60,20 @@ def test_without_a_base_gain_and_power_of_s_are_found():
     assert fit.resonances.zeta_z[0, 0] == pytest.approx(0.03)
 
 
+@pytest.mark.parametrize("unit", [1e-90, 1e98])
+def test_the_unit_of_the_values_changes_the_gain_alone(unit):
+    frequency = np.arange(5.0, 45.0, 0.5)
+    s, error = 2j * np.pi * frequency, np.random.default_rng(1).standard_normal((2, frequency.size))
+    values = (1 + 0.01 * (error[0] + 1j * error[1])) / (s**2 + 5 * s + 126.0**2)
+    one, other = (
+        fit_resonances([MeasuredResponse("y/u", frequency, k * values)], None, FitOptions(modes=1, slope=0))
+        for k in (1.0, unit)
+    )
+    assert other.resonances.omega_p == pytest.approx(one.resonances.omega_p, rel=1e-9)
+    assert other.resonances.gain / unit == pytest.approx(one.resonances.gain, rel=1e-9)
+    assert other.standard_errors().zeta_p == pytest.approx(one.standard_errors().zeta_p, rel=1e-6)
+
+
 def rounded(lines, data):
     """Return data written as level and phase, all numbers with four digits."""
 

@@ -506,6 +506,54 @@ def wild_files():
     yield Saved("padded.txt", universal(F, H).encode(), tolerance=1e-4, frequency=(F,))
 
 
+def files_of_tables():
+    """Return files of text as spreadsheets and people write them."""
+    hertz = np.round(F * 1e3)
+    for name, mark, sep, decimal in (("whole.csv", ",", ",", "."), ("whole_de.csv", ".", ";", ",")):
+        cells = [f'"{f:,.0f}"'.replace(",", mark) for f in hertz]
+        columns = ([f"{x:.7f}".replace(".", decimal) for x in y] for y in (100 * SIZE, DEG))
+        yield Saved(name, ("f [Hz];|H| [%];φ [°]\n".replace(";", sep) + rows(cells, *columns, sep=sep)).encode(),
+                    frequency=(hertz,))  # fmt: skip
+    yield Saved(
+        "angles.csv",
+        (
+            "Frequenz in Hz;Amplitude in dB;Phasenwinkel in Grad\n" + rows(F, DB, DEG, sep=";", decimal=",")
+        ).encode(),
+    )
+    yield Saved("parts_jp.csv", ("周波数[Hz],実部,虚部\n" + rows(F, RE, IM)).encode())
+    yield Saved(
+        "receptance.csv", ("Frequency (Hz),Receptance (m/N),Phase (deg)\n" + rows(F, SIZE, DEG)).encode()
+    )
+    yield Saved("joined.csv", ("freqHz,magdB,PhaseDeg\n" + rows(F, DB, DEG)).encode())
+    twice = 2 * H * (1 + 0.5j)
+    yield Saved(
+        "spectra.csv",
+        (
+            "Frequency (Hz),Force Re (N),Force Im (N),Accel Re (m/s^2),Accel Im (m/s^2)\n"
+            + rows(F, 0 * F + 2, 0 * F + 1, twice.real, twice.imag)
+        ).encode(),
+    )
+    yield Saved("ratio.csv", ("f (Hz),Vout/Vin,Phase (deg)\n" + rows(F, SIZE, DEG)).encode())
+    yield Saved(
+        "errors.csv",
+        ("f [Hz],Mag,Mag_err,Phase [deg],Phase_err\n" + rows(F, SIZE, SIZE / 99, DEG, 0 * F + 0.5)).encode(),
+    )
+    yield Saved(
+        "least_mean_most.csv",
+        (
+            "f (Hz),Gain min (dB),Gain mean (dB),Gain max (dB),Phase (deg)\n"
+            + rows(F, DB - 1, DB, DB + 1, DEG)
+        ).encode(),
+    )
+    yield Saved(
+        "volts.csv",
+        (
+            "Frequency (Hz),CH1 Amplitude (V),CH2 Amplitude (V),Phase CH2-CH1 (deg)\n"
+            + rows(F, F, F * SIZE, DEG)
+        ).encode(),
+    )
+
+
 def simulated_files():
     """Return files of text that programs of mathematics, simulators and boards write."""
     for name, shape in (("octave.mat", (F.size, 1)), ("octave_rows.txt", (1, F.size))):
@@ -650,4 +698,11 @@ def array_files():
 
 def all_files():
     """Return all of them."""
-    return [*text_files(), *wild_files(), *simulated_files(), *network_files(), *array_files()]
+    return [
+        *text_files(),
+        *wild_files(),
+        *files_of_tables(),
+        *simulated_files(),
+        *network_files(),
+        *array_files(),
+    ]

@@ -66,6 +66,10 @@ GUESSES = {
     "lock_in_xy.csv": "columns 'x', 'y' not used",
     "cells_with_units.csv": "'Magnitude' has no unit and is read in dB",
     "per_cent.csv": "'Coherence (%)' is read in per cent",
+    "whole.csv": "numbers such as 1,000 are read in thousands",
+    "whole_de.csv": "'|H| [%]' is read in per cent",
+    "volts.csv": "the magnitude is 'CH2 Amplitude (V)' over 'CH1 Amplitude (V)'",
+    "spectra.csv": "the response is 'Accel' over 'Force'",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 
@@ -91,6 +95,11 @@ AMBIGUOUS = {
     "parts.csv": (rows(F, RE, IM).encode(), "a.csv:1:1".replace("a", "parts"), H),
     "level.txt": (rows(F, DB, DEG, sep="\t").encode(), "level.txt:1:1", H),
     "words.csv": (("Time [s],A [V],B [V]\n" + rows(F, RE, IM)).encode(), "words.csv:2:1", H),
+    "positive.csv": (
+        ("Hz,Magnitude,Phase\n" + rows(F, DB + 74, DEG)).encode(),
+        "fit dB as well",
+        10**3.7 * H,
+    ),
     "matrix.npz": (npz(m=np.column_stack([F, RE, IM])), "real columns without names", H),
     "odd.npz": (npz(m=np.column_stack([ODD, H])), "in Hz or in rad/s", H),
     "axis.npz": (npz(x=ODD, y=H), "in Hz or in rad/s", H),
@@ -109,6 +118,12 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert option, (name, caught.value.diagnostics[0].hint)
         (found,) = read_measurement(path, option[1])
         assert found.values == pytest.approx(values, rel=1e-3), name
+
+
+def test_a_cross_spectrum_among_arrays_is_no_response(tmp_path):
+    (tmp_path / "a.npz").write_bytes(npz(f=F, Pxy=H, Pxx=abs(H)))
+    with pytest.raises(DataError, match=r"has no array values; it has f \(99\), Pxy \(99\)"):
+        read_measurement(tmp_path / "a.npz")
 
 
 def test_responses_are_called_what_stands_in_the_brackets_of_their_columns(tmp_path):
@@ -137,6 +152,11 @@ HOSTILE = {
     "no unit anyone knows": ("f [furlong],re,im\n1,2,3\n2,3,4\n3,4,5\n", "SF602", "a.csv:1:1"),
     "a long line": ("f,re,im\n" + "1," * 20000 + "\n", "SF601", "a.csv:2:1"),
     "commas twice": ("f,re,im\n1,5,2,5,3,5\n2,5,2,5,3,5\n3,5,2,5,3,5\n", "SF602", "a.csv:2:1"),
+    "a square": ("f [Hz],|H|^2,phase [deg]\n1,5,2\n2,5,2\n3,5,2\n", "SF602", "a.csv:1:8"),
+    "a natural logarithm": ("f [Hz],ln|H|,phase [deg]\n1,5,2\n2,5,2\n3,5,2\n", "SF602", "a.csv:1:8"),
+    "a logarithm": ("ln(f),Gain (dB),phase [deg]\n1,5,2\n2,5,2\n3,5,2\n", "SF602", "a.csv:1:1"),
+    "a ratio of frequencies": ("f/f0,Gain (dB),phase [deg]\n1,5,2\n2,5,2\n3,5,2\n", "SF602", "a.csv:1:1"),
+    "nepers": ("f [Hz],Gain (Np),phase [deg]\n1,5,2\n2,5,2\n3,5,2\n", "SF602", "a.csv:1:8"),
     "a counter": (",re,im\n0,1,2\n1,2,3\n2,1,2\n", "SF602", "a.csv:1:1"),
     "cross spectrum": ("f,Re(Sxy),Im(Sxy)\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:3"),
     "two axes": ("f,x,y\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:1"),
