@@ -33,6 +33,7 @@ from symflex.equations.evaluate import (
     transfer_of,
     without_squares,
     written_denominator,
+    written_poles,
 )
 from symflex.equations.radicals import radicals_of
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
@@ -207,6 +208,7 @@ class _Assembly:
     lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
+    poles: dict[str, Factored] = field(default_factory=dict)  # of blocks, before anything cancels
 
     def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -444,11 +446,13 @@ class _Assembly:
             if self.distributed is None and block.name in self._delayed:
                 continue  # over the ring without kernels there is no value for it
             try:
+                values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
                 if block.block is not None:
-                    values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
                     found[block.name] = self._radicals.tidy(transfer_of(block, values))
                 elif self.nested is not None:
                     found[block.name] = self._radicals.tidy(self.nested(block, self.ring))
+                if block.name in found:
+                    self.poles[block.name] = written_poles(block, values, evaluator, self.poles)
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
                 found[block.name] = Factored.number(self.ring, 1)
@@ -650,7 +654,7 @@ class _Assembly:
     def _cancelled(self, expression: Expression, form: LinearForm, evaluator: ExactEvaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""
         left = common_denominator(self.ring, form.coefficients)
-        return least_common_multiple(left, (written_denominator(expression, evaluator),)) / left
+        return least_common_multiple(left, (written_denominator(expression, evaluator, self.poles),)) / left
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:

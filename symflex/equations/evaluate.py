@@ -43,7 +43,7 @@ from symflex.expressions import (
     names_among,
     substitute,
 )
-from symflex.library.blocks import StateSpaceBlock
+from symflex.library.blocks import StateSpaceBlock, TransferFunctionBlock
 from symflex.library.elements import LinearForm, Variable
 from symflex.model.linearity import integer_exponent
 
@@ -387,33 +387,51 @@ def _product(
     return left * right
 
 
-def written_denominator(expression: Expression, evaluator: ExactEvaluator) -> Factored:
+def written_poles(
+    block: PlacedBlock,
+    values: Mapping[str, Factored],
+    evaluator: ExactEvaluator,
+    poles: Mapping[str, Factored],
+) -> Factored:
+    """Return the denominator in s of a block before anything cancels, from ``values`` as in transfer_of."""
+    if isinstance(block.block, StateSpaceBlock):
+        return _in_s(block.block.characteristic(values))
+    if isinstance(block.block, TransferFunctionBlock):
+        given = dict(block.values)
+        return written_denominator(Quotient(given["num"], given["den"]), evaluator, poles)
+    return _in_s(evaluator.blocks[block.name].denominator())
+
+
+def written_denominator(
+    expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]
+) -> Factored:
     """Return the denominator in s of an expression before anything cancels.
 
     A product of blocks has the poles of every factor, also where a zero of the next one cancels them; a sum
-    needs those of each term once. The expression has been evaluated without error before.
+    needs those of each term once. The expression has been evaluated without error before; ``poles`` are the
+    denominators of blocks.
     """
     one = Factored.number(evaluator.ring, 1)
     match expression:
         case Name(name) if name in evaluator.blocks and evaluator.is_block(expression):
-            return _in_s(evaluator.blocks[name].denominator())
+            return poles.get(name, one)
         case Negative(operand):
-            return written_denominator(operand, evaluator)
+            return written_denominator(operand, evaluator, poles)
         case Product(factors):
             result = one
             for factor in factors:
-                result = result * written_denominator(factor, evaluator)
+                result = result * written_denominator(factor, evaluator, poles)
             return result
         case Quotient(numerator, denominator):
             below = _in_s(evaluator.constant(denominator).numerator())
-            return written_denominator(numerator, evaluator) * below
+            return written_denominator(numerator, evaluator, poles) * below
         case Power(base, exponent):
             n = int(evaluator.constant(exponent).unit)
             if n >= 0:
-                return written_denominator(base, evaluator) ** n
+                return written_denominator(base, evaluator, poles) ** n
             return _in_s(evaluator.constant(base).numerator()) ** -n
         case Sum(terms):
-            return least_common_multiple(one, (written_denominator(t, evaluator) for t in terms))
+            return least_common_multiple(one, (written_denominator(t, evaluator, poles) for t in terms))
     return one
 
 

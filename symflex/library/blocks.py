@@ -106,15 +106,22 @@ class StateSpaceBlock(Block):
         ParameterPort("D", "", "a number", "0"),
     )
 
+    def characteristic(self, values: Mapping[str, Factored]) -> Factored:
+        """Return ``det(s - A)`` at values of s and entries."""
+        return _characteristic(values["s"], _matrix(values))
+
     def transfer(self, values: Mapping[str, Factored]) -> Factored:
         """Return the transfer function from the only input to the only output, at values of s and entries."""
-        s = values["s"]
-        places = range(1, isqrt(sum(name.startswith("A[") for name in values)) + 1)
-        a = [[values[f"A[{i}][{j}]"] for j in places] for i in places]
-        b, c = ([values[f"{name}[{i}]"] for i in places] for name in "BC")
+        s, a = values["s"], _matrix(values)
+        b, c = ([values[f"{name}[{i + 1}]"] for i in range(len(a))] for name in "BC")
         below = _characteristic(s, a)
         closed = [[x - y * z for x, z in zip(row, c, strict=True)] for row, y in zip(a, b, strict=True)]
         return (_characteristic(s, closed) - below) / below + values["D"]
+
+
+def _matrix(values: Mapping[str, Factored]) -> list[list[Factored]]:
+    places = range(1, isqrt(sum(name.startswith("A[") for name in values)) + 1)
+    return [[values[f"A[{i}][{j}]"] for j in places] for i in places]
 
 
 def _characteristic(s: Factored, matrix: Sequence[Sequence[Factored]]) -> Factored:

@@ -65,9 +65,12 @@ def _unused_names(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagno
         ("signal", ((x.name, (x.name,), x.span) for x in model.signals)),
         ("field", ((f.name, f.unknowns, f.span) for f in model.fields)),
     )
+    # Conditions join two fields, whichever of them lists these.
+    joined = {x for f in model.fields for n in f.unknowns for x in used.get(n, ()) if x != f.name}
     for kind, items in groups:
         for name, borne, span in items:
-            if not {owner for n in borne for owner in used.get(n, ())} - {name}:
+            users = {owner for n in borne for owner in used.get(n, ())} - {name}
+            if not users and not (kind == "field" and name in joined):
                 yield unused_name(kind, name, span)
 
 

@@ -93,6 +93,9 @@ ASIDE_OF_AXIS = 0.1
 HEIGHTS = np.linspace(0.02, 0.98, 5)
 """Heights at which it is, in bands."""
 
+AT_A_POLE = 1e-14
+"""Relative distance from a pole's frequency within which infinity may stand for the value: some roundings."""
+
 TINY = 1e-307
 """What is smaller has no more digits in double precision."""
 
@@ -562,9 +565,11 @@ class _Reference:
     size: arb
 
     def error_of(self, computed: complex) -> float:
-        if not isfinite(computed.real) or not isfinite(computed.imag):
-            return inf
         with precision(self.bits):
+            if not isfinite(computed.real) or not isfinite(computed.imag):
+                # The reciprocal's error, where the nearest double to a pole's frequency makes it zero.
+                vanishing = self.value.abs_upper() / self.size
+                return float(vanishing.upper()) if vanishing < AT_A_POLE else inf
             distance = (acb(computed.real, computed.imag) - self.value).abs_upper()
             if distance < TINY:
                 return 0.0

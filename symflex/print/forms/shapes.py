@@ -477,10 +477,12 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
         return num, den
     tried = [product_of([own, *(power(b, n) for b, n in powers.items())])]
     sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
-    # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2.
+    # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
-    if inside is not None and scale != 1 and (spread := _scaled(inside, 1 / scale)) is not None:
-        tried.append(product_of([spread if b == inside else power(b, n) for b, n in powers.items()]))
+    may_spread = inside is not None and (len({*names(inside)}) > 1 or {*names(inside)} == {S})
+    if may_spread and scale != 1 and (spread := _scaled(inside, 1 / abs(scale))) is not None:
+        whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
+        tried.append(negative(whole) if scale < 0 else whole)
     new = min(tried, key=length), product_of([power(b, n) for b, n in divisors.items()])
     return new if length(*new) <= MORE * length(num, den) else (num, den)
 
@@ -500,6 +502,7 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         return (
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
+            has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5
             sum(is_wanted),
             is_whole[0],
             sum(is_whole),

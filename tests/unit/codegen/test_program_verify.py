@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import sqrt
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from symflex.codegen.program.build import available_forms, build_program
 from symflex.codegen.program.nodes import Multiply, RealNumber, lumped
 from symflex.codegen.program.verify import (
     DEFAULT_BAND,
+    EnclosedValues,
     References,
     Verification,
     _roots,
@@ -25,6 +27,7 @@ from symflex.codegen.program.verify import (
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 BAND = (Fraction(1, 10), Fraction(1000))
+EPSILON = 2.0**-52
 
 
 def transfer_functions(name):
@@ -65,6 +68,22 @@ def test_a_value_that_is_not_finite_is_an_infinite_error(two_mass):
     bound = pipeline.bind(two_mass)
     program = build_program(two_mass)
     assert References.over(bound, BAND).worst_error(spoiled(spoiled(program, 10**300), 10**300)) == np.inf
+
+
+def test_infinity_at_the_double_nearest_to_a_pole_is_an_error_of_rounding_and_no_overflow():
+    text = """symflex = 1
+    inputs   = { F = { force = "x" } }
+    outputs  = { X = "x" }
+    [elements]
+    m = { type = "mass", at = "x", m = 1 }
+    k = { type = "spring", between = ["x", "ground"], k = KK }"""
+    for stiffness in (k for k in range(2, 40) if sqrt(k) ** 2 == k and sqrt(k) % 1):
+        (tf,) = pipeline.derive_all(pipeline.loads(text.replace("KK", str(stiffness))))
+        omega = sqrt(stiffness)  # irrational, but in doubles k - omega^2 is 0
+        values = EnclosedValues(pipeline.bind(tf))
+        assert References(values, np.array([1j * omega])).worst_of([complex("inf")]) < 2 * EPSILON
+        # A thousandth beside the pole the same is an overflow.
+        assert References(values, np.array([1.001j * omega])).worst_of([complex("inf")]) == np.inf
 
 
 def test_samples_stand_at_every_pole_and_zero(two_mass):

@@ -12,9 +12,9 @@ B = { type = "tf", num = "s + 2", den = "s + 3" }
 """
 
 
-def hidden(output="y", signals="", expression="y"):
+def hidden(output="y", signals="", expression="y", blocks=""):
     text = f"""symflex = 1
-[blocks]{BLOCKS}
+[blocks]{BLOCKS}{blocks}
 [signals]
 {signals}
 [inputs]
@@ -44,6 +44,19 @@ def test_a_pole_cancelled_between_two_blocks_of_one_product_is_hidden():
     tf, found = hidden(signals='y = "A*B*r"')
     assert tf.order == (1, 1)
     assert found == [("s + 2", 1)]
+
+
+def test_a_pole_cancelled_within_a_block_is_hidden():
+    # x_1' = x_2, x_2' = x_1 + u and y = x_2 - x_1 = u/(s + 1): the state's motion exp(t) is unobservable.
+    for block in (
+        '{ type = "tf", num = "s - 1", den = "(s - 1)*(s + 1)" }',
+        '{ type = "tf", num = "s - 1", den = "s^2 - 1" }',
+        '{ type = "tf", num = "(s - 1)*P", den = "s + 1" }',
+        '{ type = "ss", A = [[0, 1], [1, 0]], B = [0, 1], C = [-1, 1] }',
+        '{ type = "ss", A = [[-1, 0], [5, 1]], B = [1, 0], C = [1, 0] }',
+    ):
+        tf, found = hidden(signals='y = "Q*r"', blocks=f"Q = {block}")
+        assert (tf.order, found) == ((0, 1), [("s - 1", 1)]), block
 
 
 def test_a_pole_cancelled_in_an_output_is_hidden_there():

@@ -83,6 +83,20 @@ def test_a_name_that_nothing_uses_is_told():
         assert told(**{part: line}) == [("SF651", name)], (part, line)
 
 
+def test_a_field_whose_conditions_join_it_to_another_is_used():
+    # A string that is pushed where two parts meet; an output reads the first part only.
+    parts = """[fields.v]
+domain = ["0 m", "1 m"]
+equation = "v'' = q*v"
+conditions = ["v(0) = 0", "v(1) = w(1)", "w'(1) - v'(1) = k*x"]
+[fields.w]
+domain = ["1 m", "2 m"]
+equation = "w'' = q*w"
+conditions = ["w(2) = 0"]"""
+    for shown in "vw":
+        assert told(parameters='q = "3 1/m^2"', outputs=f'Y = "{shown}(1)"', sections=parts) == [], shown
+
+
 def test_of_many_warnings_the_first_hundred_are_told_and_the_others_counted():
     found = warned_by(parameters="\n".join(f"p_{i} = {i + 1}" for i in range(130)))
     assert [w.span.text for w in found[:100]] == [f"p_{i}" for i in range(100)]

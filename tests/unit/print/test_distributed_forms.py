@@ -208,6 +208,31 @@ def test_names_of_the_hyperbolic_form_are_explained_in_lines(fact):
     assert lines(case(name, pair), "hyperbolic") == expected
 
 
+def test_multiples_of_an_argument_keep_whole_numbers_beside_typed_decimals():
+    # A string pushed at 0.3 l: y there is sinh(3 q) sinh(7 q)/(N gamma sinh(10 q)), with q = gamma l/10;
+    # cosh(5 q) = K_0 (16 K_0^4 - 20 K_0^2 + 5) in K_0 = cosh(q), by Chebyshev.
+    (tf,) = pipeline.derive_all(
+        pipeline.loads("""symflex = 1
+parameters = { N = {}, mu = {}, l = {} }
+[fields.v]
+domain = ["0", "0.3*l"]
+equation = "N*v'' = mu*s^2*v"
+conditions = ["v(0) = 0"]
+[fields.w]
+domain = ["0.3*l", "l"]
+equation = "N*w'' = mu*s^2*w"
+conditions = ["w(l) = 0", "w(0.3*l) = v(0.3*l)", "N*(v'(0.3*l) - w'(0.3*l)) = F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "v(0.3*l)"
+""")
+    )
+    found = print_form(tf, "krylov")
+    assert "16*K_0^4 - 20*K_0^2 + 5" in format_expression(found.den)
+    assert "4*K_0^2 - 1" in format_expression(found.num)  # sinh(3 q) = K_1 gamma (4 K_0^2 - 1)
+
+
 def test_the_left_side_of_the_frequency_form_alone_is_a_function_of_the_frequency():
     tf = case("pinned_pinned", "theta_near/tau")
     form = print_form(tf, "frequency")

@@ -391,6 +391,8 @@ SHAPES = {
         "1/(R_1*R_2*C_1*C_2*s^2 + C_2*(R_1 + R_2)*s + 1)"),
     "a loop of typed decimals begins with s^2": (
         "", "(0.2*s + 2)*u/((s^2 + 0.6*s + 4) + (0.2*s + 2))", "(0.2*s + 2)/(s^2 + 0.8*s + 6)"),
+    "a minus sign stands in front of all terms": (
+        "a = {}", "-2*(a*s + 0.25)*u/(s^2 + 0.1*s + 1)", "-(2*a*s + 0.5)/(s^2 + 0.1*s + 1)"),
     "two terms with a minus of three": (
         "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b - a + c)*s + 1)"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
