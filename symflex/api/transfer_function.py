@@ -28,7 +28,7 @@ from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
 from symflex.state_space import not_rational
 from symflex.transfer import BoundNested, bind_nested
-from symflex.transfer.balls import FIRST_BITS
+from symflex.transfer.double_value import FIRST_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -480,7 +480,12 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
     may_spread = inside is not None and (len({*names(inside)}) > 1 or {*names(inside)} == {S})
-    if may_spread and scale != 1 and (spread := _scaled(inside, 1 / abs(scale))) is not None:
+    if (
+        inside is not None
+        and may_spread
+        and scale != 1
+        and (spread := _scaled(inside, 1 / abs(scale))) is not None
+    ):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
         tried.append(negative(whole) if scale < 0 else whole)
     new = min(tried, key=length), product_of([power(b, n) for b, n in divisors.items()])
