@@ -5,7 +5,7 @@ Input: a bound transfer function, the name of an input, times. Output: an :class
 Ways are asked in the order of :data:`WAYS`, and the first that answers is taken. What others refused for is
 told of a response that is only estimated:
 
-    a servo about a beam without loss    lossless modes: waves lose energy
+    a servo about a beam without loss    lossless modes: something loses energy, or waves have two wavenumbers
                                          lossy modes: some waves have no material loss
                                          passive modes: something in the model may supply energy
                                          estimated modes answer

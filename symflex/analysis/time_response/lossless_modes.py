@@ -278,7 +278,7 @@ def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
         return Refused("poles may be multiple")
     found = lossless_function(function, BITS)
     if found is None:
-        return Refused("waves lose energy")
+        return Refused("something loses energy, or waves have two wavenumbers")
     enclosures = found.enclosures
     if len(enclosures.rates) != 1 or enclosures.degrees[0] != 1:
         return Refused("waves are of other kinds than bending, or of several lengths")
