@@ -232,6 +232,9 @@ def locate_distributed(
     reason, code = None, None
     try:
         searched.find()
+        if not with_zeros and searched.may_be_removable():
+            searched = _Searched(bound, where, digits)
+            searched.find()
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
@@ -315,6 +318,11 @@ class _Searched:
         self.sides.append(hidden)
         _find((hidden,), within)
         self._hide(shared)
+
+    def may_be_removable(self) -> bool:
+        """Tell whether a pole lies where wavenumbers vanish or meet: a zero may lie there, too."""
+        degenerate = [point for point in _degenerate_points(self.bound) if not point.is_zero]
+        return any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate)
 
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""
