@@ -232,8 +232,9 @@ def locate_distributed(
     reason, code = None, None
     try:
         searched.find()
-        if not with_zeros and searched.may_cancel():
-            return locate_distributed(bound, region, digits, judged=judged)
+        if not with_zeros and searched.may_be_removable():
+            searched = _Searched(bound, where, digits)
+            searched.find()
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
@@ -318,10 +319,10 @@ class _Searched:
         _find((hidden,), within)
         self._hide(shared)
 
-    def may_cancel(self) -> bool:
-        """Tell whether wavenumbers vanish or meet at a root: the numerator may have it, too."""
-        points = degenerate_points(self.bound)
-        return any(overlap(root, point) for side in self._pair[:1] for root in side.roots for point in points)
+    def may_be_removable(self) -> bool:
+        """Tell whether a pole lies where wavenumbers vanish or meet: a zero may lie there, too."""
+        degenerate = [point for point in degenerate_points(self.bound) if not point.is_zero]
+        return any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate)
 
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""

@@ -65,11 +65,7 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
 
 def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, count: int) -> PartialSum:
     """Return the sum over so many modes."""
-    try:
-        rings, parts = _parts(bound, integrations, count, with_zeros=False)
-    except UncertifiedError:
-        # A zero may lie on a root of the denominator, as where a wavenumber vanishes in both.
-        rings, parts = _parts(bound, integrations, count, with_zeros=True)
+    rings, parts = _parts(bound, integrations, count)
     with precision(BITS):
         origin = at_origin(expand_at_zero(bound, integrations - 1, EFFORT.pole_digits), integrations)
         terms = [term_of(part, integrations) for part in parts]
@@ -100,13 +96,13 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
 
 
 def _parts(
-    bound: AnyBoundFunction, integrations: int, count: int, *, with_zeros: bool
+    bound: AnyBoundFunction, integrations: int, count: int
 ) -> tuple[list[tuple[Annulus, list[ExponentialTerm]]], tuple[PrincipalPart, ...]]:
     """Return the rings around poles close to one another, with their sums, and the residues at the others.
 
     Zeros matter in residues alone; to find them takes as long as to find the poles.
     """
-    located = locate(bound, Modes(count), EFFORT.pole_digits, with_zeros=with_zeros).complete()
+    located = locate(bound, Modes(count), EFFORT.pole_digits, with_zeros=False).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     rings = _rings(bound, poles, integrations)
     apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _ in rings)]

@@ -479,13 +479,8 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
-    may_spread = inside is not None and (len({*names(inside)}) > 1 or {*names(inside)} == {S})
-    if (
-        inside is not None
-        and may_spread
-        and scale != 1
-        and (spread := _scaled(inside, 1 / abs(scale))) is not None
-    ):
+    spread = None if inside is None or scale == 1 else _scaled(inside, 1 / abs(scale))
+    if inside is not None and spread is not None and ({*names(inside)} == {S} or len({*names(inside)}) > 1):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
         tried.append(negative(whole) if scale < 0 else whole)
     new = min(tried, key=length), product_of([power(b, n) for b, n in divisors.items()])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from math import pi, sqrt
 from types import SimpleNamespace
 
@@ -79,6 +80,27 @@ def test_without_zeros_the_poles_are_those_of_the_textbook():
     omega = sorted(float(r.im) for r in found.all_poles if r.im > 0)
     assert omega == pytest.approx([1.076873986311771, 3.6435971674254], rel=1e-8)
     assert locate(bound(ROD), Modes(2)).zeros
+
+
+def test_without_zeros_a_removable_point_is_no_pole():
+    # A mass between two strings on a damped foundation, s^2 + 2 gamma coth(gamma) = 0. Where gamma vanishes,
+    # at s = -0.1 +- j sqrt(0.99), this is s^2 + 2 and no pole.
+    half = 'type = "string", N = "N", rhoA = "mu", l = "L/2", c_f = "c", k_f = "k"'
+    source = bound(f"""symflex = 1
+parameters = {{ N = 1, mu = 1, L = 2, c = 0.2, k = 1 }}
+elements.a = {{ {half}, between = ["ground", "x"] }}
+elements.b = {{ {half}, between = ["x", "ground"] }}
+elements.m = {{ type = "mass", at = "x", m = 1 }}
+inputs.F = {{ force = "x" }}
+outputs.X = "x"
+""")
+    found = locate(source, Modes(3), with_zeros=False)
+    assert found.poles and found.certificate.certified
+    for root in found.poles:
+        s = complex(root.re, root.im)
+        gamma = cmath.sqrt(s * s + s / 5 + 1)
+        assert abs(s * s * cmath.sinh(gamma) + 2 * gamma * cmath.cosh(gamma)) < 1e-9
+        assert abs(gamma) > 0.1
 
 
 def test_an_engine_heeds_its_budget():
