@@ -27,7 +27,14 @@ from symflex.data.fitting.order import (
     with_own_noise,
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase, not_judged
-from symflex.data.fitting.problem import FitProblem, FittedLines, fit_problem, with_noise, with_rough_noise
+from symflex.data.fitting.problem import (
+    FitProblem,
+    FittedLines,
+    fit_problem,
+    rounding,
+    with_noise,
+    with_rough_noise,
+)
 from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
@@ -44,6 +51,8 @@ FEWEST_LINES = 8
 """Of a response that is fitted."""
 WEAK = 0.5
 """Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
+WEAK_ROUNDED, MOST_ROUNDED = 0.2, 0.25
+"""The same, and the share of the noise, where numbers of few digits make it: steps look like resonances."""
 LARGE = 2.0
 """Sum of squares per degree of freedom from which coherence does not explain the residual."""
 MEDIAN = 1.177
@@ -388,16 +397,28 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together: the model lacks something")
+    weak, why = (WEAK_ROUNDED, ", and the data have few digits") if _is_rounded(fit) else (WEAK, "")
     for i in np.flatnonzero(fit.modes).tolist():
-        if not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
+        if not errors.zeta_p[i] <= weak * found.zeta_p[i]:
             where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
-            reasons.append(f"the damping of {where} is lost in its error")
+            reasons.append(f"the damping of {where} is lost in its error{why}")
     if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(found.gain)):
         is_beyond = (found.omega_z > fit.problem.band[1]) & (found.zeta_z < 0)
         is_lag = not fit.problem.free.delay and bool(np.any(found.real_z < 0) or np.any(is_beyond))
         advice = ": zeros on the right above the band may stand for a dead time, try --delay"
         reasons.append("the gain is lost in its error" + advice * is_lag)
     return tuple(reasons)
+
+
+def _is_rounded(fit: ResonanceFit) -> bool:
+    """Tell whether the noise of a response is that its numbers have few digits: it is not random."""
+    for r, line in enumerate(fit.problem.lines):
+        steps = rounding(line, fit.problem.values(fit.resonances, r)).sum(axis=0)
+        if steps.size and line.deviation is not None:
+            noise = line.deviation * np.abs(line.measured.values)
+            if np.median(steps / noise**2) > MOST_ROUNDED:
+                return True
+    return False
 
 
 def _is_drowned(fit: ResonanceFit) -> bool:

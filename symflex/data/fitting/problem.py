@@ -307,7 +307,7 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
         deviation = line.deviation
         if deviation is None or line.measured.coherence is None:
             power = np.abs(model - line.measured.values) ** 2 / 2
-            variance = _variance(power, line.omega, np.abs(model), _rounding(line, model)) / freedom
+            variance = _variance(power, line.omega, np.abs(model), rounding(line, model)) / freedom
             size = np.abs(line.measured.values)
             deviation = np.maximum(np.sqrt(variance) / size, LEAST)
         lines.append(replace(line, deviation=deviation))
@@ -318,7 +318,7 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
     )
 
 
-def _rounding(line: FittedLines, model: Complex) -> Real:
+def rounding(line: FittedLines, model: Complex) -> Real:
     """Return the variance of each part that rounded frequencies, and rounded values, have at most.
 
     Frequencies may be rounded in Hz or in rad/s, values in any of the ways in which files write them.

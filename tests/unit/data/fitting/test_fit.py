@@ -94,6 +94,17 @@ def test_rounded_frequencies_and_levels_are_not_taken_for_poles():
     assert abs(fit.resonances.zeta_p[0] - 0.02) < 3 * errors.zeta_p[0] < 1e-4
 
 
+def test_a_resonance_that_steps_of_rounded_levels_look_like_is_called_poor():
+    # One resonance at 25 Hz, written with 0.1 dB and whole degrees; another at 8.7 Hz fits the steps.
+    frequency = np.linspace(5, 50, 130)
+    s, w = 2j * np.pi * frequency, 50 * np.pi
+    exact = w**2 / (s**2 + 0.022 * w * s + w**2)
+    level, angle = np.round(20 * np.log10(np.abs(exact)), 1), np.round(np.degrees(np.angle(exact)))
+    data = MeasuredResponse("y/u", frequency, 10 ** (level / 20) * np.exp(1j * np.radians(angle)))
+    fit = fit_resonances([data])
+    assert fit.modes.sum() == 1 or any("the data have few digits" in reason for reason in fit.poor)
+
+
 def test_rounded_phases_of_a_double_integrator_show_no_zero_far_below_the_band():
     lines = np.geomspace(1.0, 100.0, 401)
     axis = System(np.array([55.0]), np.array([0.02]), np.array([40.0]), np.array([0.02]))
