@@ -17,11 +17,11 @@ from symflex.roots.counting.winding import Cell
 from symflex.roots.locate import (
     MATCHING_ROUNDS,
     _chosen,
-    _degenerate_points,
     _exclusion,
     _find,
     _match,
     default_region,
+    degenerate_points,
 )
 from tests.unit.roots.distributed_models import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 from tests.unit.roots.stand_ins import places, root
@@ -163,7 +163,7 @@ def test_wavenumbers_vanish_where_their_law_does():
         (ON_A_FOUNDATION, [(0, -1, 1), (0, 1, 1)]),
         (KELVIN_VOIGT, [(0, 0, 2)]),
     ):
-        assert sorted(places(_degenerate_points(bound(text)))) == points
+        assert sorted(places(degenerate_points(bound(text)))) == points
 
 
 def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point():

@@ -17,7 +17,7 @@ from symflex.roots.counting.winding import Cell
 from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
-from symflex.roots.locate import _degenerate_points, _Searched, locate_distributed
+from symflex.roots.locate import _Searched, degenerate_points, locate_distributed
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import NONE_ON_AXIS, HiddenRoot
 from symflex.transfer import HiddenFactor
@@ -504,13 +504,13 @@ def test_a_passive_model_is_stable_without_a_search_unless_it_is_another_functio
 
 
 def test_to_the_right_where_wavenumbers_meet_there_may_be_no_pole(world, monkeypatch):
-    monkeypatch.setattr(room, "_degenerate_points", lambda _: [root(2, 0), root(0, 0)])
+    monkeypatch.setattr(room, "degenerate_points", lambda _: [root(2, 0), root(0, 0)])
     world.beyond["poles"] = RightHalfPlane((root(2, 0), root(3, 0), root(0, 0)))
     shown = world.locate()
     assert places(shown.unstable) == [(3, 0, 1)]
     assert (shown.verdict.found, shown.verdict.right, shown.verdict.reason) == (1, None, DEGENERATE)
     # To the left nothing depends on it.
-    monkeypatch.setattr(room, "_degenerate_points", lambda _: [root(-2, 0)])
+    monkeypatch.setattr(room, "degenerate_points", lambda _: [root(-2, 0)])
     world.beyond["poles"] = RightHalfPlane((root(-2, 0),))
     assert world.locate().verdict.word == "stable"
 
@@ -523,7 +523,7 @@ def test_hidden_modes_known_are_not_told_again_for_being_unstable(world):
 
 def test_wavenumbers_of_one_or_two_waves_vanish_or_meet():
     # gamma^2 = (s + 1)(s + 3)
-    assert sorted(places(_degenerate_points(bound(LINE)))) == [(-3, 0, 1), (-1, 0, 1)]
+    assert sorted(places(degenerate_points(bound(LINE)))) == [(-3, 0, 1), (-1, 0, 1)]
     # q^4 - (s + 5) q^2 + s + 2: none at -2, opposite at -5, and both the same where (s + 3)^2 = -8.
     text = """
 symflex = 1
@@ -539,10 +539,10 @@ u = { }
 [outputs]
 y = "w(l/2)"
 """
-    found = [(round(re), round(im, 3), times) for re, im, times in places(_degenerate_points(bound(text)))]
+    found = [(round(re), round(im, 3), times) for re, im, times in places(degenerate_points(bound(text)))]
     assert sorted(found) == [(-5, 0, 1), (-3, -2.828, 1), (-3, 2.828, 1), (-2, 0, 1)]
     # (q^2 - 1)(q^2 - s - 4): none at -4, and both the same at -3.
-    found = places(_degenerate_points(bound(text.replace("s*T + 2", "s*T + 4"))))
+    found = places(degenerate_points(bound(text.replace("s*T + 2", "s*T + 4"))))
     assert {(round(re), im) for re, im, _ in found} == {(-4, 0), (-3, 0)}
 
 
