@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from symflex import pipeline
 from symflex.api.analyses import Analyses
@@ -168,6 +168,9 @@ class _Derived:
 
     def __str__(self) -> str:
         return str(self._shortest)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _derive_again, (*_named(self.exact), isinstance(self, NestedTransferFunction))
 
     def __call__(self, *_: object) -> NoReturn:
         """Say that only numbers have a value."""
@@ -377,6 +380,9 @@ class BoundTransferFunction(Toolboxes, Analyses):
     def _expanded(self) -> transfer_room.BoundTransferFunction:
         return self.bound
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _derive_again, (*_named(self.bound.source), False, dict(self.bound.values))
+
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
 
@@ -505,6 +511,9 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
         """Return the value at s [rad/s], a number or an array, to double precision."""
         return _values(self.source.model, lambda p: BoundNested.__call__(self, p, bits), s)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _derive_again, (*_named(self.source), True, dict(self.values))
+
     @property
     def bound(self) -> BoundNestedTransferFunction:
         """The function itself, which is already bound."""
@@ -521,6 +530,20 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
             raise not_rational(self.name)
         numbered = with_numbers(model, (), dict(self.values), in_kernels=True)
         return pipeline.derive_bound(numbered, [(self.source.output.name, self.source.input.name)])[0]
+
+
+def _named(source: transfer_room.AnyTransferFunction) -> tuple[Model, str, str]:
+    """Return what a copy, or another process, derives a function from: its ring cannot be pickled."""
+    return source.model, source.output.name, source.input.name
+
+
+def _derive_again(model: Model, output: str, given: str, is_nested: bool, values: Any = None) -> object:  # noqa: ANN401 (what pickle keeps)
+    found: NestedTransferFunction | TransferFunction
+    if is_nested:
+        found = NestedTransferFunction(pipeline.derive_nested(model, [(output, given)])[0])
+    else:
+        found = TransferFunction(pipeline.derive_all(model, [(output, given)])[0])
+    return found if values is None else found.bind(**values)
 
 
 def _values(

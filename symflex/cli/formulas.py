@@ -279,6 +279,8 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
 
         if given.target not in ("c", "numpy"):
             raise UsageError(Diagnostic("SF902", "--sample is for --to state-space, c and numpy"))
+        if given.form or given.up_to is not None:
+            raise UsageError(Diagnostic("SF902", "--form and --up-to are for code without --sample"))
         return DifferenceExporter(given.target, sampling, is_direct=given.is_direct)
     return exporter
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 import runpy
 from decimal import Decimal
 from fractions import Fraction
@@ -251,6 +253,18 @@ def test_a_value_may_be_any_number_or_a_quantity(colocated):
     for wrong in (mpmath.mpf(3), 1j, None, [3, 4], np.nan, sympy.Symbol("k")):
         assert refusal(colocated.bind, k=wrong) == "UsageError SF902", wrong
         assert refusal(symflex.loads, TEXT, values={"k": wrong}) == "UsageError SF902", wrong
+
+
+def test_functions_can_be_pickled_and_copied(model):
+    s = 3 + 40j
+    undamped = (M_2 * s**2 + K) / (s**2 * (M_1 * M_2 * s**2 + K * (M_1 + M_2)))  # m_1 and m_2 on a spring
+    unbound = model.transfer_function("X_act", "F")
+    for function in (unbound, model.nested("X_act", "F")):
+        for again in (pickle.loads(pickle.dumps(function)), copy.deepcopy(function)):
+            assert (repr(again), again.num) == (repr(function), function.num)
+        bound = function.bind(m_2="20 kg", b=0)
+        again = pickle.loads(pickle.dumps(bound))
+        assert again(s) == pytest.approx(undamped, rel=1e-13)
 
 
 def test_bound_values_replace_the_declared_ones(tip):

@@ -197,6 +197,8 @@ def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
         (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
         (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "to one transfer function"),
         (["--to", "c", "--sample", "1ms", "--minimal"], "--minimal is for"),
+        (["--to", "numpy", "--sample", "1ms", "--form", "band"], "without --sample"),
+        (["--to", "c", "--sample", "1ms", "--up-to", "1 kHz"], "without --sample"),
         (["--to", "c", "--sample", "0"], "positive time"),
         (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kHz"], "that is 500 Hz"),
         (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kg"], "--prewarp takes"),
