@@ -84,7 +84,7 @@ SPARSE_LIMIT = 500_000
 
 def assemble(
     model: Model,
-    nested: Callable[[PlacedBlock, Ring], Factored] | None = None,
+    nested: Callable[[PlacedBlock, Ring], tuple[Factored, Factored]] | None = None,
     *,
     is_nameless: bool = False,
     is_sparse: bool = False,
@@ -93,15 +93,15 @@ def assemble(
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
-    ``nested`` returns the transfer function of a ``model`` block over a given ring. With ``is_nameless`` no
-    wavenumber has a name: a quotient with named and nameless ones has no form in which what cancels is seen.
-    With ``is_sparse`` the ring has any number of names, nothing is expanded, and rows are not cleared of
-    denominators; a distributed model has to be nameless, too. With ``is_cut`` states at points
-    along x are unknowns, and what relates them, the laws of ``continua``, is not among the rows. With
-    ``is_followed`` uniform line elements and fields beside others that taper are followed along x as those
-    are, by fundamental matrices. Raises ModelError: SF224 division by zero, SF910 a function of s; with
-    positions, all at once; BudgetError: SF502 when there are more names or more unknowns than can be computed
-    with exactly.
+    ``nested`` returns the transfer function of a ``model`` block, and what cancelled in it, over a given
+    ring. With ``is_nameless`` no wavenumber has a name: a quotient with named and nameless ones has no
+    form in which what cancels is seen. With ``is_sparse`` the ring has any number of names, nothing is
+    expanded, and rows are not cleared of denominators; a distributed model has to be nameless, too. With
+    ``is_cut`` states at points along x are unknowns, and what relates them, the laws of ``continua``, is
+    not among the rows. With ``is_followed`` uniform line elements and fields beside others that taper are
+    followed along x as those are, by fundamental matrices. Raises ModelError: SF224 division by zero,
+    SF910 a function of s; with positions, all at once; BudgetError: SF502 when there are more names or
+    more unknowns than can be computed with exactly.
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
@@ -194,7 +194,7 @@ class _Assembly:
     model: Model
     ring: Ring
     constants: tuple[ConstantFunction, ...]
-    nested: Callable[[PlacedBlock, Ring], Factored] | None
+    nested: Callable[[PlacedBlock, Ring], tuple[Factored, Factored]] | None
     distributed: Distributed | None = None
     is_cut: bool = False
     problems: list[Diagnostic] = field(default_factory=list)
@@ -447,12 +447,14 @@ class _Assembly:
                 continue  # over the ring without kernels there is no value for it
             try:
                 values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
+                hidden = Factored.number(self.ring, 1)
                 if block.block is not None:
                     found[block.name] = self._radicals.tidy(transfer_of(block, values))
                 elif self.nested is not None:
-                    found[block.name] = self._radicals.tidy(self.nested(block, self.ring))
+                    ratio, hidden = self.nested(block, self.ring)
+                    found[block.name] = self._radicals.tidy(ratio)
                 if block.name in found:
-                    self.poles[block.name] = written_poles(block, values, evaluator, self.poles)
+                    self.poles[block.name] = written_poles(block, values, evaluator, self.poles) * hidden
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
                 found[block.name] = Factored.number(self.ring, 1)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
-from symflex.equations import assemble
 from symflex.equations.elimination import free_at_rest
 from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedError
 from symflex.model import with_numbers
@@ -53,7 +52,7 @@ from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
 from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
 from symflex.transfer import BoundNested, bind
-from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
+from symflex.transfer.of_model import assemble, assemble_sparse, derive_all, derive_bound, may_be_expanded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from symflex.transfer.bind import BoundTransferFunction
     from symflex.transfer.transfer_function import ClosedForm
 
-    Nested = Callable[[PlacedBlock, Ring], Factored]
+    Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 
 BITS = 192
 """Precision that is tried first; then one or two more an unknown, as long chains of members need."""

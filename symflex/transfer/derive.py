@@ -369,8 +369,8 @@ def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
     return polynomial.term_content().leading_coefficient()
 
 
-def nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
-    """Return the transfer function of a ``model`` block over the outer model's ring.
+def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]:
+    """Return the transfer function of a ``model`` block, and what cancelled in it, over the outer ring.
 
     Raises ModelError: SF910 when the block stands for a distributed system.
     """
@@ -384,4 +384,11 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio
     images = [ring.generator(name) for name in inner.ring.names]
-    return inner.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
+    hidden = Factored.number(inner.ring, 1)
+    for factor in tf.hidden:
+        hidden = hidden * Factored.polynomial(inner.ring, factor.polynomial) ** factor.multiplicity
+    ratio, cancelled = (
+        value.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
+        for value in (inner, hidden)
+    )
+    return ratio, cancelled

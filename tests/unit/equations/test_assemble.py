@@ -355,7 +355,7 @@ def test_a_block_of_another_model_has_the_value_found_for_it_over_the_ring_of_th
 
     def nested(block, ring):
         asked.append(block.name)
-        return Factored.generator(ring, "k") / (Factored.generator(ring, "s") + 5)
+        return Factored.generator(ring, "k") / (Factored.generator(ring, "s") + 5), Factored.number(ring, 1)
 
     equations = ROOM.assemble(pipeline.load(tmp_path / "outer.toml"), nested)
     assert set(asked) == {"G"}

@@ -89,6 +89,14 @@ def test_a_disconnected_subsystem_is_hidden_as_a_whole():
     assert (as_text(tf.ratio), hidden(tf)) == ("(1)/(s^2*m + k)", [("s^2*m + k", 1)])
 
 
+def test_what_cancelled_in_a_block_of_another_model_is_a_mode_of_the_outer_one(tmp_path):
+    text = 'symflex = 1\nblocks.P = {{ {} }}\nsignals.y = "P*u"\ninputs.u = {{}}\noutputs.Y = "y"\n'
+    (tmp_path / "inner.toml").write_text(text.format('type = "tf", num = "s - 1", den = "(s - 1)*(s + 2)"'))
+    (tmp_path / "outer.toml").write_text(text.format('type = "model", spec = "inner.toml", tf = "Y/u"'))
+    (tf,) = pipeline.derive_all(pipeline.load(tmp_path / "outer.toml"))
+    assert (as_text(tf.ratio), hidden(tf)) == ("(1)/(s + 2)", [("s - 1", 1)])
+
+
 def test_the_values_of_hidden_parameters_are_needed_to_bind_too():
     text = SYMMETRIC.replace('C = { type = "spring", between = ["x", "y"], k = "c" }\n', "")
     text = text.replace('K_2 = { type = "spring", between = ["y", "ground"], k = "k" }', "").replace(
