@@ -174,6 +174,9 @@ def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
     point = {**random_point(equations.ring.names), LAPLACE: 0}
     for name, value in equations.definitions:
         point[name] = _number(value, point, PRIME)
+    for row in equations.rows:
+        if row.role == "signal" and all(_number(c, point, PRIME) == 0 for _, c in row.form.terms):
+            return ()  # what rests anywhere is within a block, where s cancels
     seen = [row.form for row in equations.outputs if row.name == output]
     for forms in ([*(row.form for row in equations.rows), *seen], [row.form for row in equations.rows]):
         matrix = matrix_of(forms, equations.unknowns, PRIME, lambda c: _number(c, point, PRIME))

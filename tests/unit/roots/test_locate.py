@@ -103,6 +103,14 @@ outputs.X = "x"
         assert abs(gamma) > 0.1
 
 
+def test_a_hidden_pole_at_0_within_a_block_lets_no_signal_rest_anywhere():
+    block = '{ type = "tf", num = "s", den = "s*(s + 2)" }'
+    text = f'symflex = 1\nblocks.P = {block}\nsignals.y = "P*u"\ninputs.u = {{}}\noutputs.Y = "y"\n'
+    found = locate(bound(text))
+    assert [h.root.is_zero for h in found.hidden] == [True]
+    assert (found.verdict.word, found.verdict.moving) == ("stable", ())
+
+
 def test_an_engine_heeds_its_budget():
     clock = iter(range(10**6)).__next__
     source = bound(DELAY_LOOP)
