@@ -37,6 +37,7 @@ from symflex.loops.stability_map import (
     StabilityMap,
 )
 from symflex.roots import find_polynomial_roots
+from symflex.roots.distributed.far_out import NEUTRAL
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 
@@ -109,7 +110,9 @@ def find_stable_gains(
         tf=loop.bound.name,
         is_passive=along is not None and along.passive is not None,
     )
-    if nominal is not None and found.nominal_interval is None and along is None:
+    is_alone = found.nominal_interval is None and along is None
+    # Terms that do not outweigh one another for all gains may do so for one.
+    if nominal is not None and (is_alone or NEUTRAL in found.reasons):
         found = replace(found, at_nominal=closed_loop_roots(loop, nominal).verdict)
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()

@@ -124,7 +124,8 @@ class StabilityMap:
     apart : PolesApart
         Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
     at_nominal : StabilityVerdict or None
-        What holds at a nominal gain that lies in none of the intervals and was examined alone.
+        What holds at a nominal gain that was examined alone: it lies in none of the intervals, or delays
+        leave open what holds beyond the radius.
     tf : str
         ``"OUT/IN"``, whose input and output see the poles that are not hidden; empty where nothing is.
     is_passive : bool
@@ -197,7 +198,7 @@ class StabilityMap:
         where = f"{_poles(axis)} on the imaginary axis" if axis else ""
         if beyond and not self.is_passive:
             reason = f"{where}; {beyond}" if where else beyond
-            return StabilityVerdict("unknown", None, False, reason)
+            return self.at_nominal or StabilityVerdict("unknown", None, False, reason)
         return StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
 
     @property

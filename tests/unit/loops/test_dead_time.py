@@ -105,3 +105,17 @@ def test_a_map_that_is_not_complete_cannot_be_without_a_reason():
     found = stability(cascade(0, 0, 1), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     with pytest.raises(ValueError, match="needs a reason"):
         replace(found, is_complete=False, reasons=())
+
+
+@pytest.mark.parametrize(("gain", "word"), [("0.999", "stable"), ("1.001", "unstable")])
+def test_a_repetitive_controller_is_judged_at_its_gain_where_the_range_leaves_it_open(gain, word):
+    # All poles have exp(s T) = K, and so a real part ln(K)/T.
+    text = f"""
+symflex = 1
+parameters = {{ K = {gain}, T = "20 ms" }}
+blocks.D = {{ type = "delay", T = "T" }}
+signals.v = "r + K*D*v"
+inputs.r = {{}}
+outputs.V = "v"
+"""
+    assert stability(pipeline.loads(text), StabilityOptions("K")).verdict.word == word
