@@ -372,6 +372,7 @@ def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
 def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]:
     """Return the transfer function of a ``model`` block, and what cancelled in it, over the outer ring.
 
+    Powers of s that cancelled are left behind: a position that nothing sees is no state of the outer model.
     Raises ModelError: SF910 when the block stands for a distributed system.
     """
     if block.submodel is None or block.tf is None:
@@ -385,7 +386,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
     inner = tf.ratio
     images = [ring.generator(name) for name in inner.ring.names]
     hidden = Factored.number(inner.ring, 1)
-    for factor in tf.hidden:
+    for factor in (f for f in tf.hidden if len(inner.ring.coefficients(f.polynomial)[0])):
         hidden = hidden * Factored.polynomial(inner.ring, factor.polynomial) ** factor.multiplicity
     ratio, cancelled = (
         value.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
