@@ -214,7 +214,7 @@ def six_masses(tmp_path_factory):
     return compiled(tmp_path_factory.mktemp("six_masses"), of_either("six_masses"))[0]
 
 
-@pytest.fixture(params=["beam", "six_masses"])
+@pytest.fixture(params=["beam", pytest.param("six_masses", marks=pytest.mark.slow)])
 def either(request):
     return request.getfixturevalue(request.param)
 

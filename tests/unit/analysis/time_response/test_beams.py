@@ -205,10 +205,8 @@ LOSSES = {
 }
 
 
-@pytest.mark.parametrize(
-    "name",
-    [n if n == "to both, on a foundation" else pytest.param(n, marks=pytest.mark.slow) for n in LOSSES],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LOSSES)
 def test_a_step_of_a_beam_that_loses_energy_along_its_length_is_a_sum_of_damped_modes(name):
     text, loss = LOSSES[name]
     found = time_response(beam(kind=f"{UNIT}, {text}"), "step", SampleTimes.of(TIMES))
@@ -249,6 +247,7 @@ def test_a_beam_that_loses_much_rings_out_at_the_rate_of_its_slowest_high_modes(
     assert np.all(np.abs(found.values - expected) <= found.radius + left * np.exp(-np.array(TIMES) / 0.4))
 
 
+@pytest.mark.slow
 def test_a_free_beam_in_a_viscous_fluid_drifts_to_a_constant_speed():
     text = SLIDING.replace("rho*A*s^2*w = 0", "(rho*A*s^2 + c*s)*w = 0").replace(
         'l = "1 m" }', 'l = "1 m", c = "2 N*s/m^2" }'
