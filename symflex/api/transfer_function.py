@@ -170,7 +170,8 @@ class _Derived:
         return str(self._shortest)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _derive_again, (*_named(self.exact), isinstance(self, NestedTransferFunction))
+        pair = self.exact.output.name, self.exact.input.name
+        return _derive_again, (self.exact.model, pair, isinstance(self, NestedTransferFunction))
 
     def __call__(self, *_: object) -> NoReturn:
         """Say that only numbers have a value."""
@@ -381,7 +382,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         return self.bound
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _derive_again, (*_named(self.bound.source), False, dict(self.bound.values))
+        return _bind_again, (TransferFunction(self.bound.source), dict(self.bound.values))
 
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
@@ -505,14 +506,14 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
     ([-1, -3], [0.157691])
     """
 
-    def __call__(  # type: ignore[override]
+    def __call__(  # type: ignore[override]  # an array is answered by an array
         self, s: ArrayLike, bits: int = FIRST_BITS
     ) -> complex | NDArray[np.complex128]:
         """Return the value at s [rad/s], a number or an array, to double precision."""
         return _values(self.source.model, lambda p: BoundNested.__call__(self, p, bits), s)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _derive_again, (*_named(self.source), True, dict(self.values))
+        return _bind_again, (NestedTransferFunction(self.source), dict(self.values))
 
     @property
     def bound(self) -> BoundNestedTransferFunction:
@@ -532,18 +533,19 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
         return pipeline.derive_bound(numbered, [(self.source.output.name, self.source.input.name)])[0]
 
 
-def _named(source: transfer_room.AnyTransferFunction) -> tuple[Model, str, str]:
-    """Return what a copy, or another process, derives a function from: its ring cannot be pickled."""
-    return source.model, source.output.name, source.input.name
-
-
-def _derive_again(model: Model, output: str, given: str, is_nested: bool, values: Any = None) -> object:  # noqa: ANN401 (what pickle keeps)
-    found: NestedTransferFunction | TransferFunction
+def _derive_again(
+    model: Model, pair: tuple[str, str], is_nested: bool
+) -> TransferFunction | NestedTransferFunction:
+    """Return a function for a copy, or for another process: its ring cannot be pickled."""
     if is_nested:
-        found = NestedTransferFunction(pipeline.derive_nested(model, [(output, given)])[0])
-    else:
-        found = TransferFunction(pipeline.derive_all(model, [(output, given)])[0])
-    return found if values is None else found.bind(**values)
+        return NestedTransferFunction(pipeline.derive_nested(model, [pair])[0])
+    return TransferFunction(pipeline.derive_all(model, [pair])[0])
+
+
+def _bind_again(
+    function: TransferFunction | NestedTransferFunction, values: dict[str, Any]
+) -> BoundTransferFunction | BoundNestedTransferFunction:
+    return function.bind(**values)
 
 
 def _values(

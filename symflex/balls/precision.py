@@ -10,7 +10,7 @@ sharpen an answer and never change it.
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TypeVar
 
 import flint
@@ -80,14 +80,10 @@ def precisions(first: int, last: int) -> Iterator[int]:
 
 def settled(compute: Callable[[], Settled], bits: int) -> Settled:
     """Return what is computed with at least so many bits; UndecidedError where too many would be needed."""
-    while True:
-        try:
-            with precision(bits):
-                return compute()
-        except UndecidedError:
-            bits *= 2
-            if bits > MOST_BITS:
-                raise
+    for enough in precisions(bits, max(bits, MOST_BITS)):
+        with suppress(UndecidedError), precision(enough):
+            return compute()
+    raise UndecidedError
 
 
 @contextmanager

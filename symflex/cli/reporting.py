@@ -88,10 +88,11 @@ def check_place(name: str, endings: Iterable[str]) -> Path:
 
 def keep(source: str | Path | None, output: object) -> None:
     """Refuse to write over the specification that is read: SF903."""
-    if source and output and Path(source).is_file() and Path(str(output)).exists():
-        if Path(source).samefile(str(output)):
-            message = f"'{output}' is the specification that is read, and is not overwritten"
-            raise UsageError(Diagnostic("SF903", message, None, "choose another name with -o"))
+    if not (source and output and Path(source).is_file() and Path(str(output)).exists()):
+        return
+    if Path(source).samefile(str(output)):
+        message = f"'{output}' is the specification that is read, and is not overwritten"
+        raise UsageError(Diagnostic("SF903", message, None, "choose another name with -o"))
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:

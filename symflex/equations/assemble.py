@@ -72,6 +72,8 @@ if TYPE_CHECKING:
     from symflex.library.elements.element import Role
     from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
+    Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
+
 PI = "pi"
 GENERATOR_LIMIT = 1_000
 """Names over a dense ring, whose monomials hold an exponent for each; a round number, not a measured one."""
@@ -84,7 +86,7 @@ SPARSE_LIMIT = 500_000
 
 def assemble(
     model: Model,
-    nested: Callable[[PlacedBlock, Ring], tuple[Factored, Factored]] | None = None,
+    nested: Nested | None = None,
     *,
     is_nameless: bool = False,
     is_sparse: bool = False,
@@ -194,7 +196,7 @@ class _Assembly:
     model: Model
     ring: Ring
     constants: tuple[ConstantFunction, ...]
-    nested: Callable[[PlacedBlock, Ring], tuple[Factored, Factored]] | None
+    nested: Nested | None
     distributed: Distributed | None = None
     is_cut: bool = False
     problems: list[Diagnostic] = field(default_factory=list)

@@ -231,9 +231,6 @@ def locate_distributed(
     reason, code = None, None
     try:
         searched.find()
-        if not with_zeros and searched.may_be_removable():
-            searched = _Searched(bound, where, digits)
-            searched.find()
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
@@ -287,7 +284,7 @@ class _Searched:
         self, bound: BoundTransferFunction, region: Region, digits: int, *, with_zeros: bool = True
     ) -> None:
         self.bound, self.region, self.digits = bound, region, digits
-        self._above = bound.num if with_zeros else Factored.number(bound.ratio.ring, 1)
+        self._with_zeros = with_zeros
         match region:
             case Modes(count) | Mode(count):
                 bound.expect(count)
@@ -302,12 +299,16 @@ class _Searched:
         bound, digits, where = self.bound, self.digits, self.region
         if not bound.ratio.is_zero:
             self.sides.append(Side(bound, bound.den, digits))
-            self.sides.append(Side(bound, self._above, digits))
+            above = bound.num if self._with_zeros else Factored.number(bound.ratio.ring, 1)
+            self.sides.append(Side(bound, above, digits))
         if isinstance(where, Mode):
             for side in self.sides:
                 side.numbered(where.number)
             return
         shared = _find(self.sides, where)
+        if not self._with_zeros and self._may_be_removable():
+            self.sides[1] = Side(bound, bound.num, digits)
+            shared = _find(self.sides, where)
         # A little more, so that what lies at the highest pole itself is in.
         highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0) * (1 + 4 * ROUNDING)
         # Modes are of the poles; what cancelled has none of its own.
@@ -318,7 +319,7 @@ class _Searched:
         _find((hidden,), within)
         self._hide(shared)
 
-    def may_be_removable(self) -> bool:
+    def _may_be_removable(self) -> bool:
         """Tell whether a pole lies where wavenumbers vanish or meet: a zero may lie there, too."""
         degenerate = [point for point in degenerate_points(self.bound) if not point.is_zero]
         return any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate)

@@ -46,13 +46,12 @@ if TYPE_CHECKING:
 
     from flint import acb_mat
 
-    from symflex.algebra import Dispersion, Factored, Ring
+    from symflex.algebra import Dispersion, Factored
     from symflex.equations import Equations
-    from symflex.model import Model, PlacedBlock
+    from symflex.equations.assemble import Nested
+    from symflex.model import Model
     from symflex.transfer.bind import BoundTransferFunction
     from symflex.transfer.transfer_function import ClosedForm
-
-    Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 
 BITS = 192
 """Precision that is tried first; then one or two more an unknown, as long chains of members need."""

@@ -1,4 +1,8 @@
-"""Values of expressions, rational functions and polynomials, exactly or in balls."""
+"""Values of expressions, rational functions and polynomials, exactly or in balls.
+
+Input: the expression, and what encloses its names at the precision of the time. Output: a ball, or the exact
+rational number where there is one. Example: ``sqrt(4)`` is a ball about 2. Theorem: see :mod:`symflex.balls`.
+"""
 
 from __future__ import annotations
 

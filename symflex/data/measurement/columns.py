@@ -275,9 +275,7 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     below = list(units_below) or [""] * len(names)
     found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
     apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
-    found = [
-        one if one.kind else other if other.kind else one for one, other in zip(found, apart, strict=True)
-    ]
+    found = [other if other.kind and not one.kind else one for one, other in zip(found, apart, strict=True)]
     kinds = {m.kind for m in found}
     if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
         turned = {m.label for m in found if m.kind == "phase"}
@@ -438,7 +436,7 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
     ends = {c: match[1].lower() for c in sizes if (match := _END.fullmatch(c.meaning.label))}
     turned = [re.split(r"\s*[-/]\s*", c.meaning.label) for c in columns if c.meaning.kind == "phase"]
-    if not ends and len(turned) == 1 and len(turned[0]) == 2:  # noqa: PLR2004 (phase CH2-CH1)
+    if not ends and [len(labels) for labels in turned] == [2]:  # one phase, of CH2-CH1
         ends = {c: ("out", "in")[turned[0].index(x)] for c in sizes if (x := c.meaning.label) in turned[0]}
     labels = {c.meaning.label for c in ends}
     if any(c.meaning.label in labels for c in columns if c.meaning.kind and c not in ends):
