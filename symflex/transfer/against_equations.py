@@ -181,8 +181,7 @@ def _compare_at(direct: DirectSolve, agreements: Sequence[Agreement], points: Se
                     raise _differs(agreement, here, "does not agree with the model's equations")
             if agreement.determinant is not None:
                 left = agreement.determinant(here, solution.generators)
-                # Squares, as the sign of a determinant depends on the order of elimination.
-                quotients.append((solution.determinant * solution.divisors[agreement.pair[0]] / left) ** 2)
+                quotients.append(solution.determinant * solution.divisors[agreement.pair[0]] / left)
         if not all(map(_is_narrow, quotients)):
             return "determinants are not narrow enough to be compared"
         if any(not q.overlaps(quotients[0]) for q in quotients):

@@ -18,13 +18,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
-from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra import FUNCTIONS, LAPLACE, terms_of
-from symflex.balls import balancing, ball, binary_exponent, current_terms, raised, series_terms
+from symflex.balls import UndecidedError, ball, current_terms, eliminate, raised, series_terms
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import fold
@@ -44,10 +43,6 @@ if TYPE_CHECKING:
     from symflex.library.elements import LinearForm, Variable
 
 ZERO = acb(0)
-SMALL = 10
-"""Bits that a pivot may be smaller than its row, or balls would widen; of those left the column is short."""
-ROUNDS = 3
-"""Passes of balancing over rows and columns."""
 FEW_TERMS = 16
 """A polynomial of so many terms is summed term by term."""
 TERMS = 40
@@ -84,7 +79,7 @@ class Solution:
     """What the equations say at a point."""
 
     values: Mapping[tuple[str, str], acb]  # of the transfer functions, by output and input
-    determinant: acb  # of A, up to its sign
+    determinant: acb  # of A
     divisors: Mapping[str, acb]  # what each output's form is divided by
     generators: Mapping[str, acb]  # the values of the names in the equations
 
@@ -124,7 +119,14 @@ class DirectSolve:
         rows = [number.row(row.form, places) for row in equations.rows]
         for continuum in equations.continua:
             rows += _relations(continuum, number, self._along, point, places)
-        determinant, unknowns = _eliminated(rows, len(columns), len(sources))
+        if len(rows) != len(columns) or not all(x.is_finite() for row in rows for x in row.values()):
+            raise SingularPointError
+        rows = [{i: x for i, x in row.items() if x != 0} for row in rows]
+        try:
+            solved = eliminate(rows, len(columns))
+            unknowns = [solved.unknowns(len(columns) + k) for k in range(len(sources))]
+        except UndecidedError:
+            raise SingularPointError from None
         found = {}
         outputs = {row.name: row for row in equations.outputs}
         divisors = {output: number(outputs[output].divisor) for output, _ in pairs}
@@ -133,9 +135,9 @@ class DirectSolve:
             total = form.get(len(columns) + k, ZERO)
             for i, c in form.items():
                 if i < len(columns):
-                    total = total + c * unknowns[i][k]
+                    total = total + c * unknowns[k][i]
             found[output, source] = total / divisors[output]
-        return Solution(found, determinant, divisors, values)
+        return Solution(found, solved.determinant, divisors, values)
 
     @cached_property
     def _along(self) -> Mapping[str, Call]:
@@ -383,121 +385,3 @@ def _taylor(series: Mapping[tuple[int, int], list[acb]], size: int, step: acb) -
         for i, x in enumerate(sums):
             across[i, column] = x + acb(arb(0, last), arb(0, last))
     return across
-
-
-# ---------------------------------------------------------------------------------------------- elimination
-
-
-def _eliminated(rows: list[dict[int, acb]], size: int, sources: int) -> tuple[acb, list[list[acb]]]:
-    """Return the determinant of A but for its sign, and the unknowns per unit of each input.
-
-    Rows have the unknowns' columns and then those of the inputs. The shortest row is next, and of its entries
-    the one whose column is shortest, so that networks stay sparse.
-    """
-    if len(rows) != size:
-        raise SingularPointError
-    powers = _balance(rows, size)
-    holders: list[set[int]] = [set() for _ in range(size)]
-    for i, row in enumerate(rows):
-        for j in _unknown(row, size):
-            holders[j].add(i)
-    waiting = [(len(row), i) for i, row in enumerate(rows)]
-    heapify(waiting)
-    left, order, determinant = set(range(size)), [], acb(1)
-    undecided: list[tuple[int, int]] = []  # rows no pivot of which is proved, until others have changed them
-    while left:
-        if not waiting:
-            raise SingularPointError
-        count, i = heappop(waiting)
-        if i not in left or count != len(rows[i]):
-            continue
-        chosen = _pivot(rows[i], size, holders)
-        if chosen is None:
-            undecided.append((count, i))
-            continue
-        left.remove(i)
-        order.append((i, chosen))
-        determinant = determinant * rows[i][chosen]
-        for other in [x for x in holders[chosen] if x in left]:
-            _subtract(rows[other], rows[i], chosen, holders, other, size)
-            heappush(waiting, (len(rows[other]), other))
-        for entry in undecided:
-            heappush(waiting, entry)
-        undecided.clear()
-        for k in _unknown(rows[i], size):
-            holders[k].discard(i)
-    unknowns = _put_back(rows, order, size, sources)
-    for power in powers:
-        determinant = determinant / power
-    return determinant, [[x * scale for x in own] for own, scale in zip(unknowns, powers, strict=True)]
-
-
-def _unknown(row: Mapping[int, acb], size: int) -> list[int]:
-    """Return the columns of a row that are those of unknowns."""
-    return [j for j in row if j < size]
-
-
-def _pivot(row: Mapping[int, acb], size: int, holders: Sequence[set[int]]) -> int | None:
-    """Return the column of a row's next pivot, None where no entry is proved to differ from zero."""
-    sizes = {j: e for j in _unknown(row, size) if (e := _exponent(row[j])) is not None}
-    proved = [j for j in sizes if not row[j].contains(0)]
-    least = max((sizes[j] for j in proved), default=0) - SMALL
-    return min((j for j in proved if sizes[j] >= least), key=lambda j: len(holders[j]), default=None)
-
-
-def _put_back(
-    rows: Sequence[Mapping[int, acb]], order: Sequence[tuple[int, int]], size: int, sources: int
-) -> list[list[acb]]:
-    """Return the unknowns per unit of each input, the last one eliminated first."""
-    unknowns: list[list[acb]] = [[] for _ in range(size)]
-    for i, j in reversed(order):
-        row = rows[i]
-        for k in range(sources):
-            total = row.get(size + k, ZERO)
-            for column in _unknown(row, size):
-                if column != j:
-                    total = total + row[column] * unknowns[column][k]
-            unknowns[j].append(-total / row[j])
-    return unknowns
-
-
-def _balance(rows: list[dict[int, acb]], size: int) -> list[arb]:
-    """Drop zeros, and scale columns so that no unit makes an entry small; return the powers of two."""
-    sizes: list[dict[int, int]] = []
-    for row in rows:
-        for j in [j for j, x in row.items() if x == 0]:
-            del row[j]
-        sizes.append({j: e for j in _unknown(row, size) if (e := _exponent(row[j])) is not None})
-    powers = [arb(2) ** e for e in balancing(sizes, size, ROUNDS)[1]]
-    for row in rows:
-        for j in _unknown(row, size):
-            row[j] = row[j] * powers[j]
-    return powers
-
-
-def _exponent(x: acb) -> int | None:
-    if not x.is_finite():
-        raise SingularPointError
-    return binary_exponent(x)
-
-
-def _subtract(
-    target: dict[int, acb],
-    row: Mapping[int, acb],
-    pivot: int,
-    holders: list[set[int]],
-    number: int,
-    size: int,
-) -> None:
-    """Take a multiple of one row from another, which loses its entry in the pivot's column."""
-    factor = target.pop(pivot) / row[pivot]
-    holders[pivot].discard(number)
-    for k, x in row.items():
-        if k == pivot:
-            continue
-        if k in target:
-            target[k] = target[k] - factor * x
-        else:
-            target[k] = -factor * x
-            if k < size:
-                holders[k].add(number)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
-from symflex.roots.networks.cramer import columns_of
+from symflex.balls import columns_of
 from symflex.transfer.enclose import rational_value
 
 if TYPE_CHECKING:

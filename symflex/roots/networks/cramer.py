@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from heapq import nsmallest
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -26,9 +25,8 @@ from symflex.balls import (
     UndecidedError,
     Value,
     at_centre,
-    balancing,
-    binary_exponent,
     current_bits,
+    eliminate,
     precision,
     settled,
 )
@@ -41,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping
 
     from symflex.algebra import Factored
+    from symflex.balls import Eliminated
     from symflex.equations import Equations
     from symflex.library.elements import Variable
 
@@ -80,7 +79,7 @@ class CramerEquations:
     # By bits and id of a value, which is kept so that no other has its id.
     _plans: dict[tuple[int, int], tuple[object, Plan]] = field(default_factory=dict)
     # By size: pivots, and the bits they were chosen at.
-    _orders: dict[int, tuple[list[tuple[int, int]], int]] = field(default_factory=dict)
+    _orders: dict[int, tuple[Sequence[tuple[int, int]], int]] = field(default_factory=dict)
     _least_bits: int = 0  # with fewer, elimination came to nothing
     # By radius [rad/s], the mean of ln abs of denominator and numerator on a circle.
     sizes: dict[float, tuple[float, float]] = field(default_factory=dict)
@@ -252,18 +251,17 @@ class CramerEquations:
 
         It goes by the pivots that served last, else by others.
         """
-        if size in self._orders:
-            order, bits = self._orders[size]
+        order, bits = self._orders.get(size, (None, 0))
+        if order is not None:
             try:
-                return _eliminate([dict(row) for row in rows], order)
+                return _determinants(eliminate([dict(row) for row in rows], size, order))
             except UndecidedError:
                 # Mostly nothing is wanting but bits.
                 if current_bits() < 2 * bits:
                     raise
-        order = pivot_order(rows, size)
-        found = _eliminate(rows, order)
-        self._orders[size] = order, current_bits()
-        return found
+        found = eliminate(rows, size)
+        self._orders[size] = found.order, current_bits()
+        return _determinants(found)
 
     def alone(self, s: acb, bits: int, *, is_num: bool) -> acb:
         """Return numerator or denominator at an exact s, also where it vanishes."""
@@ -311,6 +309,11 @@ class CramerEquations:
         for name, x in self._along_members(lambda x: acb(_bound(x, values)), is_growing=True):
             values[name] = (x.real.abs_upper(), False)
         return values
+
+
+def _determinants(found: Eliminated) -> tuple[acb, acb]:
+    size = len(found.order)
+    return found.determinant, found.rows[size].get(size, ZERO) if len(found.rows) > size else ZERO
 
 
 def _uses(value: Factored, names: Collection[str]) -> bool:
@@ -412,114 +415,3 @@ def _lengths(
     largest = np.full(size, -np.inf)
     np.maximum.at(largest, i, logs)
     return np.asarray(largest + 0.5 * np.log(np.bincount(i, np.exp(2 * (logs - largest[i])), size)))
-
-
-THRESHOLD = -4
-"""log2 of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
-CANDIDATES = 4
-"""Columns with fewest entries that are looked at for a pivot."""
-
-
-def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int, int]]:
-    """Return pivots, row and column, that are large in their columns and meet few others (Markowitz 1957).
-
-    Rows and columns from ``size`` on are no pivots. UndecidedError where none but the last is told from 0.
-    """
-    work = [{j: x for j, x in row.items() if j < size} for row in rows[:size]]
-    scale, _ = balancing([{j: _size(x) for j, x in row.items()} for row in work], size, 4)
-    columns = columns_of(work)
-    left = set(range(size))
-    order: list[tuple[int, int]] = []
-    while left:
-        best: tuple[int, int, int, int] | None = None
-        for j in nsmallest(CANDIDATES, left, key=lambda j: len(columns[j])):
-            sizes = {i: _size(work[i][j]) + scale[i] for i in columns[j] if not work[i][j].contains(0)}
-            largest = max(sizes.values(), default=0)
-            for i, x in sizes.items():
-                if x >= largest + THRESHOLD:
-                    cost = (len(work[i]) - 1) * (len(columns[j]) - 1)
-                    if best is None or (cost, -x) < best[:2]:
-                        best = (cost, -x, i, j)
-        if best is None:
-            if len(left) > 1:
-                raise UndecidedError
-            (j,) = left
-            (i,) = set(range(size)) - {i for i, _ in order}
-            order.append((i, j))
-            break
-        _, _, i, j = best
-        order.append((i, j))
-        left.discard(j)
-        _take_out(work, columns, i, j)
-    return order
-
-
-def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: int) -> acb:
-    """Eliminate column j by row i, and return the pivot."""
-    row = rows[i]
-    pivot = row.pop(j)
-    columns[j].discard(i)
-    for k in row:
-        columns[k].discard(i)
-    items = list(row.items())
-    for m in columns[j]:
-        target = rows[m]
-        factor = target.pop(j) / pivot
-        for k, x in items:
-            known = target.get(k)
-            if known is None:
-                target[k] = -(factor * x)
-                columns[k].add(m)
-            else:
-                target[k] = known - factor * x
-    columns[j] = set()
-    rows[i] = {}
-    return pivot
-
-
-def _size(value: acb) -> int:
-    """Return about the binary logarithm; of zero less than any other."""
-    size = binary_exponent(value.mid())
-    return -1000 if size is None else size
-
-
-def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> tuple[acb, acb]:
-    """Return the determinant by pivots in this order, and what is left of the entry after the last.
-
-    Where there is none, the last pivot may vanish.
-    """
-    columns = columns_of(rows)
-    determinant = acb(sign_of(order))
-    size = len(order)
-    for number, (i, j) in enumerate(order, 1):
-        pivot = rows[i].get(j, ZERO)
-        if number == size == len(rows):
-            return determinant * pivot, ZERO
-        if pivot.contains(0):
-            raise UndecidedError
-        determinant = determinant * _take_out(rows, columns, i, j)
-    return determinant, rows[size].get(size, ZERO)
-
-
-def columns_of(rows: Sequence[Mapping[int, object]]) -> list[set[int]]:
-    """Return which rows have an entry in each column."""
-    columns: list[set[int]] = [set() for _ in rows]
-    for i, row in enumerate(rows):
-        for j in row:
-            columns[j].add(i)
-    return columns
-
-
-def sign_of(order: Sequence[tuple[int, int]]) -> int:
-    """Return the sign of the permutation from rows to columns."""
-    to = dict(order)
-    sign, seen = 1, set()
-    for start in to:
-        i, length = start, 0
-        while i not in seen:
-            seen.add(i)
-            i = to[i]
-            length += 1
-        if length and length % 2 == 0:
-            sign = -sign
-    return sign
