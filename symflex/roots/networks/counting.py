@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
-from symflex.balls import current_bits, precision, settled
+from symflex.balls import current_bits, elimination_order, pivots, precision, settled
 from symflex.budget import spend
-from symflex.roots.networks.inertia import elimination_order, pivots
 from symflex.roots.networks.members import MemberBalls, Stiffness
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
-    from symflex.roots.networks.inertia import Rows
+    from symflex.balls.inertia import Rows
     from symflex.roots.networks.network import Network, NetworkMember
 
 

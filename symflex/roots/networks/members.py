@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 from flint import arb, arb_mat
 
 from symflex.algebra.varying_growth import balanced
-from symflex.balls import UndecidedError
+from symflex.balls import UndecidedError, pivots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -180,17 +180,5 @@ def _inverse(matrix: arb_mat) -> arb_mat:
 
 def _negative(matrix: arb_mat) -> int:
     """Return how many eigenvalues of a symmetric matrix are negative, by its pivots."""
-    n = matrix.nrows()
-    rows = matrix.tolist()
-    count = 0
-    for i in range(n):
-        pivot = rows[i][i]
-        if pivot < 0:
-            count += 1
-        elif not pivot > 0:
-            raise UndecidedError
-        for a in range(i + 1, n):
-            factor = rows[i][a] / pivot
-            for b in range(a, n):
-                rows[a][b] = rows[b][a] = rows[a][b] - factor * rows[i][b]
-    return count
+    rows = [dict(enumerate(row)) for row in matrix.tolist()]
+    return pivots(rows, range(len(rows))).negative

@@ -1,7 +1,7 @@
 """Pivots of sparse symmetric matrices in balls: how many are negative.
 
     [ 2  1  0 ]    pivots 2, 5/2, and -2/5 from the last row: the matrix has one negative eigenvalue, as many
-    [ 1  3  1 ]    as there are negative pivots (Sylvester)
+    [ 1  3  1 ]    as there are negative pivots (Sylvester 1852)
     [ 0  1  0 ]
 
 The unknown that meets the fewest others goes first. A constraint, 0 on the diagonal, waits until one of the
@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.balls import UndecidedError
+from symflex.balls.precision import UndecidedError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
