@@ -1,5 +1,6 @@
 """Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this room."""
 
+from symflex.balls.covering import covered
 from symflex.balls.elimination import Eliminated, columns_of, eliminate, sign_of
 from symflex.balls.inertia import elimination_order, pivots
 from symflex.balls.interval_newton import narrowed, stays_inside

@@ -111,11 +111,12 @@ def _next_pivot(
                 if best is None or (cost, -x) < best[:2]:
                     best = (cost, -x, i, j)
     if best is not None:
-        return best[2:]
+        return best[2], best[3]
     if len(left) > 1:
         raise UndecidedError
     (i,) = set(range(len(scale))) - {i for i, _ in chosen}
-    return i, *left
+    (j,) = left
+    return i, j
 
 
 def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: int) -> None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, cast
 from flint import arb, arb_series, fmpq
 
 from symflex.algebra import FUNCTIONS, LAPLACE
+from symflex.balls import UndecidedError, covered
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import (
     Call,
@@ -369,8 +370,8 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
 
 PIECES = 64
 """Of a member; a value that varies along x is tried between any two."""
-HALVINGS = 10
-"""Of an interval on which no sign is told."""
+SHORTEST = 2.0**-10
+"""Piece of an interval beyond which no sign is looked for."""
 
 
 def _ball(number: Fraction) -> arb:
@@ -456,9 +457,8 @@ def sign_between(
     -1
     """
     low, high = ends
-    found, pending = set[int](), [(0.0, 1.0, 0)]
-    while pending:
-        a, b, depth = pending.pop()
+
+    def sign_on(a: float, b: float) -> int | None:
         x = low + (high - low) * arb((a + b) / 2, (b - a) / 2)
         sign = sign_of(value(x))
         starts, stops = is_zero[0] and a == 0, is_zero[1] and b == 1
@@ -466,13 +466,12 @@ def sign_between(
             # Next to an end where it is zero the slope tells the sign.
             rate = sign_of(slope(x))
             sign = None if rate is None else rate if starts else -rate
-        if sign is not None:
-            found.add(sign)
-        elif depth == HALVINGS:
-            return None
-        else:
-            middle = (a + b) / 2
-            pending += [(a, middle, depth + 1), (middle, b, depth + 1)]
+        return sign
+
+    try:
+        found = {sign for _, _, sign in covered(sign_on, 1, SHORTEST)}
+    except UndecidedError:
+        return None
     return found.pop() if len(found) == 1 else None
 
 

@@ -7,8 +7,9 @@ poles that a sum over modes leaves out may add to a response. What knows that is
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, pi
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -18,7 +19,7 @@ from flint import acb, acb_series, arb
 from symflex.algebra.exponential_sum import REAL
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
-from symflex.balls import at_centre, ball, precision
+from symflex.balls import UndecidedError, at_centre, ball, covered, precision
 from symflex.budget import spend
 from symflex.roots.counting.argument_principle import LogarithmicLine
 from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
@@ -111,19 +112,16 @@ class SizeOfExponentials:
         """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
         path = LogarithmicLine(complex(reached, start), complex(reached, end))
         count = round((end - start) / EFFORT.arc_step) + 1
-        pending = [(i / count, (i + 1) / count) for i in range(count)]
+
+        def size_on(low: float, high: float) -> arb | None:
+            return self.at(path.step(low, high)[0], EFFORT.sharp)
+
         total = arb(0)
-        while pending:
-            low, high = pending.pop()
-            size = self.at(path.step(low, high)[0], EFFORT.sharp)
-            if size is not None:
+        with suppress(UndecidedError):
+            for low, high, size in covered(size_on, count, EFFORT.smallest_step):
                 total += size * (high - low) * (end - start)
-            elif (high - low) * (end - start) < EFFORT.smallest_step:
-                return None
-            else:
-                middle = (low + high) / 2
-                pending += [(low, middle), (middle, high)]
-        return total.upper()
+            return total.upper()
+        return None
 
     def around(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
         """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
@@ -138,22 +136,20 @@ class SizeOfExponentials:
             ring = ring_about(hole, poles)
             if ring is None:
                 return None
-            largest = arb(0)
-            pending = [
-                (k / EFFORT.ring_steps, 1 / EFFORT.ring_steps, edge)
-                for k in range(EFFORT.ring_steps)
-                for edge in (-1.0, 1.0)
-            ]
-            while pending:
-                start, angle, edge = pending.pop()
-                s = ring.piece(start, angle, edge)
+
+            def size_on(edge: float, low: float, high: float) -> arb | None:
+                s = ring.piece(low, high - low, edge)
                 size = self.at(s)
-                if size is not None:
-                    largest = largest.max(size / s.abs_lower() ** integrations)
-                elif angle < EFFORT.smallest_step:
-                    return None
-                else:
-                    pending += [(start + i * angle / 2, angle / 2, edge) for i in (0, 1)]
+                return None if size is None else size / s.abs_lower() ** integrations
+
+            largest = arb(0)
+            try:
+                for edge in (-1.0, 1.0):
+                    decide = partial(size_on, edge)
+                    for _, _, size in covered(decide, EFFORT.ring_steps, EFFORT.smallest_step):
+                        largest = largest.max(size)
+            except UndecidedError:
+                return None
             terms = ring.terms(self.bound, integrations)
             count = 2 * len(terms)
             # Left of the imaginary axis no exponential is larger than 1.

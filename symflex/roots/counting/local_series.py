@@ -11,13 +11,14 @@ left is told by the series.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import ceil, inf, isfinite, log
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
-from symflex.balls import precision
+from symflex.balls import UndecidedError, covered, precision
 from symflex.roots.functions.kernel_function import ROOM, angle
 
 if TYPE_CHECKING:
@@ -153,20 +154,19 @@ def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int
         disc = centre + acb(arb(0, reach), arb(0, reach))
         if not function.is_analytic_on(disc, WIDE_BITS):
             return None
-        largest = arb(0)
-        pending = [(k, arcs) for k in range(arcs)]
-        while pending:
-            k, parts = pending.pop()
-            half = (arb.pi() / parts).upper()
-            direction = (acb(0, 1) * (arb.pi() * (2 * k + 1) / parts + arb(0, half))).exp()
+
+        def size_on(low: float, high: float) -> arb | None:
+            half = (arb.pi() * (high - low)).upper()
+            direction = (acb(0, 1) * (arb.pi() * (low + high) + arb(0, half))).exp()
             value = function.value(centre + reach * direction, WIDE_BITS)
-            if value.is_finite():
-                largest = largest.max(abs(value).upper())
-            elif parts < MOST_ARCS:
-                pending += [(2 * k, 2 * parts), (2 * k + 1, 2 * parts)]
-            else:
-                return None
-        return largest
+            return abs(value).upper() if value.is_finite() else None
+
+        largest = arb(0)
+        with suppress(UndecidedError):
+            for _, _, size in covered(size_on, arcs, 1 / MOST_ARCS):
+                largest = largest.max(size)
+            return largest
+        return None
 
 
 LEAST = 2

@@ -1,0 +1,46 @@
+"""A path in pieces short enough that something is decided on every one of them.
+
+Input: what decides on a piece of t from 0 to 1, ``None`` where the piece is too long.
+Output: the pieces, each with what was decided on it.
+
+Example: cos(x) on [0, 3] has no sign on the whole; every piece but those about pi/2 decides.
+
+A function that is analytic on a path is enclosed ever more sharply on halves of it, so that only what is not
+true, or true by too little, is left undecided (Moore 1966).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from symflex.balls.precision import UndecidedError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+Decided = TypeVar("Decided")
+
+
+def covered(
+    decide: Callable[[float, float], Decided | None], parts: int, shortest: float
+) -> Iterator[tuple[float, float, Decided]]:
+    """Yield pieces of [0, 1] with what is decided on them, at first so many, halved until it is.
+
+    UndecidedError where a piece would be shorter than ``shortest``.
+
+    Examples
+    --------
+    >>> list(covered(lambda a, b: "short" if b - a < 0.3 else None, 2, 0.1))
+    [(0.75, 1.0, 'short'), (0.5, 0.75, 'short'), (0.25, 0.5, 'short'), (0.0, 0.25, 'short')]
+    """
+    pending = [(k / parts, (k + 1) / parts) for k in range(parts)]
+    while pending:
+        low, high = pending.pop()
+        decided = decide(low, high)
+        if decided is not None:
+            yield low, high, decided
+        elif high - low < 2 * shortest:
+            raise UndecidedError
+        else:
+            middle = (low + high) / 2
+            pending += [(low, middle), (middle, high)]
