@@ -71,6 +71,7 @@ SHAPED_MODES: Final = {
     **SHOWN,
     "help": "Shape the N lowest modes.",
 }
+MOST_DIGITS: Final = 10_000
 JOINT: Final = {"help": "No longer changes anything: shapers of several modes are convolved."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
@@ -200,7 +201,7 @@ class RootsOptions:
         None, "--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s]."
     )
     digits: int | None = option(
-        None, "--digits", least=1, most=10_000, help="Correct significant digits.  [default: 15]"
+        None, "--digits", least=1, most=MOST_DIGITS, help="Correct significant digits.  [default: 15]"
     )
     explain: bool = option(
         False, "--explain", help="Say which constrained system has the zeros as its poles."
@@ -634,9 +635,9 @@ def finite(number: float | Fraction, flag: str) -> Fraction:
 
 
 def checked_digits(digits: int) -> int:
-    """Return how many digits are asked for; SF902 unless there is at least one."""
-    if not 1 <= digits < inf:
-        raise UsageError(Diagnostic("SF902", f"digits must be at least 1, not {digits}"))
+    """Return how many digits are asked for; SF902 for none or too many."""
+    if not 1 <= digits <= MOST_DIGITS:
+        raise UsageError(Diagnostic("SF902", f"digits must be from 1 to {MOST_DIGITS}, not {digits}"))
     return digits
 
 
@@ -682,8 +683,8 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
     return number / (2 * PI_NEARLY) if is_hertz else number * 2 * PI_NEARLY
 
 
-def duration(given: str, flag: str) -> Fraction:
-    """Return a positive time [s] from a text with or without a unit.
+def duration(given: str, flag: str, *, or_zero: bool = False) -> Fraction:
+    """Return a positive time [s], or 0 where that is one, from a text with or without a unit.
 
     Raises
     ------
@@ -704,16 +705,17 @@ def duration(given: str, flag: str) -> Fraction:
     if quantity.unit and quantity.dimension != SECOND:
         raise wrong
     found = in_limits(quantity)
-    if not found > 0:
+    if not (found > 0 or (or_zero and found == 0)):
         raise wrong
     return found
 
 
 def highest_frequency(given: Stated) -> float:
-    """Return a positive frequency [Hz]; a number is checked where it is used."""
+    """Return a positive frequency [Hz]."""
     value = float(frequency(given, "--up-to", "100 or '1 kHz'", is_hertz=True))
-    if isinstance(given, str) and not value > 0:
-        raise UsageError(Diagnostic("SF902", "--up-to takes a positive frequency"))
+    if not value > 0:
+        flag = "--up-to" if isinstance(given, str) else "up_to_hz"
+        raise UsageError(Diagnostic("SF902", f"{flag} takes a positive frequency"))
     return value
 
 

@@ -24,6 +24,7 @@ from flint import acb, arb
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.model.fields import counted
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes
@@ -213,7 +214,7 @@ def input_shaper(
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
     if modes < 1 or len(ringing) < modes:
-        message = f"{bound.name} has {len(ringing)} modes that oscillate, not {modes}"
+        message = f"{bound.name} has {counted(len(ringing), 'mode')} that oscillate, not {modes}"
         raise UsageError(Diagnostic("SF902", message))
     chosen = tuple(ringing[:modes])
     if not all(root.certified for root in chosen):

@@ -200,8 +200,9 @@ class StateSpace:
         """
         from symflex.state_space.sampled import sampled_state_space, sampling_of  # numpy
 
+        what = "a dead time"
         sampling = sampling_of(dt, method, prewarp, "a sampling time")
-        late = duration(delay, "a dead time") if isinstance(delay, str) else finite(delay, "a dead time")
+        late = duration(delay, what, or_zero=True) if isinstance(delay, str) else finite(delay, what)
         return sampled_state_space(self.exact, self._known(values), sampling, late)
 
     def _known(self, values: dict[str, int | float | Fraction | Decimal | str]) -> dict[str, ExactValue]:

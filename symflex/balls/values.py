@@ -10,16 +10,15 @@ Polynomials are prepared for evaluation: products shared by successive terms are
 
 from __future__ import annotations
 
+import copyreg
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from flint import acb, acb_series, arb, fmpq
+from flint import acb, acb_series, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
 
 Value = acb | acb_series
 """A number, or a power series in the displacement from one."""
@@ -28,6 +27,25 @@ Arithmetic = Any
 
 
 Numeral = TypeVar("Numeral", Fraction, arb)
+
+
+def _loaded(centre: tuple[int, int], radius: tuple[int, int]) -> arb:
+    """Return a ball of another process, no smaller: flint rounds its radius up."""
+    return arb(arb(centre), arb(radius))
+
+
+def _stored(x: arb) -> tuple[Callable[..., arb], tuple[object, ...]]:
+    if not x.is_finite():
+        return arb, (x.str(),)
+    parts = (part.man_exp() for part in (x.mid(), x.rad()))
+    return _loaded, tuple((int(mantissa), int(exponent)) for mantissa, exponent in parts)
+
+
+# flint pickles none of these, and what is found is made of them.
+copyreg.pickle(arb, _stored)
+copyreg.pickle(acb, lambda z: (acb, (z.real, z.imag)))
+copyreg.pickle(fmpz_mpoly_ctx, lambda ring: (fmpz_mpoly_ctx.get, (ring.names(), ring.ordering().name)))
+copyreg.pickle(fmpz_mpoly, lambda p: (p.context().from_dict, (p.to_dict(),)))
 
 
 def ball(value: Fraction) -> arb:

@@ -146,7 +146,7 @@ def printable(text: str, kept: str = "") -> str:
     return "".join(c if c.isprintable() or c in kept else f"\\x{ord(c):02x}" for c in text)
 
 
-def nearest(name: str, known: Iterable[str]) -> str | None:
+def nearest(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
     """Return a hint naming the closest known name, or ``None`` when none is close.
 
     Examples
@@ -163,5 +163,5 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     known = sorted(known)
     same = [n for n in known if n.lower() == name.lower()]
     bare = [n for n in known if n == name.rstrip("0123456789_")]
-    matches = same or get_close_matches(name, known, n=1, cutoff=0.6) or bare
+    matches = same or get_close_matches(name, known, n=1, cutoff=alike) or bare
     return f"did you mean '{matches[0]}'?" if matches else None

@@ -11,6 +11,16 @@ if TYPE_CHECKING:
 Sign = Literal["any", "nonnegative", "positive"]
 
 
+class Stateless:
+    """What its class alone tells: copies of it are equal."""
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other)
+
+    def __hash__(self) -> int:
+        return hash(type(self))
+
+
 @dataclass(frozen=True, slots=True)
 class ParameterPort:
     """A value an element or block takes."""

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.library import ParameterPort
+from symflex.library import ParameterPort, Stateless
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored
 
 
-class Block:
+class Block(Stateless):
     """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``.
 
     A block with ``kernel_time``, the name of one of its parameters, is ``exp(-s*T)`` of that time; it has a

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from collections.abc import Container, Iterable
 
 
+MISSPELT = 0.85
+"""Likeness of a word with a slip in it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Thing:
     """Something a model may have, by all its names."""
@@ -169,6 +173,8 @@ def hint_of_type(
     meant = thing(word)
     if meant:
         return meant.hint(word)
+    if misspelt := nearest(word, known, MISSPELT):
+        return misspelt
     # What comes last says what it is: a coil_spring is a spring, a brushless motor a motor.
     last = word.strip().lower().replace("-", "_").replace(" ", "_").rpartition("_")[2]
     if last in known and last != word:

@@ -13,7 +13,7 @@ With values that make two factors equal, such as k_1 = k_2, what was apart befor
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, cached_property
@@ -145,6 +145,10 @@ class BoundTransferFunction:
     fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()  # constants that waves without inertia came down to
     # The function with all parameters, where numbers stood for some of them from the start.
     symbolic: TransferFunction | None = None
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave out what is kept of earlier computations."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"

@@ -5,7 +5,7 @@ What it is called follows from the dimensions of its ends.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -134,6 +134,10 @@ class TransferFunction:
             message = f"{self.name} has neither form"
             raise ValueError(message)
         return self.closed.ratio
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave out what is kept of earlier computations."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def __repr__(self) -> str:
         kind = ", distributed" if self.is_distributed else ""

@@ -267,6 +267,30 @@ def test_functions_can_be_pickled_and_copied(model):
         assert again(s) == pytest.approx(undamped, rel=1e-13)
 
 
+def test_results_can_be_pickled_and_enclose_what_they_enclosed(model, tip):
+    assert copy.deepcopy(model) == model == pickle.loads(pickle.dumps(model))
+    rod = symflex.loads(CLAMPED_ROD)
+    wave = rod.transfer_function(rod.outputs[0], rod.inputs[0]).bind()
+    for result in (
+        tip.bind().pole_zero_map(digits=40),
+        tip.bind().residues(),
+        tip.bind().step_response([0.1, 0.2]),
+        tip.bind().discretise("1 ms"),
+        tip.form(),
+        model.state_space(),
+        wave.rational(modes=2),
+        wave.mode_shape(1),
+    ):
+        assert repr(pickle.loads(pickle.dumps(result))) == repr(result)
+    # s^2 + s + 9/2 = 0: two masses of 1 kg on the spring and the damper, relative to each other
+    ball = tip.bind(m_1=1, m_2=1, b="0.5 N*s/m", k="2.25 N/m").poles(digits=30)[-1]
+    again = pickle.loads(pickle.dumps(ball))
+    with mpmath.workdps(60):
+        true = mpmath.mpc(-1, -mpmath.sqrt(17)) / 2
+        assert abs(again.value - true) <= again.radius < mpmath.mpf(10) ** -29
+        assert again.value == ball.value and again.radius >= ball.radius > 0
+
+
 def test_bound_values_replace_the_declared_ones(tip):
     # undamped: omega^2 = k (1/m_1 + 1/m_2)
     poles = tip.bind(b=0, k="30 N/m", m_1=2, m_2=3).poles()
@@ -293,6 +317,8 @@ def test_an_impossible_choice_is_a_usage_error(model, colocated):
         lambda: bound.discretise(math.inf),
         lambda: feedback.stability("K", digits=0),
         lambda: feedback.stability("K", up_to_hz=math.inf),
+        lambda: feedback.stability("K", up_to_hz=-1),
+        lambda: bound.step_info(digits=100_000),
     ]:
         assert refusal(call) == "UsageError SF902"
     for band in [(50, 1), (0, 50), (1, math.inf)]:  # the search would begin at 0 and never end

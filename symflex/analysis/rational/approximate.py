@@ -186,10 +186,6 @@ def approximate(
     kept = truncate(bound, modes, DIGITS)
     made = FORMS[form](bound, kept, DIGITS)
     low, high, stated = _bands(kept, band)
-
-    def value(s: complex) -> complex:
-        return complex(made.evaluator(np.asarray(s, dtype=complex)))
-
     roots = (*kept.poles, *(kept.zeros if form == "product" else ()))
     return RationalApproximation(
         **vars(made) | {"is_estimate": made.is_estimate or any(not root.certified for root in roots)},
@@ -198,7 +194,7 @@ def approximate(
         modes=kept.modes,
         is_exact=kept.is_exact,
         omitted_hz=kept.omitted_hz,
-        scan=scan_error(bound, value, kept.found, low, high),
+        scan=scan_error(bound, made.evaluator.at, kept.found, low, high),
         band=stated,
         stability=kept.found.verdict,
     )

@@ -10,6 +10,7 @@ compares residues and stays finite, and is taken for the error at the pole.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -154,23 +155,30 @@ def scan_error(
     on_axis = np.array(
         [float(root.im.mid()) for root in roots.poles if root.on_imaginary_axis and root.im > 0]
     )
-
-    def error_at(frequency_hz: float) -> float:
-        omega = 2 * np.pi * frequency_hz
-        near = on_axis[np.abs(on_axis - omega) < AXIS_GAP * on_axis]
-        s = 1j * (near[0] * (1 - AXIS_GAP) if near.size else omega)
-        exact = bound(s)
-        difference = abs(approximation(s) - exact)
-        if difference == 0:
-            return 0.0
-        gaps = np.maximum(np.abs(s - zeros), np.finfo(float).tiny) / np.abs(zeros)
-        filled = abs(exact) * float(np.prod(np.maximum(1.0, DIP / gaps)))
-        return difference / filled if filled else float("inf")
-
+    error_at = partial(_error_at, bound, approximation, zeros, on_axis)
     omega = adaptive_grid(bound, low_hz, high_hz, POINTS, roots)
     frequencies = omega / (2 * np.pi)
     errors = np.array([error_at(f) for f in frequencies.tolist()])
     return ErrorScan(frequencies, errors, error_at)
+
+
+def _error_at(
+    bound: AnyBoundFunction,
+    approximation: Callable[[complex], complex],
+    zeros: npt.NDArray[np.complex128],
+    on_axis: npt.NDArray[np.float64],
+    frequency_hz: float,
+) -> float:
+    omega = 2 * np.pi * frequency_hz
+    near = on_axis[np.abs(on_axis - omega) < AXIS_GAP * on_axis]
+    s = 1j * (near[0] * (1 - AXIS_GAP) if near.size else omega)
+    exact = bound(s)
+    difference = abs(approximation(s) - exact)
+    if difference == 0:
+        return 0.0
+    gaps = np.maximum(np.abs(s - zeros), np.finfo(float).tiny) / np.abs(zeros)
+    filled = abs(exact) * float(np.prod(np.maximum(1.0, DIP / gaps)))
+    return difference / filled if filled else float("inf")
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +193,10 @@ class RationalEvaluator:
     # Pole, power and coefficient of partial fractions; with them these are summed.
     terms: tuple[tuple[complex, int, complex], ...] | None = None
     polynomial: tuple[float, ...] = ()  # added to the partial fractions, in ascending powers of s
+
+    def at(self, s: complex) -> complex:
+        """Return the value at one complex frequency."""
+        return complex(self(np.asarray(s, dtype=complex)))
 
     def __call__(self, s: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
         """Return the values at an array of complex frequencies [rad/s]."""

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
-from symflex.library import ParameterPort
+from symflex.library import ParameterPort, Stateless
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -255,7 +255,7 @@ class ElementUse:
         return tuple(t.across for t in self.terminals[port])
 
 
-class Element(ABC):
+class Element(Stateless, ABC):
     """Base of every element. Subclasses are final, stateless and registered in ``ELEMENTS``.
 
     Proofs, reports and figures read here what they may take for granted of it, and where nothing is said they

@@ -75,6 +75,8 @@ def _unreadable(name: str, reason: str, hint: str | None = None) -> UsageError:
 
 def _meant(name: str) -> str | None:
     """Return a hint to the example of this name, to a file beside it with nearly this name, or to a start."""
+    if name == "-":
+        return "a file's name is needed: standard input is not read"
     if example := example_of(name):
         return f"'symflex examples copy {example}' writes a model of this name"
     folder, own = os.path.split(name)

@@ -94,7 +94,7 @@ def test_a_beam_has_shapers_too():
 def test_what_there_is_not_is_refused():
     for modes, kind, said in (
         (1, "zvdd", "did you mean 'zvd'"),
-        (2, "zv", "has 1 modes"),
+        (2, "zv", "has 1 mode that"),
         (0, "zv", "not 0"),
     ):
         found = words(input_shaper, rational("1/(s^2 + s/10 + 4)"), modes, kind)

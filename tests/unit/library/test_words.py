@@ -21,6 +21,7 @@ def test_engineers_words_lead_to_elements_and_blocks_that_exist():
         ("Op-Amp", "for Op-Amp write op_amp"),
         ("sprnig", "did you mean 'spring'?"),
         ("pid", "'pid' is a block"),
+        ("tortion_spring", "did you mean 'torsion_spring'?"),
         ("coil_spring", "did you mean 'spring'?"),
         ("acme screw", "for screw write transformer"),
         ("relay", "there is no relay: it is not linear"),

@@ -124,6 +124,7 @@ def test_programs_for_control_take_it():
     assert step.to_scipy().dt == 0.001
     assert step.to_control().dt == 0.001
     assert step.states[-1] == "F_1_before"
+    assert loads(CHAIN).state_space().discretise("1 ms", delay="0 s").states == step.states[:-1]
 
 
 def test_times_that_make_no_sense_are_refused():
