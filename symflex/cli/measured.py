@@ -71,13 +71,18 @@ def fit(given: FitOptions) -> int:
     with ProgressBar() as bar, budget.told(bar).entered():
         found = fitted(every, given)
     shapes = mode_shapes(found, every) if given.driving else None
+    whole = found
     if given.driving and len(every) > 1 and (given.output or given.figure):
-        note(f"files and figures have {given.driving} alone: leave out --driving to fit all responses")
-    if given.strict and found.poor:
+        driven_first = sorted(every, key=lambda response: response.name != given.driving)
+        with ProgressBar() as bar, budget.told(bar).entered():
+            whole = fitted(driven_first, replace(given, tfs=(), modes=int(found.modes.sum()) or None))
+        why = "".join(f" (poor: {reason})" for reason in whole.poor)
+        note(f"files and figures have all responses, fitted with the same poles{why}")
+    if given.strict and (poor := found.poor + whole.poor):
         hint = "leave out --strict to print it anyway"
-        raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
+        raise FitError(Diagnostic("SF618", f"the fit is poor: {poor[0]}", None, hint))
     if given.output:
-        text = fit_specification(found, Path(given.output).parent, given.loop)
+        text = fit_specification(whole, Path(given.output).parent, given.loop)
         write_atomically(Path(given.output), text.encode())
         note(f"wrote {given.output}")
         try:
@@ -86,7 +91,7 @@ def fit(given: FitOptions) -> int:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
             note(f"its base reads other folders: give {folders} to the commands that read it")
     answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
-    _draw(found, given)
+    _draw(whole, given)
     return 0
 
 

@@ -100,6 +100,8 @@ WRAPPED: Final = 2 * np.pi * 1.001
 """The largest range of phases that may have been wrapped, and not written as they go on."""
 FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
+DECADE: Final = 10.0
+"""Ratio of the largest and smallest of positive numbers up to which they may well be dB."""
 MOST_RADIANS, MOST_DEGREES = 7.0, 1e4
 """A column whose largest number lies between is rather a phase, in degrees."""
 MOST_LISTED: Final = 6
@@ -670,14 +672,18 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
     is_gain = magnitude.meaning.word in ("gain", "level")
     costs = {(s, f): _unlikeness(lines, _size(magnitude, s), f * turn) for s, f in product(scales, factors)}
     usual = [costs[scales[0], f] for f in factors]
-    # A plain magnitude is the usual reading; both are open where it does not fit, and for a gain.
-    readings = scales[:1] if not is_gain and min(usual) < FITS and np.ptp(usual) > UNDECIDED else scales
+    # A plain magnitude is the usual reading; both are open for a gain, where it does not fit, and where dB
+    # within a decade fit nearly as well.
+    sizes = np.abs(magnitude.numbers.real)
+    other = min(costs[scales[-1], f] for f in factors) - UNDECIDED / 2
+    limit = FITS if np.nanmax(sizes) > DECADE * np.nanmin(sizes) else min(FITS, other)
+    readings = scales[:1] if not is_gain and min(usual) < limit and np.ptp(usual) > UNDECIDED else scales
     factor = _best({f: min(costs[s, f] for s in readings) for f in factors}, UNDECIDED)
     if factor is None:
         message = f"column '{phase.name[:40]}' has no unit, and its numbers fit degrees as well as radians"
         hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
         raise DataError(Diagnostic("SF602", message, phase.span, hint))
-    scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED / 2)
+    scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED * (0.5 if is_gain else 0.7))
     if scale is None and (is_gain or costs["linear", factor] - costs["decibel", factor] > UNDECIDED / 6):
         message = (
             f"column '{magnitude.name[:40]}' has no unit, and its numbers fit dB as well as a plain ratio"
@@ -725,9 +731,12 @@ def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
 
 def _possible_units(turn: Real) -> list[float]:
     """Return the units [rad] that phases may be in; wrapped ones that fill a turn say it themselves."""
-    span = float(np.ptp(turn[np.isfinite(turn)])) if np.any(np.isfinite(turn)) else 0.0
+    known = turn[np.isfinite(turn)]
+    span, jump = (
+        (float(np.ptp(known)), float(np.max(np.abs(np.diff(known))))) if known.size > 1 else (0.0, 0.0)
+    )
     for factor in (np.pi / 180, 1.0):
-        if FILLED * WRAPPED < span * factor <= WRAPPED:
+        if FILLED * WRAPPED < span * factor <= WRAPPED and jump * factor > np.pi:
             return [factor]
     return [np.pi / 180, 1.0]
 

@@ -52,8 +52,10 @@ _CANDIDATES: Final = (
 """Delimiters and decimal signs; of equals the first is taken."""
 _EASTERN: Final = {"GB18030": "频率", "Shift_JIS": "周波数"}
 """Encodings beside UTF-8, and the word for a frequency by which they are known."""
-SAMPLE: Final = 400
-"""Lines from the middle of a file by which delimiter and decimal sign are chosen."""
+SAMPLE, MOST_SAMPLED = 400, 200_000
+"""Lines from the middle of a file by which delimiter and decimal sign are chosen, and their characters."""
+MAX_CELLS: Final = 5_000_000
+"""Of all rows: 15 s and 800 MB."""
 LONGEST_LINE: Final = 20_000
 LONGEST_NUMBER: Final = 100
 FEWEST_ROWS: Final = 3
@@ -269,11 +271,16 @@ class TextTable:
         """Return the blocks of numbers, without those that are small beside the largest."""
         found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
+        left = MAX_CELLS
         for i, line in enumerate(self.lines):
             cells = cut(line, self.delimiter) if line and not line.isspace() else []
             if not self._is_row(cells, len(found[-1][2][-1]) if found else 0, has_text_in_front):
                 gap.append(i)
                 continue
+            left -= len(cells)
+            if left < 0:
+                message = f"'{self.source.name}' has more than {MAX_CELLS} numbers"
+                raise DataError(Diagnostic("SF607", message, self.line(i)))
             rows = found[-1][2] if found else []
             is_stray = len(rows) == 1 and len(cells) > len(rows[0])
             # A blank line below the first row tells nothing: rows may stand two lines apart.
@@ -309,8 +316,9 @@ class TextTable:
 
 def _format(lines: Sequence[str]) -> tuple[str, str]:
     written = [line for line in lines if line.strip()]
-    begin = max((len(written) - SAMPLE) // 2, 0)
-    sample = written[begin : begin + SAMPLE]
+    size = min(SAMPLE, MOST_SAMPLED // max(map(len, written), default=1) + 1)
+    begin = max((len(written) - size) // 2, 0)
+    sample = written[begin : begin + size]
 
     def score(candidate: tuple[str, str]) -> float:
         found = 0.0

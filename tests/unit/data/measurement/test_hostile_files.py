@@ -13,6 +13,7 @@ import scipy.io
 
 from symflex.data.measurement.array_files import read_archive, read_netcdf, read_variables
 from symflex.data.measurement.arrays import read_arrays
+from symflex.data.measurement.comma_separated import read_columns
 from symflex.errors import DataError
 
 ARRAYS = {"f": np.arange(1.0, 5), "H": np.array([1, 1j, -1, 2 + 1j]), "tf": "X/F"}
@@ -183,3 +184,11 @@ def test_variables_of_netcdf_in_one_place_are_refused():
     assert list(read_netcdf(netcdf(4, 1) + bytes(32), 9)[1]) == ["a"]
     with pytest.raises(ValueError, match="variables overlap"):
         read_netcdf(netcdf(100, 8) + bytes(800), 9)
+
+
+def test_a_text_of_very_many_cells_is_refused_early(monkeypatch):
+    monkeypatch.setattr("symflex.data.measurement.text_table.MAX_CELLS", 5000)
+    rows = "".join(f"{i},{','.join('12345')}\n" for i in range(1000))
+    read_columns("wide.csv", ("f,a,b,c,d,e\n" + rows[: rows.index("800,")]).encode(), "wide", "f,re,im")
+    with pytest.raises(DataError, match=r"wide.csv:835:1: error\[SF607\]: .* more than 5000 numbers"):
+        read_columns("wide.csv", ("f,a,b,c,d,e\n" + rows).encode(), "wide", "f,re,im")

@@ -120,6 +120,23 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert found.values == pytest.approx(values, rel=1e-3), name
 
 
+@pytest.mark.parametrize(("ratio", "level"), [(1.242, 2.9), (1.3, 3.0), (1.15, 1.9)])
+def test_positive_decibels_near_one_are_never_read_as_a_ratio(tmp_path, ratio, level):
+    # A lag turns the phase by asin((r - 1)/(r + 1)): 6.2 degrees for 1.242, as many as a turn has radians.
+    x = np.geomspace(0.01, 100, 120)
+    h = 10 ** (level / 20) * (1 + 1j * x / ratio**0.5 / ratio**0.5) / (1 + 1j * x)
+    rows_of = zip(x, 20 * np.log10(abs(h)), np.degrees(np.angle(h)), strict=True)
+    text = "".join(f"{f:.6g},{size:.6g},{turn:.6g}\n" for f, size, turn in rows_of)
+    (tmp_path / "a.csv").write_text("Frequency,Magnitude,Phase\n" + text)
+    try:
+        (found,) = read_measurement(tmp_path / "a.csv")
+    except DataError as error:
+        assert error.diagnostics[0].code == "SF602"
+        assert "fit" in str(error)
+    else:
+        assert found.values == pytest.approx(h, rel=1e-3)
+
+
 def test_a_cross_spectrum_among_arrays_is_no_response(tmp_path):
     (tmp_path / "a.npz").write_bytes(npz(f=F, Pxy=H, Pxx=abs(H)))
     with pytest.raises(DataError, match=r"has no array values; it has f \(99\), Pxy \(99\)"):
