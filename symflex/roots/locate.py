@@ -24,6 +24,7 @@ from symflex.roots.distributed.right_half_plane import (
     PASSIVE_LOOP,
     RightHalfPlane,
     gaps_text,
+    last_on_axis,
     search_right,
 )
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
@@ -425,31 +426,37 @@ class _Searched:
         gaps: list[RightHalfPlane] = []
         has_more = False  # poles than those that are known
         for place, part in (*poles, (2 * len(poles), product)):
-            is_hidden = part is product
+            is_hidden, known = part is product, list[Root]()
             try:
                 side = (
                     self.sides[place]
                     if place < len(self.sides)
                     else Side(bound, part, self.digits, is_hidden=is_hidden)
                 )
-                has_more = has_more or not side.is_finite
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
-                if proof or is_over:
+                is_plain = rests or is_over or side.is_finite
+                end = limit if not proof else None if is_plain else last_on_axis(bound, part, side)
+                has_more = has_more or not (side.is_finite or (proof and end is not None))
+                if is_over or (proof and end is None):
                     more = side.all_roots if side.is_finite else side.at_origin if rests else ()
                     known += [r for r in more if r not in known]
                     found.append(tuple(known))
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
-                whole = search_right(bound, part, side, known, reached, self.digits, limit)
+                whole = search_right(bound, part, side, known, reached, self.digits, end)
             except SymflexError as error:
-                found.append(())
+                has_more, known = True, known if proof else []
+                found.append(tuple(known))
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
             apart = tuple(
-                r for r in whole.roots if not any(overlap(r, p) for p in degenerate if not p.is_zero)
+                r
+                for r in whole.roots
+                if (proof and r in known) or not any(overlap(r, p) for p in degenerate if not p.is_zero)
             )
+            has_more = has_more or bool(whole.unproved) or len(apart) < len(whole.roots)
             if any(is_right(r) for r in whole.roots if r not in apart):
                 gaps.append(RightHalfPlane((), DEGENERATE))
             found.append(apart)

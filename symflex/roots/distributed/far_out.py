@@ -13,21 +13,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from math import sqrt
+from math import gcd, inf, sqrt
 from typing import TYPE_CHECKING
 
 from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in, terms_of
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
 from symflex.balls import ball, precision
 from symflex.budget import spend
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 from symflex.transfer.enclose import summed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -41,6 +41,7 @@ LARGEST = 1e36
 """Of a radius, relative to the frequency of about one wave in the longest part."""
 NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
+LINEAR, QUADRATIC = 1, 2
 ROOTS = {"wave": 2, "bending": 4}
 NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
 TOO_MANY = "no bound on the poles is known for so many exponentials"
@@ -49,6 +50,10 @@ ADVANCED = "a delayed term has the highest power of s, so poles right of the axi
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
 NO_LOSS = "waves without enough loss have poles all along the axis"
+
+TURNED = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
+PHASES = 128
+"""Parts of a turn in which two sums are shown not to vanish together."""
 
 Terms = dict[Exponent, dict[Fraction, acb]]
 """Of a sum of exponentials, amplitudes as sums of powers of s."""
@@ -288,7 +293,7 @@ class _SumFarOut:
     def obstacle(self, radius: float) -> str:
         """Say why no term outweighs the others for large s."""
         powers = self.powers(radius)
-        if powers is None or any(not argument.is_delay for argument in powers[1]):
+        if powers is None or any(each.wavenumber for each in self.sums.arguments):
             return NO_LOSS
         highest = {
             own: max((p for p, c in amplitude.items() if abs(c).upper() > 0), default=Fraction(-1))
@@ -302,10 +307,14 @@ class _SumFarOut:
     def powers(self, radius: float) -> tuple[Terms, list[_Power]] | None:
         """Return amplitudes and arguments of the exponentials as powers of s, beyond a radius."""
         named = {LAPLACE: _Power(Fraction(1), acb(1))}
+        to_and_fro: dict[str, tuple[acb, acb]] = {}
         for law in self.laws:
             if not law.wavenumbers:
                 continue
-            order = ROOTS[law.kind]
+            order, name = ROOTS[law.kind], law.wavenumbers[0]
+            if (wave := _wave(self.kernels, law, radius)) is not None:
+                named[name], to_and_fro[name] = wave[0], wave[1:]
+                continue
             found = _at_infinity(self.kernels, law.characteristic[0], radius)
             if found is None:
                 return None
@@ -324,15 +333,20 @@ class _SumFarOut:
         for i, (argument, length) in enumerate(zip(self.sums.arguments, self.sums.lengths, strict=True)):
             if argument.wavenumber:
                 known = named[argument.wavenumber]
+                if argument.wavenumber in to_and_fro and length.real > 0:
+                    unit, rest = to_and_fro[argument.wavenumber]
+                    decays[i] = rest * length
+                    arguments.append(_Power(Fraction(1), unit * length, is_delay=True))
+                    continue
                 arguments.append(_Power(known.power, known.unit * length))
                 continue
             found = _at_infinity(self.kernels, argument.rate, radius)
             if found is None:
                 return None
             power, value = found
-            linear = _linear(self.kernels, argument.rate)
-            if linear is not None:
-                value, decays[i] = linear[0], -linear[1] * length
+            linear = _polynomial(self.kernels, argument.rate)
+            if linear is not None and len(linear) == LINEAR + 1:
+                value, decays[i] = linear[1], -linear[0] * length
             is_delay = power == 1 and bool(value.imag == 0) and bool(value.real * length.real > 0)
             arguments.append(_Power(Fraction(power), -value * length, is_delay))
         terms: Terms = {}
@@ -382,18 +396,38 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
     return power, total
 
 
-def _linear(kernels: KernelValues, value: Factored) -> tuple[acb, acb] | None:
-    """Return a and b of a rate ``a s + b``; None of any other."""
-    unit, rate = acb(ball(value.unit)), (acb(0), acb(1))
+def _wave(kernels: KernelValues, law: Dispersion, radius: float) -> tuple[_Power, acb, acb] | None:
+    """Return a wavenumber, and minus u and d of ``-u s - d`` which it is beyond a radius.
+
+    None unless ``gamma^2 = u^2 s^2 + b s + c`` with b not negative, of loss. Then d is next to b/(2 u).
+    """
+    square = _polynomial(kernels, -law.characteristic[0]) if law.kind == "wave" else None
+    if square is None or len(square) != QUADRATIC + 1:
+        return None
+    c, b, u = square[0], square[1], square[2].sqrt()
+    if not (square[2].real > 0 and b.real >= 0):
+        return None
+    small = acb(arb(0, 1 / radius), arb(0, 1 / radius))
+    rest = (b + c * small) / u / ((1 + (b + c * small) * small / u**2).sqrt() + 1)
+    return _Power(Fraction(1), -u - rest * small), -u, -rest
+
+
+def _polynomial(kernels: KernelValues, value: Factored) -> list[acb] | None:
+    """Return the coefficients of a polynomial in s, that of the lowest power first; None of other values."""
+    found = [acb(ball(value.unit))]
     for factor, exponent in value.factors:
-        match _coefficients(kernels, factor):
-            case [constant]:
-                unit = unit * constant**exponent
-            case [constant, slope] if exponent == 1 and rate[0] == 0:
-                rate = (slope, constant)
-            case _:
-                return None
-    return (unit * rate[0], unit * rate[1]) if rate[0] != 0 else None
+        own = _coefficients(kernels, factor)
+        if exponent < 0 and len(own) > 1:
+            return None
+        for _ in range(abs(exponent)):
+            if exponent < 0:
+                found = [c / own[0] for c in found]
+                continue
+            total = [acb(0)] * (len(found) + len(own) - 1)
+            for (i, a), (k, b) in product(enumerate(found), enumerate(own)):
+                total[i + k] += a * b
+            found = total
+    return found
 
 
 def _coefficients(kernels: KernelValues, factor: fmpz_mpoly) -> list[acb]:
@@ -403,6 +437,221 @@ def _coefficients(kernels: KernelValues, factor: fmpz_mpoly) -> list[acb]:
         summed(terms_of(c), names, lambda name: acb(kernels.constants[name]), acb(1))
         for c in coefficients_in_s(factor, Ring(tuple(names)))
     ]
+
+
+def axis_tail(bound: BoundTransferFunction, part: Factored, start: float) -> float:
+    """Return a frequency [rad/s] beyond which a product has no root on the imaginary axis; inf without one.
+
+    ``start`` is the smallest tried. Where waves lose nothing their kernels are even in s, and so is ``-s`` a
+    root on the axis: even and odd part vanish both. Of each those exponentials are left that grow the
+    fastest, which turn by multiples of one phase. Whatever it is, one of the parts is not zero.
+
+        Cantilever with a dashpot:  EI k^3 (1 + cosh cos) + s b (cosh sin - sinh cos), of k l
+        k -> inf                    cos(k l) = 0 and sin(k l) - cos(k l) = 0: impossible
+    """
+    arguments, radius = arguments_of(bound.kernels), start
+    with precision(BITS):
+        kernels = bound.kernel_values()
+        for factor in (f for f, exponent in part.factors if exponent > 0):
+            if arguments is None or radius == inf or not _is_mirrored(bound, factor):
+                return inf
+            together = _together(bound.ratio.ring, factor)
+            sums = [exponential_sum(bound.ratio.ring, bound.kernels, arguments, each) for each in together]
+            known = tuple((each, 1) for each in sums if each is not None)
+            if len(known) < len(sums):
+                return inf
+            function = _SumsOnAxis(ExponentialValues(kernels, arguments, known))
+            radius = _least(radius, function.have_no_root) or inf
+    return radius
+
+
+def _is_mirrored(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
+    """Tell whether a polynomial in kernels stays the same, but for a unit, if a wavenumber turns.
+
+    On the axis each is real or conjugate to what it then is: ``-k``, or ``-j mu`` in bending.
+    """
+    index, kernels = bound.ratio.ring.index, bound.kernels.kernels
+    terms = dict(terms_of(factor))
+    for name in bound.kernels.wavenumbers:
+        own: dict[tuple[str, Factored], int] = {
+            (k.function, k.length): index[k.generator] for k in kernels if k.wavenumber == name
+        }
+        odd = {index[name], *(i for (function, _), i in own.items() if function.startswith("sin"))}
+        images = dict[int, int]()
+        if any(function == "cos" for function, _ in own):
+            images = {i: own.get((TURNED[function], length), -1) for (function, length), i in own.items()}
+        units = set()
+        for monomial, c in terms.items():
+            image = terms.get(tuple(sorted((images.get(i, i), e) for i, e in monomial)), 0)
+            turns = sum(e for i, e in monomial if i in odd) * (3 if images else 2)
+            units.add((turns + (0 if c == image else 2)) % 4 if abs(c) == abs(image) else -1)
+        if units - {-1} != units or len(units) > 1:
+            return False
+    return True
+
+
+def _together(ring: Ring, factor: fmpz_mpoly) -> list[fmpz_mpoly]:
+    """Return the even and the odd part in s, and what vanishes with both: a term of each cancels in that.
+
+    Of a dashpot that a mass is at: ``m s^2 X + Y`` and ``b s X`` leave Y.
+    """
+    parts = by_powers(ring, factor)
+    s, found = ring.context.gen(0), list[fmpz_mpoly]()
+    for odd in (0, 1):
+        half = sum((c * s**p for p, c in parts.items() if p % 2 == odd), ring.constant(0))
+        found += [] if half.is_zero() else [half]
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        if len(found) > max(one, other):
+            f, g = found[one], found[other]
+            (a, c), (b, d) = ((ring.context.from_dict({h.monoms()[0]: 1}), h.coeffs()[0]) for h in (f, g))
+            common = a.gcd(b)
+            rest = f * (b // common) * d - g * (a // common) * c
+            found += [] if rest.is_zero() else [rest]
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _SumsOnAxis:
+    """Sums of exponentials for large omega, where s = j omega."""
+
+    values: ExponentialValues
+
+    def have_no_root(self, radius: float) -> bool:
+        """Tell whether it is proved that not all of them vanish anywhere from a radius on."""
+        named = self._generators(radius)
+        if named is None:
+            return False
+        turns, sizes = [], list[_Power]()
+        for argument, length in zip(self.values.arguments, self.values.lengths, strict=True):
+            turn, power, unit = named.get(argument.wavenumber, (0, Fraction(0), arb("nan")))
+            # With an eighth of a turn mu (a + j b) is mu/sqrt(2) ((a - b) + j (a + b)).
+            sizes.append(_Power(power, unit * length / arb(2 if turn == 1 else 1).sqrt()))
+            turns.append(turn)
+        numbers = {
+            name: (power, acb(0, turn * arb.pi() / 4).exp() * unit)
+            for name, (turn, power, unit) in named.items()
+        }
+        sums, base = [], Exponent()
+        for (total, _), factors in zip(self.values.sums, self.values.coefficients, strict=True):
+            terms = []
+            for exponent, amplitude in zip(total.terms, factors, strict=True):
+                own = [(i, *((a, b), (a - b, a + b), (-b, a))[turns[i]]) for i, a, b in exponent]
+                if any(not sizes[i].unit.is_finite() or (n and not sizes[i].power) for i, _, n in own):
+                    return False
+                still = sum((sizes[i].unit * g for i, g, _ in own if not sizes[i].power), acb(0)).exp()
+                growth = tuple((i, g, 0) for i, g, _ in own if g and sizes[i].power)
+                terms.append((growth, {i: n for i, _, n in own if n}, _summed(amplitude, numbers, still)))
+            found = _fastest(terms, sizes, radius)
+            if found is None:
+                return False
+            waves: dict[int, acb] = {}
+            for phase, size in found[0]:
+                n = gcd(*phase.values()) * (-1 if min(phase.items(), default=(0, 1))[1] < 0 else 1)
+                base = base or tuple((i, x // n, 0) for i, x in phase.items())
+                if phase != {i: x * n for i, x, _ in base if n}:
+                    return False  # of two phases no limit is known
+                waves[n] = waves.get(n, acb(0)) + size
+            sums.append((waves, acb(arb(0, found[1]), arb(0, found[1]))))
+        step = 2 * arb.pi() / PHASES
+        turned = [acb(0, (step * i).union(step * (i + 1))) for i in range(PHASES)]
+        return all(
+            any(not sum((c * (x * n).exp() for n, c in waves.items()), e).contains(0) for waves, e in sums)
+            for x in turned
+        )
+
+    def _generators(self, radius: float) -> dict[str, tuple[int, Fraction, arb]] | None:
+        """Return s and wavenumbers from a radius on: eighths of a turn, powers of omega, and their factors.
+
+        None where a wavenumber is neither real nor, but for such a turn, has a sign.
+        """
+        named = {LAPLACE: (2, Fraction(1), arb(1))}
+        kernels = self.values.evaluator
+        for law in kernels.table.dispersions:
+            found = [_on_axis(kernels, c, radius) for c in law.characteristic[::2]]
+            known = [each for each in found if each is not None]
+            if len(known) < len(found) or law.kind not in (*ROOTS, "pair", "exponential"):
+                return None
+            if law.kind == "exponential":
+                continue
+            order, (p, c) = ROOTS.get(law.kind, 2), known[0]
+            roots = [(p, c / 4 if law.kind == "bending" else -c)]
+            if law.kind == "pair":
+                q, b = known[1]
+                power = max(q, p / 2)
+                b, c0 = b * _from(radius, q - power), c * _from(radius, p - 2 * power)
+                root = (b * b - 4 * c0).sqrt()
+                first = (-b - root if b > 0 else root - b) / 2
+                other = (power, (-b - root) / 2) if c0 < 0 and not b > 0 else (p - power, c / first)
+                roots = [(power, first), other]
+            for name, (power, square) in zip(law.wavenumbers, roots, strict=True):
+                if not abs(square) > 0:
+                    return None
+                named[name] = (0 if square > 0 else 4 // order, power / order, abs(square).root(order))
+        return named
+
+
+def _summed(
+    amplitude: Valued, numbers: Mapping[str, tuple[Fraction, acb]], scale: acb
+) -> dict[Fraction, acb]:
+    """Return an amplitude as a sum of powers of omega."""
+    found: dict[Fraction, acb] = {}
+    for number, powers in amplitude:
+        power, total = Fraction(0), number * scale
+        for name, e in powers:
+            power, total = power + numbers[name][0] * e, total * numbers[name][1] ** e
+        found[power] = found.get(power, acb(0)) + total
+    return found
+
+
+def _fastest(
+    terms: Sequence[tuple[Exponent, dict[int, int], dict[Fraction, acb]]],
+    sizes: Sequence[_Power],
+    radius: float,
+) -> tuple[list[tuple[dict[int, int], acb]], arb] | None:
+    """Return how large those terms are, by their phases, that grow the fastest, and all others at most.
+
+    All are divided by these and their highest power; None where others grow as fast.
+    """
+
+    def rate(growth: Exponent) -> float:
+        each = (sizes[i].unit.real * g * arb(radius) ** ball(sizes[i].power) for i, g, _ in growth)
+        return float(sum(each, arb(0)).mid())
+
+    fastest = max((growth for growth, _, _ in terms), key=rate)
+    highest = max(p for growth, _, factors in terms if growth == fastest for p in factors)
+    found, error = [], arb(0)
+    for growth, phase, factors in terms:
+        faded = _faded(_sum((growth, 1), (fastest, -1)), sizes, arb(radius))
+        if faded is None or any(p > highest and not -faded[1] > ball(p - highest) for p in factors):
+            return None
+        size = sum((c * _from(radius, p - highest) for p, c in factors.items()), acb(0))
+        if growth == fastest:
+            found.append((phase, size))
+        else:
+            error += abs(size).upper() * faded[0].upper()
+    return found, error.upper()
+
+
+def _from(radius: float, power: Fraction) -> arb:
+    """Return a power of omega from a radius on, what grows at the radius itself."""
+    value = arb(radius) ** ball(power)
+    return arb(0).union(value) if power < 0 else value
+
+
+def _on_axis(kernels: KernelValues, value: Factored, radius: float) -> tuple[Fraction, arb] | None:
+    """Return a power of omega and what a value is times it from a radius on, None unless it is even in s."""
+    if value.is_zero:
+        return Fraction(0), arb(0)
+    odd = 0
+    for factor, exponent in value.factors:
+        parities = {dict(monomial).get(0, 0) % 2 for monomial, _ in terms_of(factor)}
+        if len(parities) > 1:
+            return None
+        odd += parities.pop() * exponent
+    found = _at_infinity(kernels, value, radius)
+    if found is None or odd % 2:
+        return None
+    return Fraction(found[0]), found[1].real * (-1) ** (found[0] // 2)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from flint import acb
 
 from symflex.errors import BudgetError
 from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.distributed.far_out import right_tail
+from symflex.roots.distributed.far_out import axis_tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.region import Band, Rectangle
@@ -37,6 +37,8 @@ DEGENERATE = "a root where wavenumbers meet may be no pole"
 NOT_COUNTED = "the poles right of the imaginary axis could not be counted"
 WAVES = 10.0
 """Largest argument of a kernel up to which poles are counted where no end of them is known."""
+FURTHER, LOWER = 30.0, 3000.0
+"""Times that frequency to which roots on the axis are counted; it over that from which on none may be."""
 MARGIN = 1.01
 """How far beyond the radius of a tail the path runs, so that its corners meet no root."""
 
@@ -109,6 +111,13 @@ def search_right(
                 return _known_to(seen, unproved, reached)
             return RightHalfPlane(tuple(seen), proof.reason or NOT_COUNTED)
     return _known_to(seen, unproved, radius)
+
+
+def last_on_axis(bound: BoundTransferFunction, part: Factored, side: Side) -> float | None:
+    """Return a radius [rad/s] beyond which no root lies on the axis, None without one or only far off."""
+    most = side.function.frequency_of(WAVES) * FURTHER
+    radius = axis_tail(bound, part, most / LOWER)
+    return radius if radius < most else None
 
 
 def _known_to(roots: Sequence[Root], unproved: str, reached: float) -> RightHalfPlane:

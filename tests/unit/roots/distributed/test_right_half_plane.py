@@ -257,3 +257,49 @@ elements.loop = { type = "force_source", at = "x", f = "K*rod.u(x_s)" }
     # A force of the other sign has no root there, but neither is it a spring.
     verdict = found(text.replace('"K*rod', '"-K*rod'), Modes(1)).verdict
     assert (verdict.word, verdict.certified) == ("unknown", False)
+
+
+MOVING = """
+symflex = 1
+inputs.F = {{ unit = "N" }}
+outputs.Y = "w(1/3)"
+[fields.w]
+domain = [0, 1]
+equation = "s^2*w + 4*s*w' + 4*w'' = 25*w''"
+conditions = ["w(0) = 0", "25*w'(1) + {damping}*s*w(1) = F"]
+"""
+
+
+def test_a_string_that_moves_is_damped_where_what_its_end_reflects_is_smaller():
+    """Waves at speeds 5 + 2 and 5 - 2: their quotient, abs((d - 25/7)/(d + 25/3)), is 1 for d = -50/21."""
+    for damping, is_stable in ((3, True), (0, True), (-2.3, True), (-2.5, False)):
+        poles = mpmath.log(abs((damping - 25 / 7) / (damping + 25 / 3))) / (1 / 7 + 1 / 3)
+        assert (poles < 0) is is_stable
+        shown = found(MOVING.format(damping=damping), Modes(1))
+        assert all(float(p.re.mid()) == pytest.approx(float(poles)) for p in shown.poles if not p.is_real)
+        assert (shown.verdict.word == "stable") is is_stable, damping
+
+
+EXCHANGER = """
+symflex = 1
+inputs.T_0 = {{}}
+outputs.Y = "T(2)"
+[fields.pipe]
+unknowns = ["T", "W"]
+domain = [0, 2]
+equations = ["T' + s*T + {h}*(T - W) = 0", "-W' + s*W + {h}*(W - T) = 0"]
+conditions = ["T(0) = T_0", "W(2) = 0"]
+"""
+
+
+def test_counterflow_is_stable_but_where_heat_flows_to_what_is_warmer():
+    """With k^2 = (s + h)^2 - h^2 at poles cosh(2 k) + (s + h) sinh(2 k)/k = 0; of h = -2 one is real."""
+    assert found(EXCHANGER.format(h=0.3), Modes(1)).verdict.word == "stable"
+    warmed = found(EXCHANGER.format(h=-2), Modes(1))
+    assert warmed.verdict.word == "unstable"
+    (low, high) = (
+        (mpmath.cosh(2 * k) + (s - 2) * mpmath.sinh(2 * k) / k).real
+        for s in (3.5, 3.9)
+        for k in [mpmath.sqrt((s - 2) ** 2 - 4)]
+    )
+    assert low < 0 < high

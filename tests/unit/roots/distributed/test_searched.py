@@ -102,6 +102,7 @@ def world(monkeypatch):
             self.made, self.judged = [], []
             self.sides = {"poles": Known([]), "zeros": Known([]), "hidden": Known([], is_finite=True)}
             self.beyond = {"poles": RightHalfPlane(()), "hidden": RightHalfPlane(())}
+            self.last = None  # on the axis
 
         def side(self, source, part, digits, *, is_hidden=False):
             name = "hidden" if is_hidden else "poles" if part is source.den else "zeros"
@@ -123,6 +124,7 @@ def world(monkeypatch):
     made = World()
     monkeypatch.setattr(room, "Side", made.side)
     monkeypatch.setattr(room, "search_right", made.search_right)
+    monkeypatch.setattr(room, "last_on_axis", lambda *_: made.last)
     return made
 
 
@@ -501,6 +503,22 @@ def test_a_passive_model_is_stable_without_a_search_unless_it_is_another_functio
     assert shown.verdict.reason == f"{PASSIVE}; {NONE_ON_AXIS}"
     world.locate(replace(bound(ROD), is_of_model=False))
     assert [name for name, *_ in world.judged] == ["poles", "hidden"]
+
+
+def test_where_a_passive_model_has_no_pole_far_up_the_axis_those_below_decide(world):
+    world.last, world.sides["poles"] = 100.0, Known(pair(-1, 9))
+    assert world.locate(ROD).verdict.word == "stable"
+    assert [name for name, *_ in world.judged] == ["poles"]
+    for beyond, word in [
+        (RightHalfPlane(tuple(pair(0, 50))), "marginal"),
+        (RightHalfPlane((), "not counted"), "unknown"),
+        (UncertifiedError(Diagnostic("SF404", "why")), "unknown"),
+    ]:
+        world.beyond["poles"] = beyond
+        assert world.locate(ROD).verdict.word == word
+    # Where wavenumbers vanish, a root on the axis that was not met before may be a pole or none.
+    world.sides["poles"], world.beyond["poles"] = Known(pair(-1, 9)), RightHalfPlane(tuple(pair(0, 1)))
+    assert world.locate(ON_A_FOUNDATION).verdict.word == "unknown"
 
 
 def test_to_the_right_where_wavenumbers_meet_there_may_be_no_pole(world, monkeypatch):
