@@ -14,6 +14,7 @@ from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
     from symflex.analysis.time_response import EnclosedResponse
+    from symflex.roots import PoleZeroMap
 
 POINTS = 201
 TABLE = ".csv"
@@ -40,6 +41,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     Exit code 4: the response could not be found, or, with --strict, is not certified.
     """
     from symflex import pipeline
+    from symflex.analysis.response import roots_if_found
     from symflex.analysis.time_response import (
         SampleTimes,
         default_until,
@@ -68,8 +70,11 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         from symflex.analysis.input_shaping import input_shaper
 
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
+    known = None
     if signal is None:
-        last = until or Fraction(f"{default_until(bound):.2g}")
+        # With waves, poles are found only where they are needed for the last time anyway.
+        known = roots_if_found(bound) if until is None or not bound.is_distributed else None
+        last = until or Fraction(f"{default_until(bound, known):.2g}")
         times = SampleTimes.evenly(last, given.points or POINTS)
         found = time_response(bound, given.to, times, given.digits, shaper)
     else:
@@ -94,10 +99,17 @@ def respond(spec: Specification, given: RespondOptions) -> int:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
             emit_json({**found.to_json_dict(), **told})
         else:
-            say(response_text(found, info.lines(found.unit) if info else ()))
+            say(response_text(found, info.lines(found.unit) if info else _growth(known)))
     if given.strict and not found.certified:
         raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {found.reason}"))
     return 0
+
+
+def _growth(known: PoleZeroMap | None) -> list[str]:
+    """Return a line that says so where a response grows; poles may be unknown."""
+    if known is None or not any(root.re > 0 for root in known.all_poles):
+        return []
+    return [f"the response grows without bound; the system is {known.verdict.sentence}"]
 
 
 def _check_place(given: RespondOptions) -> None:

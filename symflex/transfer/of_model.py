@@ -19,7 +19,6 @@ from symflex.errors.diagnostic import nearest
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
-from symflex.model.signs import is_passive
 from symflex.transfer import nested_form
 from symflex.transfer.bind import LOSSY_TAPER, bind, is_degenerate
 from symflex.transfer.derive import Terms, nested_transfer
@@ -323,9 +322,8 @@ def derive_for_roots(
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
     # Modes with loss factors are found in the expanded form alone.
     is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
-    is_counted = is_quick and _may_be_large(model) and is_passive(model)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
-    if not (is_small or is_counted) and _expanded_terms(equations, pairs[0]) <= most:
+    if not is_small and _expanded_terms(equations, pairs[0]) <= most:
         found = _expanded_unless_large(model, pairs, UNASKED)
         if found is not None:
             return found

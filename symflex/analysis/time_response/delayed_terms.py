@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_poly
 
-from symflex.algebra import Factored, Ring
+from symflex.algebra import Factored, Ring, degree_in
 from symflex.algebra.exponential_sum import Argument, Exponent, arguments_of, exponential_sum
 from symflex.balls import at_centre, ball
 from symflex.roots.problem import PolynomialInS, RealConstant
@@ -120,6 +120,7 @@ class DelayReader:
     arguments: tuple[Argument, ...]
     delays: tuple[tuple[int, Fraction], ...]  # of every argument: which duration, and how often
     places: Mapping[int, int]  # of generators that are constants, or waves' slownesses, in a monomial
+    decays: Mapping[int, int]  # the same of what a delay multiplies its input with, by argument
     waves: frozenset[int]  # positions of wavenumbers in the ring
     durations: Durations
 
@@ -130,24 +131,34 @@ class DelayReader:
         """Return the reader of a function; None where an argument is no delay."""
         ring = bound.ratio.ring
 
-        def root_of(value: Factored) -> arb:
+        def real_value(value: Factored) -> arb:
             evaluator = bound.kernel_values()
             constants = {name: acb(value) for name, value in evaluator.constants.items()}
-            return at_centre(evaluator.value(value, constants)).real.sqrt()
+            return at_centre(evaluator.value(value, constants)).real
+
+        def root_of(value: Factored) -> arb:
+            return real_value(value).sqrt()
+
+        def decay_of(value: Factored) -> arb:
+            return (-real_value(value)).exp()
 
         squares: list[Fraction | None] = []
         durations: list[Callable[[], arb]] = []
         delays: list[tuple[int, Fraction]] = []
-        for argument in arguments:
+        decays: dict[int, Callable[[], arb]] = {}
+        for number, argument in enumerate(arguments):
             if argument.wavenumber:
                 square = slowness[argument.wavenumber] * argument.length**2
                 sign = -1
             else:
-                rate = _without_s(argument.rate, 1)
-                if rate is None:
+                linear = linear_in_s(argument.rate)
+                if linear is None:
                     return None
+                rate, decay = linear
                 square = (rate * argument.length) ** 2
                 sign = 1
+                if not decay.is_zero:
+                    decays[number] = partial(decay_of, decay * argument.length)
             exact = square.unit if square.is_constant else None
             known = next(((i, r) for i, q in enumerate(squares) if (r := _ratio(exact, q)) is not None), None)
             if known is None:
@@ -162,8 +173,10 @@ class DelayReader:
             constants.append(partial(root_of, value))
         places = {ring.index[name]: i + 1 for i, name in enumerate(names)}
         waves = frozenset(ring.index[name] for name in slowness)
-        known_constants = Durations(tuple(durations), tuple(names), tuple(constants))
-        return cls(bound, arguments, tuple(delays), places, waves, known_constants)
+        lossy = {number: 1 + len(names) + i for i, number in enumerate(decays)}
+        names += [f"decay_{number}" for number in decays]
+        known_constants = Durations(tuple(durations), tuple(names), (*constants, *decays.values()))
+        return cls(bound, arguments, tuple(delays), places, lossy, waves, known_constants)
 
     def delay_of(self, exponent: Exponent) -> Delay:
         """Return what an exponential is late by."""
@@ -179,6 +192,9 @@ class DelayReader:
             own = found.setdefault(self.delay_of(exponent), {})
             for monomial, (number, _) in amplitude.items():
                 exponents = [0] * (1 + len(self.durations.names))
+                for x, a, _ in exponent:
+                    if x in self.decays:
+                        exponents[self.decays[x]] += int(a)
                 for i, e in monomial:
                     if i == 0 or i in self.waves:  # a wavenumber is s times its slowness
                         exponents[0] += e
@@ -193,6 +209,17 @@ def _squared_slowness(law: Dispersion) -> Factored | None:
     if law.kind != "wave" or not law.shift.is_zero or not all(c.is_zero for c in law.characteristic[1:]):
         return None
     return _without_s(-law.characteristic[0], 2)
+
+
+def linear_in_s(value: Factored) -> tuple[Factored, Factored] | None:
+    """Return a and b of ``a s + b``; None of any other value."""
+    ring = value.ring
+    moving = [(f, e) for f, e in value.factors if degree_in(f, 0)]
+    if [degree_in(f, 0) * e for f, e in moving] != [1] or moving[0][1] != 1:
+        return None
+    rest = Factored(ring, value.unit, tuple(own for own in value.factors if own not in moving))
+    b, a = (rest * Factored.polynomial(ring, c) for c in ring.coefficients(moving[0][0]))
+    return a, b
 
 
 def _without_s(value: Factored, power: int) -> Factored | None:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable, degree_in
+from symflex.analysis.time_response.delayed_terms import linear_in_s
 from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed, too_early
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
@@ -251,6 +252,9 @@ def _by_wave_echoes(asked: Asked) -> Plan | Refused:
 def _by_delays(asked: Asked) -> Plan | Refused:
     if not asked.has_delays or asked.quotient is not None:
         return Refused()
+    laws = [law for law in asked.bound.kernels.dispersions if law.kind == "exponential"]
+    if any(linear_in_s(law.shift) is None for law in laws):
+        return Refused("what is late changes its form")
     parts = _taken_apart(asked.bound)
     return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
 
@@ -346,24 +350,27 @@ def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> S
     found = Sampled(())
     with precision(bits):
         total = Gathered(asked.times.enclosed())
-        values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
-        waits = []
+        constants = {name: acb(c) for name, c in evaluator.constants.items()}
+        waits, gains = [], []
         for delays, _ in parts:
-            wait = arb(0)
+            wait, gain = arb(0), arb(1)
             for kernel, exponent in delays:
-                rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
-                wait += exponent * at_centre(rate * length).real
+                shift = kernel.dispersion.shift * kernel.length
+                low, high = (at_centre(evaluator.value(shift, {"s": acb(x), **constants})) for x in (0, 1))
+                wait += exponent * (high - low).real
+                gain *= (-exponent * low).exp().real
             waits.append(wait)
+            gains.append(gain)
     reason: str | None = None
     refused: tuple[str, ...] = ()
-    for wait, (_, part) in zip(waits, parts, strict=True):
+    for wait, gain, (_, part) in zip(waits, gains, parts, strict=True):
         with precision(bits):
             start, later = asked.times.since(wait)
         if len(later):
             found = _answer(replace(asked, bound=part, times=later))
             reason, refused = reason or found.reason, refused or found.refused
             with precision(bits):
-                own = found.values[: len(asked.times) - start]
+                own = [gain * y for y in found.values[: len(asked.times) - start]]
                 total.add(wait, (), arb(0), own, is_late=bool(wait > 0))
     return replace(total.sampled(found.method), reason=reason, refused=refused)
 

@@ -63,19 +63,24 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
 
 
 def proved_modes(
-    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int
 ) -> PartialSum | None:
-    """Return a sum over modes with a proved bound of those left out; None where there is none."""
+    """Return a sum over modes with a proved bound of those left out; None where there is none.
+
+    At most so many modes are summed, where so many digits would need more.
+    """
     for find in BOUNDS.values():
         found = find(bound, integrations)
         if not isinstance(found, Refused):
-            total = summed(*found, times, digits)
+            total = summed(*found, times, digits, most)
             if total is not None:
                 return total
     return None
 
 
-def summed(bounding: ModesBound, integrations: int, times: SampleTimes, digits: int) -> PartialSum | None:
+def summed(
+    bounding: ModesBound, integrations: int, times: SampleTimes, digits: int, limit: int | None = None
+) -> PartialSum | None:
     """Return the sum over so many modes that what is left is within the digits, or as little as can be."""
     modes = BoundedModes(bounding, integrations, times)
     few, many = EFFORT.first_modes
@@ -90,6 +95,7 @@ def summed(bounding: ModesBound, integrations: int, times: SampleTimes, digits: 
     for _ in range(EFFORT.rounds if found is not first else 0):
         wanted = _needed((counts[0], float(first.left)), (counts[1], float(found.left)), goal, bounding.most)
         wanted = min(bounding.slow, wanted) if wanted == bounding.most else wanted
+        wanted = min(wanted, limit or wanted)
         falls = bool(found.left < first.left)
         more = modes.summed(wanted) if falls and wanted > counts[1] else None
         if more is None:
@@ -220,7 +226,7 @@ class BoundedModes:
             return None
         begun = in_order([root for root in side.roots if root.natural_frequency().log() < side.reached])
         chain = [root for root in begun if not root.im < 0 and not root.re > 0 and not root.is_zero]
-        if len(chain) < len(CONTINUATION):
+        if not len(CONTINUATION) <= len(chain) <= count:
             return None
         winding = CertifiedWinding(side.function)
         try:

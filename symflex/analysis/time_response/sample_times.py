@@ -28,6 +28,7 @@ from symflex.transfer import BoundNested
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
 MOST_TIMES = 1_000_000
@@ -170,7 +171,7 @@ def _refused(message: str) -> UsageError:
     return UsageError(Diagnostic("SF811", message))
 
 
-def default_until(bound: AnyBoundFunction) -> float:
+def default_until(bound: AnyBoundFunction, roots: PoleZeroMap | None = None) -> float:
     """Return a time [s] by which the slowest motion has died away, or has been seen often enough.
 
     Examples
@@ -181,7 +182,7 @@ def default_until(bound: AnyBoundFunction) -> float:
     2.5
     """
     waits = [TIME_CONSTANTS * delay for delay in _delays(bound)]
-    for root in roots_if_found(bound).all_poles:
+    for root in (roots or roots_if_found(bound)).all_poles:
         size = float(root.natural_frequency())
         if root.is_zero or not size > 0:
             continue

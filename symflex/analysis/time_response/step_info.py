@@ -56,13 +56,13 @@ SETTLED = 0.02
 TEXT_DIGITS, SHORT_DIGITS = 10, 4
 CLOSE = 1e-6
 """Of the final value: a peak that is no higher above it is none."""
-MOST_INTERVALS = 20_000
-"""Looked at for one number; a response that rings a thousand times takes some of them each."""
+MOST_WORK = 200_000
+"""Terms summed on intervals for one number, a second: a mode that rings a thousand times takes some each."""
 HALVINGS = 50
 MORE_DIGITS = 10
 """Of poles: differences of their terms lose some."""
-MODES_DIGITS = 8
-"""Of responses of waves, of which few high modes are needed then."""
+MODES_DIGITS, MOST_MODES = 8, 100
+"""Of responses of waves, of which few high modes are needed then; where more are, there are fewer digits."""
 MODES_BITS = 128
 DELAYS_DIGITS = 60
 """Of poles of loops with delays: high powers of their differences lose some."""
@@ -128,6 +128,8 @@ class StepInfo:
         found = []
         for name, ball, of in shown:
             if ball is None:
+                if name.startswith(("overshoot", "rise", "settling")):
+                    found.append((name, "not found"))
                 continue
             if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"
@@ -175,7 +177,7 @@ def _of_modes(bound: BoundTransferFunction, known: PartialSum | None) -> StepInf
         return _of_delays(bound)
     found = known
     if found is None:
-        found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS)
+        found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS, MOST_MODES)
     if found is None:
         return None
     with precision(MODES_BITS):
@@ -372,13 +374,14 @@ class NormalisedResponse:
             best = best.max((span - piece.rest).lower())
             heapq.heappush(queue, (-(span + piece.rest).upper(), next(count), piece, low, high, span))
 
-        count = itertools.count()
+        count, work = itertools.count(), 0
         for part in self.parts(until):
             add(*part)
         while queue and -queue[0][0] >= best:
             spend()
-            _, number, piece, low, high, span = heapq.heappop(queue)
-            if number > MOST_INTERVALS:
+            _, _, piece, low, high, span = heapq.heappop(queue)
+            work += 2 * len(piece.terms)
+            if work > MOST_WORK:
                 return None
             if high - low > shortest and not span.rad() < piece.rest / 4:
                 middle = ((low + high) / 2).mid()
@@ -429,12 +432,14 @@ class NormalisedResponse:
         pending = self.parts(until)[:: 1 if is_last else -1]
         before: bool | None = None  # whether it is above the level next to what is looked at now
         unclear: arb | None = None  # where it may be either, between
-        for _ in range(MOST_INTERVALS):
+        work = 0
+        while work < MOST_WORK:
             spend()
             if not pending:
                 self.is_lost = self.is_lost or unclear is not None
                 return None
             piece, low, high = pending.pop()
+            work += len(piece.terms)
             span = piece.over(low, high) - (level - sign * piece.rest)
             if not span.contains(0):
                 if before is not None and before != (span > 0):

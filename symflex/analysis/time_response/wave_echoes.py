@@ -344,7 +344,7 @@ def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
             return None
         slowness |= dict.fromkeys(law.wavenumbers, square) if square is not None else {}
     reader = DelayReader.of(bound, arguments, slowness)
-    if reader is None:
+    if reader is None or reader.decays:
         return None
     sums = []
     for factor, exponent in bound.ratio.factors:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from flint import acb, arb
+from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra.exponential_sum import (
     REAL,
@@ -76,6 +76,17 @@ class ExponentialValues:
             for terms, _ in self.sums
         )
 
+    @cached_property
+    def matrices(self) -> tuple[tuple[tuple[tuple[tuple[str, int], ...], ...], acb_mat], ...]:
+        """Per sum what its amplitudes are made of, and by what that is multiplied: a row per amplitude."""
+        found = []
+        for amplitudes in self.coefficients:
+            monomials = sorted({powers for amplitude in amplitudes for _, powers in amplitude}) or [()]
+            rows = [{powers: number for number, powers in amplitude} for amplitude in amplitudes]
+            entries = [[row.get(powers, acb(0)) for powers in monomials] for row in rows]
+            found.append((tuple(monomials), acb_mat(entries)))
+        return tuple(found)
+
     def valued(self, amplitude: Amplitude, halvings: int = 0) -> Valued:
         """Return an amplitude over a power of two with the values of all constants in place."""
         evaluator = self.evaluator
@@ -120,25 +131,17 @@ class ExponentialValues:
         known = place.amplitudes.get(number)
         if known is not None:
             return known
-        found = []
-        products = place.products
-        for amplitude in self.coefficients[number]:
-            total: Value | None = None
-            for coefficient, powers in amplitude:
-                value = products.get(powers)
-                if value is None:
-                    value = products[powers] = self._product(powers, place)
-                term = coefficient * value
-                total = term if total is None else total + term
-            found.append(acb(0) if total is None else total)
+        monomials, matrix = self.matrices[number]
+        values = [_product(powers, place) for powers in monomials]
+        # One product of matrices adds up all terms at once.
+        order = min((v.prec for v in values if isinstance(v, acb_series)), default=0)
+        rows = [[at_centre(v)] for v in values]
+        if order:
+            rows = [[v[i] for i in range(order)] for v in (v + acb_series([], order) for v in values)]
+        sums = (matrix * acb_mat(rows)).tolist()
+        found: list[Value] = [acb_series(row, order) if order else row[0] for row in sums]
         place.amplitudes[number] = found
         return found
-
-    def _product(self, powers: tuple[tuple[str, int], ...], place: Place) -> Value:
-        total: Value = acb(1)
-        for name, e in powers:
-            total = total * raised(place.values[name], e)
-        return total
 
     def exponents(self, number: int, place: Place, less: Exponent = REAL) -> list[Value | None]:
         """Return the exponents of all terms of one sum, less another one; ``None`` for 0."""
@@ -185,6 +188,21 @@ class Place:
             term = self.arguments[i] * factor
             total = term if total is None else total + term
         return total
+
+
+def _product(powers: tuple[tuple[str, int], ...], place: Place) -> Value:
+    """Return a product of powers of generators: the one of all but its last factor, and that."""
+    known = place.products.get(powers)
+    if known is None:
+        *others, (name, e) = powers or (("s", 0),)
+        if others:
+            known = _product(tuple(others), place) * _product(powers[-1:], place)
+        elif e > 1:
+            known = _product(((name, e - 1),), place) * place.values[name]
+        else:
+            known = raised(place.values[name], e)
+        place.products[powers] = known
+    return known
 
 
 Numbers = npt.NDArray[np.complex128]

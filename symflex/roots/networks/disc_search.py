@@ -328,7 +328,7 @@ def enclosed_roots(series: DiscSeries, at_zero: int, *, is_even: bool = False) -
         x = acb(0, guess.imag) if is_even and abs(guess.real) < abs(guess) * NEAR_AXIS else guess
         box = series.proved(x) or series.proved(guess)
         if box is None:
-            left.append(guess)
+            left.append(x)
         elif abs(box) < 1 and not any(box.overlaps(b) for b, _ in boxes):
             boxes.append((box, 1))
     return boxes + _clusters(series, left, boxes)

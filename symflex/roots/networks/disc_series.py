@@ -77,16 +77,19 @@ class DiscSeries:
 
     def slope_on(self, box: acb) -> acb:
         """Return the derivative by x on a box within the unit disc."""
-        # What the polynomial's terms take from each other is lost on wide boxes, but not about a point.
         with precision(self.bits):
-            reach = acb(box.real.rad(), box.imag.rad()).abs_upper()
-            local = self.about(box.mid())
-            off = self.slope_off
-            power = arb(1)
-            for k, c in enumerate(local[2:], 2):
-                power = power * reach
-                off = off + k * abs(c) * power
-            return local[1] + ball_about_zero(off)
+            return self._slope(self.about(box.mid()), box)
+
+    def _slope(self, local: Sequence[acb], box: acb) -> acb:
+        """Return the same from the coefficients about the middle of the box."""
+        # What the polynomial's terms take from each other is lost on wide boxes, but not about a point.
+        reach = acb(box.real.rad(), box.imag.rad()).abs_upper()
+        off = self.slope_off
+        power = arb(1)
+        for k, c in enumerate(local[2:], 2):
+            power = power * reach
+            off = off + k * abs(c) * power
+        return local[1] + ball_about_zero(off)
 
     def about(self, x: acb) -> list[acb]:
         """Return the Taylor coefficients of the polynomial about a point."""
@@ -129,7 +132,8 @@ class DiscSeries:
                 if angle >= stop:
                     break
                 rate = (local[1] / local[0]).mid()
-                step = self._reach(local, value, rate) / size
+                # In units of the circle: powers of those of a small one exceed floats.
+                step = self._reach([c * arb(size) ** k for k, c in enumerate(local)], value, rate * size)
                 if step < SMALLEST_ARC:
                     raise RootNearCircleError
                 before, angle = (value, point, rate), min(angle + step, stop)
@@ -178,7 +182,7 @@ class DiscSeries:
         with precision(self.bits):
             first, *others = (c.mid() for c in self.polynomial.coeffs()[at_zero :: 1 + is_even])
             # So slight a change splits roots that coincide exactly: none but simple ones are found.
-            polynomial = acb_poly([first * (1 + arb(2) ** (1 - self.bits)).mid(), *others])
+            polynomial = acb_poly([(first * (1 + arb(2) ** (1 - self.bits))).mid(), *others])
             spend()
             try:
                 roots = [r.mid() for r in polynomial.roots(maxprec=MOST_TIMES_BITS * self.bits)]
@@ -195,14 +199,15 @@ class DiscSeries:
         with precision(self.bits):
             x = guess.mid()
             # Horner's rule would turn a box at every step, and widen it.
-            value = self.about(x)[0] + ball_about_zero(self.off)
-            slope = self.slope_on(x)
+            local = self.about(x)
+            value = local[0] + ball_about_zero(self.off)
+            slope = self._slope(local, x)
             if slope.contains(0):
                 return None
             reach = (abs(value / slope) * 4).abs_upper()
             for _ in range(WIDENINGS):
                 box = x + acb(arb(0, reach), arb(0, 0 if x.imag == 0 else reach))
-                step = value / self.slope_on(box)
+                step = value / self._slope(local, box)
                 if stays_inside(step.real if x.imag == 0 else step, reach):
                     return box
                 reach = (reach * 4).abs_upper()

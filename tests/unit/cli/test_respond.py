@@ -253,3 +253,13 @@ def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, t
 def test_a_bound_below_the_range_of_doubles_is_not_called_zero(oscillator):
     out = oscillator("shape", "osc.toml", "--digits", "400").out
     assert "residual vibration at most 1e-300" in out
+
+
+def test_a_response_of_an_unstable_system_says_that_it_grows(oscillator, tmp_path):
+    (tmp_path / "fall.toml").write_text(
+        'symflex = 1\nparameters.a = "4 1/s^2"\ninputs.u = {}\noutputs.y = "a*u/(s^2 - a)"\n'
+    )
+    said = "the response grows without bound; the system is unstable: 1 pole in the right half plane"
+    for until in ((), ("--until", "1s")):
+        assert said in oscillator("respond", "fall.toml", *until).out
+    assert "grows" not in oscillator("respond", "osc.toml", "--tf", "X/F").out

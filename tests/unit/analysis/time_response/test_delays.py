@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
-from math import comb, cos, factorial, pi, sin, sqrt
+from math import comb, cos, exp, factorial, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -123,6 +123,38 @@ def test_an_impulse_through_a_delay_is_an_impulse_later():
     found = time_response(bound(f'{DELAY}"D*u*(s + w)/(s + a)"'), "impulse", SampleTimes.of([0.5, 2.0]))
     assert [(float(i.time), i.order, float(i.weight)) for i in found.impulses] == [(1.0, 0, 1.0)]
     assert found.values.tolist() == pytest.approx([0.0, np.exp(-1)])
+
+
+def test_what_decays_on_its_way_arrives_weaker():
+    # w' + (s + k) w/v = 0: exp(-k T) of what enters arrives after T = l/v = 2 s, in a loop again and again.
+    field = (
+        'parameters = { v = "2 m/s", l = "4 m", k = "0.1 1/s" }\ninputs.u = {}\noutputs.y = "w(l)"\n'
+        '[fields.w]\ndomain = ["0", "l"]\nequations = ["w\' + (s + k)*w/v = 0"]\n'
+        'conditions = ["w(0) = ENTERING"]\n'
+    )
+    share, times = exp(-0.2), SampleTimes.of([1.0, 3.0, 5.0, 7.0])
+    for entering, expected in (
+        ("u", [0, share, share, share]),
+        ("u + w(l)/2", [0, *np.cumsum([share, share**2 / 2, share**3 / 4])]),
+    ):
+        found = time_response(bound(field.replace("ENTERING", entering)), "step", times)
+        assert found.certified
+        assert np.allclose(found.values, expected, rtol=1e-12, atol=0)
+
+
+@pytest.mark.slow
+def test_what_decays_behind_waves_that_change_shape_arrives_weaker_too():
+    field = (
+        '[fields.w]\ndomain = ["0", "d"]\nequations = ["w\' + (s + k)*w/v = 0"]\nconditions = ["w(0) = x"]\n'
+    )
+    text = (
+        'parameters = { v = "2 m/s", d = "4 m", k = "0.1 1/s" }\n'
+        'elements.b = { type = "rod", between = ["ground", "x"], EA = "4 N", rhoA = "1 kg/m", l = "1 m", '
+        'eta = "0.1 s" }\ninputs.F = { force = "x" }\noutputs = { X = "x", Y = "w(d)" }\n'
+    )
+    early = time_response(bound(text + field, "X", "F"), "step", SampleTimes.of([0.5, 1.5]), 6)
+    late = time_response(bound(text + field, "Y", "F"), "step", SampleTimes.of([2.5, 3.5]), 6)
+    assert np.allclose(late.values, np.exp(-0.2) * np.array(early.values), rtol=1e-6, atol=0)
 
 
 def test_a_front_whose_time_is_irrational_is_between_samples():

@@ -11,7 +11,8 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import gammainc
 
 import symflex
-from symflex.analysis.time_response import find_step_info
+from symflex.analysis.time_response import SampleTimes, find_step_info, time_response
+from symflex.analysis.time_response.modal import proved_modes
 from tests.unit.analysis.systems import rational
 from tests.unit.analysis.time_response.test_beams import UNIT, beam, cantilever, damped_step
 
@@ -177,3 +178,25 @@ def test_a_lag_that_is_late_rises_as_a_lag():
 def test_of_a_loop_that_answers_at_once_nothing_is_said():
     # A gain alone: the response jumps after every turn.
     assert delayed("0.5*D*(r - x)") is None
+
+
+@pytest.mark.slow
+def test_a_string_whose_modes_fall_off_slowly_has_the_peak_of_its_echoes():
+    text = """symflex = 1
+    inputs.F = { force = "a" }
+    outputs.X = "a"
+    [elements]
+    wire = { type = "string", between = ["ground", "a"], N = "100 N", rhoA = "0.01 kg/m", l = "1 m" }
+    load = { type = "mass", at = "a", m = "0.02 kg" }
+    loss = { type = "damper", between = ["a", "ground"], b = "0.3 N*s/m" }
+    """
+    bound = symflex.loads(text).transfer_function("X", "F").bind().bound
+    found = find_step_info(bound)
+    assert found.missing == 0
+    assert float(found.final) == pytest.approx(0.01, rel=1e-12)  # l/N
+    # Echoes are exact, and know nothing of modes.
+    near = SampleTimes.of([0.0, *np.linspace(0.02, 0.08, 601).tolist()])
+    highest = max(time_response(bound, "step", near).values)
+    assert abs(float(found.peak.mid()) - highest) < 3e-6
+    # Fewer digits than the first modes have ask for no more of them.
+    assert proved_modes(bound, 1, SampleTimes.of([0.0, 1.0]), 4, 100).rest < 1e-5

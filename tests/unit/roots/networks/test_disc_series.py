@@ -7,6 +7,7 @@ from math import log, pi
 import pytest
 from flint import acb, arb, ctx
 
+from symflex.roots.networks.disc_search import enclosed_roots, images
 from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
 
 BITS = 160
@@ -52,6 +53,21 @@ def test_roots_are_counted_with_their_multiplicities():
     assert series(lambda s: s * s * s.cosh(), 48.0).order_at_zero() == 2
     with pytest.raises(RootNearCircleError):
         series(lambda s: s - 10, 5.0).count()
+
+
+def test_roots_are_counted_on_circles_whose_powers_exceed_floats():
+    # A double root at 3 j, which s^2 + 9 squared has, and its mirror image.
+    double = series(lambda s: (s * s + 9) ** 2, 16.0)
+    for size in (1e-2, 1e-6, 1e-10):
+        assert double.count_about(acb(0, arb(3) / 10), size) == 2
+        assert double.count_about(acb(0, arb("0.305")), size) == (2 if size == 1e-2 else 0)
+
+
+def test_double_roots_on_the_axis_are_enclosed_with_their_images():
+    found = enclosed_roots(series(lambda s: s.cosh() ** 2, 80.0), 0, is_even=True)
+    assert [count * images(box, is_even=True) for box, count in found] == [4, 4, 4]
+    for k, (box, _) in enumerate(found):
+        assert (box * 10).contains(acb(0, arb.pi() * (k + 0.5)))
 
 
 def test_all_roots_are_approximated_and_proved():
