@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain, combinations
+from itertools import chain, combinations, islice, product
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored
@@ -44,6 +44,7 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
+from symflex.print.forms import print_form
 from symflex.print.forms.shapes import of_powers, powers_of
 
 if TYPE_CHECKING:
@@ -61,6 +62,8 @@ FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
 """Where a formula with another line is tried first, and its digits: there roots have one reading."""
 LINE_EXPONENTS = tuple(Fraction(n, 4) for n in (2, 1, 4, 8, -2, 12, 16, -1, -4))
+MOST_PAIRS, FEW_SLIPS = 1500, 20
+"""Pairs of slips in a line that are tried, and slips in each of two lines."""
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 
@@ -90,8 +93,9 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
         return None
     numbers = numbers_of(reading.formula, tf, tf.model)
     lines = _mended_lines(reading, numbers), _other_lines(reading, numbers)
-    exchanged = _exchanged_names(reading, numbers)
-    for found in chain(lines[0], _in_expression(reading), exchanged, _both_sums(reading), lines[1]):
+    inside = _mended_calls(reading, tf, numbers), _exchanged_names(reading, numbers)
+    last = lines[1], _derived_lines(reading, tf, numbers), _slipped_twice(reading, numbers)
+    for found in chain(lines[0], inside[0], _in_expression(reading), inside[1], _both_sums(reading), *last):
         corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
@@ -395,6 +399,58 @@ def _exchanged_names(reading: FormulaReading, numbers: Numbers) -> Iterator[Corr
                 yield Correction(changes, expression, formula.scale, formula.lines)
 
 
+def _mended_calls(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
+    """Yield slips in the argument of a function, one function too many, and a dead time that is left out."""
+    formula = reading.formula
+    others = [Name(n) for n in (*sorted(formula.parameters), *reading.lines)]
+    own = print_form(tf) if any(k.function == "exp" for k in tf.kernels.kernels) else None
+    parts = (*nodes(own.num), *nodes(own.den)) if own else ()
+    late = dict.fromkeys(n for n in parts if isinstance(n, Call) and n.name == "exp")
+    for part, place in list(_parts(formula.expression))[:MOST_PARTS]:
+        new: list[Expression] = []
+        if isinstance(part, Call):
+            scaled = (replace(part, argument=argument) for argument in _multiples(part.argument))
+            new = [*scaled, *_slips(part, others), number(1)]
+        terms = part.terms if isinstance(part, Sum) else (part,) if part is formula.expression else ()
+        changes = [(part, n) for n in new]
+        changes += [(t, quotient(product_of([_above(t), e]), _below(t))) for t in terms for e in late]
+        for old, other in changes:
+            expression = _replaced(formula.expression, old, other)
+            if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
+                yield Correction((Change(place, old, other),), expression, formula.scale, formula.lines)
+
+
+def _multiples(part: Expression) -> Iterator[Expression]:
+    front, powers = powers_of(part)
+    yield from (of_powers(front * f, powers) for f in FACTORS)
+
+
+def _derived_lines(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
+    """Yield a line that is what the derived function has in its own: a wavenumber."""
+    derived = dict(print_form(tf).where) if tf.is_distributed else {}
+    for _ in derived:
+        derived = {name: substitute(line, derived) for name, line in derived.items()}
+    for i, (name, line) in enumerate(reading.formula.lines):
+        for new in derived.values():
+            yield from _with_lines(reading, numbers, {i: (name, line, new)})
+
+
+def _slipped_twice(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
+    """Yield two slips in one line, or in two lines."""
+    others = [Name(n) for n in sorted(reading.formula.parameters)]
+
+    def slips(line: Expression) -> dict[Expression, None]:
+        return dict.fromkeys((*_multiples(line), *_slips(line, others)))
+
+    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
+    for i, name, line in own:
+        for new in islice(dict.fromkeys(n for one in slips(line) for n in slips(one)), MOST_PAIRS):
+            yield from _with_lines(reading, numbers, {i: (name, line, new)})
+    for (i, one, first), (j, other, second) in combinations(own, 2):
+        for a, b in product(islice(slips(first), FEW_SLIPS), islice(slips(second), FEW_SLIPS)):
+            yield from _with_lines(reading, numbers, {i: (one, first, a), j: (other, second, b)})
+
+
 def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield slips in a line: what is turned over or exchanged, another name, a sign, a factor."""
     for i, (name, line) in enumerate(reading.formula.lines):
@@ -465,6 +521,7 @@ def _with_lines(
     reading: FormulaReading, numbers: Numbers, new: Mapping[int, tuple[str, Expression, Expression]]
 ) -> Iterator[Correction]:
     """Yield the formula with other printed lines where it then has a value of the derived function."""
+    spend()
     formula, given = reading.formula, numbers.bound.source.model.definitions
     lines = list(formula.lines)
     for i, (name, old, line) in new.items():

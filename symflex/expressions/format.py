@@ -27,6 +27,9 @@ from symflex.expressions.nodes import (
 SHORT_DIGITS = 40
 SMALLEST_EXPONENT = -200
 SMALLEST_PLAIN_EXPONENT = -4
+# A whole number of more than so many digits has an exponent where that saves so many characters.
+PLAIN = 7
+FEWER = 3
 
 
 class _Position(Enum):
@@ -158,13 +161,17 @@ def number_text(value: Fraction) -> str:
     Examples
     --------
     >>> from fractions import Fraction
-    >>> [number_text(Fraction(text)) for text in ("3", "21/10000", "4.7e-12", "2/3")]
-    ['3', '0.0021', '4.7e-12', '2/3']
+    >>> [number_text(Fraction(text)) for text in ("3", "21/10000", "4.7e-12", "2/3", "5e17")]
+    ['3', '0.0021', '4.7e-12', '2/3', '5e17']
     """
     # Decimal writes integers of any length; str(int) stops at the interpreter's digit limit.
     fraction = f"{Decimal(value.numerator)}/{Decimal(value.denominator)}"
     if value.denominator == 1:
-        return fraction.removesuffix("/1")
+        whole = fraction.removesuffix("/1")
+        digits = whole.rstrip("0")
+        short = f"{digits[:1]}{'.' * (len(digits) > 1)}{digits[1:]}e{len(whole) - 1}"
+        is_long = PLAIN < len(whole) <= -SMALLEST_EXPONENT
+        return short if is_long and len(short) + FEWER <= len(whole) else whole
     return _decimal_text(value) or fraction
 
 

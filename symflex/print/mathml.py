@@ -215,7 +215,8 @@ def _primed(name: str, order: int) -> str:
 def _scientific(mantissa: str, exponent: str) -> str:
     power = numeral(exponent.removeprefix("-"))
     power = row(_MINUS, power) if exponent.startswith("-") else power
-    return row(numeral(mantissa), operator("⋅"), MATHML.power.format(numeral("10"), power))
+    front = [numeral(mantissa), operator("⋅")] if mantissa else []
+    return row(*front, MATHML.power.format(numeral("10"), power))
 
 
 def _sum(terms: Sequence[tuple[str, bool]]) -> str:

@@ -116,7 +116,7 @@ class Spelling:
     function: Callable[[str], str]  # from a function's name as expressions have it
     # From a function of x and how often it is differentiated; up to :data:`MOST_PRIMES` with primes.
     primed: Callable[[str, int], str]
-    scientific: Callable[[str, str], str]  # from a mantissa and a power of ten
+    scientific: Callable[[str, str], str]  # from a mantissa, nothing where that is 1, and a power of ten
     fenced: Callable[[str, int, bool], str]  # from content, the depth of fences in it, and whether it is tall
     # From terms, each with whether it is spelt as ``negative``.
     sum: Callable[[Sequence[tuple[str, bool]]], str]
@@ -181,8 +181,9 @@ class ExpressionWriter:
         mantissa, _, exponent = text.partition("e")
         if not exponent:
             return Written(self._spelling.digits.format(mantissa), DIGIT_SIZES * len(mantissa), Shape.ATOM)
+        mantissa = mantissa if mantissa != "1" else ""
         power = DIGIT_SIZES * len(exponent) + MINUS_SIZES * exponent.startswith("-")
-        size = DIGIT_SIZES * (len(mantissa) + 2) + CDOT_SIZES + power.raised + SCRIPT_SPACE
+        size = DIGIT_SIZES * (len(mantissa) + 2) + CDOT_SIZES * bool(mantissa) + power.raised + SCRIPT_SPACE
         return Written(self._spelling.scientific(mantissa, exponent), size, Shape.PRODUCT)
 
     def joined(self, factors: Sequence[Written]) -> tuple[list[str], Width]:

@@ -162,7 +162,17 @@ class Arranger:
             content = polynomial.term_content()
             rest = self.collected(polynomial / content, nested=True)
             tried.insert(1, product_of([self._flat(content), rest]))
-        return min(tried, key=reading)
+        return min([min(tried, key=reading), *self._with_gain(polynomial)], key=length)
+
+    def _with_gain(self, polynomial: fmpz_mpoly) -> Iterable[Expression]:
+        """Yield ``s*(s + a)*(s + b) + K``: what one symbol multiplies, after factors that are of s."""
+        terms = _terms(self.closed(polynomial)) if len(polynomial) <= FEW else {}
+        for i in range(1, len(self.ring.names) * (degree_in(polynomial, 0) > SECOND)):
+            others = {m: c for m, c in terms.items() if not m[i]}
+            if SHORT <= len(others) < len(terms):
+                _, factors = irreducible_factors(self.ring.context.from_dict(others))
+                if sum(e for f, e in factors if len(f) > 1 and degree_in(f, 0)) > 1:
+                    yield sum_of([self._group(others), self._group({m: terms[m] for m in terms if m[i]})])
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times sums of functions.
@@ -302,7 +312,9 @@ class Arranger:
                 return 4
             if self._is_apart[i]:
                 return 3
-            return 0 if self.ring.names[i] in ("pi", IMAGINARY) else 1
+            if self.ring.names[i] in ("pi", IMAGINARY):
+                return -1
+            return 0 if self.ring.names[i].startswith("zeta") else 1  # as in 2*zeta*omega_n*s
 
         return tuple(sorted(range(len(self.ring.names)), key=place))
 
@@ -391,6 +403,10 @@ SMALL = 400
 """Number of terms up to which every arrangement of a sum is tried."""
 SHORT = 4
 """Number of terms up to which a nested sum is compared with the plain one."""
+FEW = 40
+"""Number of terms up to which the open loop is looked for in a closed one."""
+SECOND = 2
+"""Degree in s up to which a polynomial prints by powers of s."""
 NESTED = 1.3
 """How many times as long as a nested polynomial one by powers of s may be."""
 READABLE = 4
@@ -534,9 +550,9 @@ def reading(expression: Expression) -> float:
 
 
 def _is_nested(term: Expression) -> bool:
-    return isinstance(term, Product) and any(
-        Name(LAPLACE) in inner and {*inner} & {*term.factors} for inner in map(_inside, term.factors)
-    )
+    factors = term.factors if isinstance(term, Product) else ()
+    inner = [n for n in map(_inside, factors) if Name(LAPLACE) in n]
+    return len(inner) == 1 and bool({*inner[0]} & {*factors})
 
 
 def _inside(factor: Expression) -> tuple[Expression, ...]:

@@ -61,10 +61,16 @@ LARGEST: Final = 4000
 """Parts of a form up to which it is shaped: nobody reads longer ones."""
 FAR: Final = 1e60
 """A frequency at which every sum has the sign of its highest power of s."""
-DIGITS: Final = 6
-"""Significant digits of a decimal that reads better than a whole number elsewhere."""
+DIGITS: Final = 7
+"""Significant digits of a decimal that reads better than a shorter whole number elsewhere."""
+MOST: Final = 15
+"""The same where whole numbers have as many."""
+LARGE: Final = 10**5
+"""A whole number from which a polynomial in s reads better with s^n alone in front."""
 MORE: Final = 1.3
 """How many times as long a form with decimals may be."""
+SCALED: Final = ("monic", "constant")
+"""Forms that say what a coefficient is divided by."""
 LINE: Final = 4
 """Characters by which one line in place of two has to be shorter than these."""
 RATIOS: Final = (("sinh", "cosh", "tanh"), ("sin", "cos", "tan"))
@@ -85,7 +91,8 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
 
 def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
-    num, den = _decimals(model, *_in_ratios(signs.oriented(form.num), signs.oriented(form.den)))
+    num, den = _in_ratios(signs.oriented(form.num), signs.oriented(form.den))
+    num, den = (num, den) if form.name in SCALED else _decimals(model, num, den)
     is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
     num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))
     return replace(form, num=signs.absorbed(num) if is_negative else num, den=den, where=where)
@@ -97,6 +104,7 @@ class _Signs:
 
     known: Mapping[str, acb]
     written: Mapping[frozenset[str], Sum]  # the sums free of s in a model, by the texts of their terms
+    typed: Sequence[Sequence[Expression]] = ()  # the names of products in a model, in their order
     turns: bool = False  # differences of parameters are turned by their values, too
 
     @staticmethod
@@ -106,10 +114,12 @@ class _Signs:
         for d in model.definitions:
             if {n.name for n in names(d.expression)} <= {*known, *FUNCTIONS}:
                 (known[d.name],) = principal_values(d.expression, 1, lambda name: [known[name]])
-        sums = (
-            n for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum) and S not in names(n)
-        )
-        return _Signs(known, {_texts(n.terms): n for n in sums})
+        parts = [n for _, e in model.expressions() for n in nodes(e)]
+        sums = (n for n in parts if isinstance(n, Sum) and S not in names(n))
+        fixed = (S, Name("pi"), Name(IMAGINARY))
+        products = (map(_base, n.factors) for n in parts if isinstance(n, Product))
+        typed = dict.fromkeys(tuple(b for b in bases if b not in fixed) for bases in products)
+        return _Signs(known, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
 
     def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
         """Return these with what where lines say decays, as ``exp(-gamma*l)``: it is zero far away."""
@@ -138,12 +148,20 @@ class _Signs:
                     map(_is_decay, joined)
                 ):  # behind plain factors, before functions, above as below the bar
                     joined = sorted(joined, key=lambda f: (_holds_call(f), not _is_decay(f)))
-                return self._rejoined(product_of(joined))
+                return self._rejoined(product_of(self._as_typed(joined)))
             case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
                 return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=length))
             case Call("sqrt", Negative(Sum(terms))):
                 return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
         return part
+
+    def _as_typed(self, factors: Sequence[Expression]) -> Sequence[Expression]:
+        """Return factors in the order in which the model multiplies them: ``m*g*l``, ``2*zeta*omega``."""
+        for product in self.typed:
+            own = [f for f in factors if isinstance(_base(f), Name) and _base(f) in product]
+            ordered = iter(sorted(own, key=lambda f: product.index(_base(f))))
+            factors = [next(ordered) if f in own else f for f in factors]
+        return factors
 
     def _with_loss_factor(self, total: Expression) -> Expression:
         """Return ``10*(1 + 0.1*j)`` for ``j + 10``, as loss factors are typed; no content in a sum."""
@@ -191,7 +209,16 @@ class _Signs:
         may_turn |= not has_s and below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0
         is_negative = sign < 0 if sign else below == 2 * len(terms)
-        return negative(sum_of(_led(_gathered(turned)))) if is_negative else sum_of(_led(_gathered(terms)))
+        ordered = map(self._added, _led(_gathered(turned if is_negative else terms)))
+        total = sum_of(_real_first([*ordered]))
+        return negative(total) if is_negative else total
+
+    def _added(self, term: Expression) -> Expression:
+        """Return ``R*C*(3 - A)*s`` for ``-R*C*(A - 3)*s``, where the sign of the difference is not known."""
+        for total in [f for f in nodes(term) if isinstance(term, Negative) and isinstance(f, Sum)]:
+            if self._sign(total) or self.written.get(_texts(total.terms)) is total:
+                return term
+        return _turned(term.operand) or term if isinstance(term, Negative) else term
 
     def absorbed(self, num: Expression) -> Expression:
         """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
@@ -212,6 +239,10 @@ class _Signs:
         except KeyError:
             return 0
         return int(value.real > 0) - int(value.real < 0)
+
+
+def _base(factor: Expression) -> Expression:
+    return factor.base if isinstance(factor, Power) else factor
 
 
 def _texts(terms: Iterable[Expression]) -> frozenset[str]:
@@ -260,6 +291,16 @@ def _holds_s(part: Expression) -> bool:
     return S in names(part) if is_free else isinstance(part, Call)
 
 
+def _real_first(terms: Sequence[Expression]) -> Sequence[Expression]:
+    """Return terms whose part without s adds before it subtracts: ``s + 1 - K``, ``999 + 70*j``."""
+    places = [i for i, t in enumerate(terms) if not any(n == S or isinstance(n, Call) for n in nodes(t))]
+    own = [terms[i] for i in places]
+    if len({frozenset(names(t)) for t in own}) == len(own):  # powers of one symbol keep falling
+        own.sort(key=lambda t: (isinstance(t, Negative), Name(IMAGINARY) in names(t)))
+    put = dict(zip(places, own, strict=True))
+    return [put.get(i, t) for i, t in enumerate(terms)]
+
+
 def _led(terms: Sequence[Expression]) -> list[Expression]:
     """Return terms with a positive one in front, if there is one."""
     first = next((i for i, t in enumerate(terms) if not isinstance(t, Negative)), 0)
@@ -305,7 +346,7 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
 
     Sums that were written in two orders are one power as soon as they are turned alike.
     """
-    bases = [f.base if isinstance(f, Power) else f for f in factors]
+    bases = [_base(f) for f in factors]
     is_squared = any(
         isinstance(f, Power) and isinstance(f.base, Call) and f.base.name == "sqrt" for f in factors
     )
@@ -449,6 +490,9 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     if all(x.denominator == 1 for x in written) or any(n.name not in ("exp", "sqrt") for n in calls):
         return num, den
     wanted = {*written, Fraction(1)}
+    numbers = [n.value.numerator for e in (num, den) for n in nodes(e) if isinstance(n, Number)]
+    longest = max((len(str(n).strip("-0")) for n in numbers), default=0)
+    digits = min(max(DIGITS, longest + 1), MOST)
 
     def led_by_s(part: Expression) -> Expression:
         if not isinstance(part, Sum):
@@ -459,7 +503,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
         else:  # what several parts were divided by goes on to the front
             are_whole = all(x.denominator == 1 for x in fronts)
             divisor = Fraction(gcd(*map(int, fronts)) if are_whole else 1)
-        scaled = None if divisor == 1 else _scaled(part, divisor)
+        scaled = None if divisor == 1 else _scaled(part, divisor, digits)
         return part if scaled is None else product_of([number(divisor), scaled])
 
     (above, powers), (below, divisors) = (powers_of(rebuilt(e, led_by_s)) for e in (num, den))
@@ -467,19 +511,19 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     for parts, side in ((divisors, -1), (powers, 1)):
         for part in [p for p in parts if isinstance(p, Sum)]:
             divisor = _typed_scale(part, wanted)
-            if divisor != 1 and (scaled := _scaled(part, divisor)) is not None:
+            if divisor != 1 and (scaled := _scaled(part, divisor, digits)) is not None:
                 scale *= divisor ** (parts[part] * side)
                 ordered = [(scaled if base == part else base, n) for base, n in parts.items()]
                 parts.clear()
                 for base, n in ordered:
                     parts[base] = parts.get(base, 0) + n
-    if (own := _number_in(scale)) is None:
+    if (own := _number_in(scale, digits)) is None:
         return num, den
     tried = [product_of([own, *(power(b, n) for b, n in powers.items())])]
     sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
-    spread = None if inside is None or scale == 1 else _scaled(inside, 1 / abs(scale))
+    spread = None if inside is None or scale == 1 else _scaled(inside, 1 / abs(scale), digits)
     if inside is not None and spread is not None and ({*names(inside)} == {S} or len({*names(inside)}) > 1):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
         tried.append(negative(whole) if scale < 0 else whole)
@@ -497,8 +541,10 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         divided = [f / divisor for f in fronts]
         is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
         is_typed = all(is_wanted)
-        as_usual = is_monic and divided[0] == 1 and sum(is_whole) >= len(divided) - 1
         has_symbols = {*names(total)} != {S}
+        is_large = not has_symbols and (fronts[0] == 1 or max(fronts) >= LARGE)
+        is_large &= not any("/" in number_text(x) for x in divided)
+        as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
         return (
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
@@ -511,14 +557,14 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
     return max(tried, key=rank)
 
 
-def _scaled(total: Sum, divisor: Fraction) -> Expression | None:
+def _scaled(total: Sum, divisor: Fraction, digits: int) -> Expression | None:
     """Return a sum divided by a number, None where that has no short decimals."""
     terms = []
     for term in total.terms:
         front, powers = powers_of(term)
         inner = next((b for b, n in powers.items() if isinstance(b, Sum) and n == 1), None)
-        within = None if inner is None or abs(front) != 1 else _scaled(inner, divisor)
-        own = number(front) if within is not None else _number_in(front / divisor)
+        within = None if inner is None or abs(front) != 1 else _scaled(inner, divisor, digits)
+        own = number(front) if within is not None else _number_in(front / divisor, digits)
         if own is None:
             return None
         raised = (power(within if within is not None and b is inner else b, n) for b, n in powers.items())
@@ -526,10 +572,10 @@ def _scaled(total: Sum, divisor: Fraction) -> Expression | None:
     return sum_of(terms)
 
 
-def _number_in(value: Fraction) -> Expression | None:
+def _number_in(value: Fraction, digits: int = DIGITS) -> Expression | None:
     """Return a number that is a whole one or a short decimal, None otherwise."""
     text = number_text(abs(value))
     is_short = value.denominator == 1 or (
-        "/" not in text and len(text.strip("0.").replace(".", "")) <= DIGITS
+        "/" not in text and len(text.strip("0.").replace(".", "")) <= digits
     )
     return number(value) if is_short else None

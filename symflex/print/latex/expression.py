@@ -108,7 +108,9 @@ LATEX: Final = Spelling(
     name=lambda name, labels: symbol(name, labels).latex,
     function=lambda name: FUNCTIONS[name].latex,
     primed=lambda name, order: name + ("'" * order if order <= MOST_PRIMES else rf"^{{({order})}}"),
-    scientific=lambda mantissa, exponent: rf"{mantissa} \cdot 10^{{{exponent}}}",
+    scientific=lambda mantissa, exponent: r" \cdot ".join(
+        [mantissa] * bool(mantissa) + [f"10^{{{exponent}}}"]
+    ),
     fenced=_fenced,
     sum=_sum,
     product="".join,

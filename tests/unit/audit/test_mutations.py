@@ -191,6 +191,8 @@ SLIPS = {
     "a factor forgotten": {"mu": "m_2"},
     "hidden by a mass of 1 kg": {"w_2": "sqrt(k_2*m_2)"},
     "two lines exchanged": {"w_1": LINES["w_2"], "w_2": LINES["w_1"]},
+    "two slips in one line": {"zeta": "b*sqrt(k_2*m_2)/4"},
+    "a slip in each of two lines": {"w_1": "sqrt(m_1/k_1)", "zeta": "b/(4*sqrt(k_2*m_2))"},
 }
 
 
@@ -248,3 +250,56 @@ def test_a_slip_is_blamed_on_the_line_that_has_it(name):
     (change,) = audit(model)[0].changes
     printed, derived = format_expression(change.printed), format_expression(change.derived)
     assert f"{change.place}: {printed}, {derived}" == expected
+
+
+# A rod that a mass loads: X/F = tanh(g*l)/(E*A*g + m*s^2*tanh(g*l)), g = s/c; and a lag behind a dead time.
+ROD = """
+symflex = 1
+parameters = { E = "210 GPa", A = "1e-4 m^2", rho = "7800 kg/m^3", l = "0.7 m", m = "0.3 kg" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+elements.tip = { type = "mass", at = "x", m = "m" }
+elements.rod = { type = "rod", between = ["ground", "x"], E = "E", A = "A", rho = "rho", l = "l" }
+[published."X/F"]
+"""
+LATE = """
+symflex = 1
+parameters = { K = 3, tau = "0.5 s", T = "0.2 s" }
+blocks.D = { type = "delay", T = "T" }
+inputs.F = {}
+signals.x = "D*K/(tau*s + 1)*(F - x)"
+outputs.X = "x"
+[published."X/F"]
+"""
+SPEED = "s*sqrt(rho/E)"
+CALL_SLIPS = [
+    (ROD, "tanh(2*g*l)/(E*A*g + m*s^2*tanh(g*l))", SPEED, "numerator: tanh(2*g*l), tanh(g*l)"),
+    (ROD, "tanh(g*l)/(E*A*g + m*s^2*tanh(g*l/2))", SPEED, "denominator: tanh(g*l/2), tanh(g*l)"),
+    (ROD, "tanh(g*m)/(E*A*g + m*s^2*tanh(g*l))", SPEED, "numerator: tanh(g*m), tanh(g*l)"),
+    (ROD, "tanh(g*l)/(E*A*g + m*s^2*tanh(g*l))", "s", "line g: s, s*sqrt(rho/E)"),
+    (LATE, "K*exp(-T*s)/(tau*s + 1 + K)", "s", "denominator: K, K*exp(-T*s)"),
+    (
+        LATE,
+        "K/(tau*s + 1 + K*exp(-T*s))",
+        "s",
+        "numerator: K/(tau*s + 1 + K*exp(-T*s)), K*exp(-T*s)/(tau*s + 1 + K*exp(-T*s))",
+    ),
+]
+
+
+@pytest.mark.slow
+def test_slips_in_arguments_wavenumbers_and_dead_times_are_found():
+    for head, expr, line, expected in CALL_SLIPS:
+        (found,) = audit(pipeline.loads(f"{head}expr = '{expr}'\nwhere = {{ g = '{line}' }}\n"))
+        (change,) = found.changes
+        printed, derived = format_expression(change.printed), format_expression(change.derived)
+        assert f"{change.place}: {printed}, {derived}" == expected
+
+
+def test_a_sign_under_a_root_is_found_where_it_is():
+    expr = "1/(m*((s + b/(2*m))^2 + sqrt(k/m + (b/(2*m))^2)^2))"
+    text = ISOLATOR.replace('"X/y"', '"X/F"').replace('y = { displacement = "y" }', 'F = { force = "x" }')
+    text = text.replace('["x", "y"]', '["x", "ground"]')
+    (found,) = audit(pipeline.loads(f"{text}expr = '{expr}'\n"))
+    (change,) = found.changes
+    assert format_expression(change.derived) == "sqrt(k/m - (b/(2*m))^2)"

@@ -280,7 +280,7 @@ def test_what_cancelled_prints_by_descending_powers():
 def test_pi_stands_before_the_parameters():
     text = TWO_MASS.replace('k = "k" }', 'k = "k*pi^2*m_1" }')
     num, _ = printed(tf_of(text, "Y", "F"), "polynomial")
-    assert num == "b*s + pi^2*m_1*k"
+    assert num == "b*s + pi^2*k*m_1"
 
 
 def test_a_function_of_constants_prints_as_it_was_written():
@@ -394,7 +394,27 @@ SHAPES = {
     "a minus sign stands in front of all terms": (
         "a = {}", "-2*(a*s + 0.25)*u/(s^2 + 0.1*s + 1)", "-(2*a*s + 0.5)/(s^2 + 0.1*s + 1)"),
     "two terms with a minus of three": (
-        "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b - a + c)*s + 1)"),
+        "a = 1, b = 2, c = 3", "u/(s^2 - a*s + b*s + c*s + 1)", "1/(s^2 + (b + c - a)*s + 1)"),
+    # A Sallen-Key filter of equal parts, as in Franco, Design with Operational Amplifiers.
+    "a difference of unknown sign is added": (
+        "R = {}, C = {}, A = {}", "A*u/(R^2*C^2*s^2 - A*R*C*s + 3*R*C*s + 1)",
+        "A/(R^2*C^2*s^2 + R*C*(3 - A)*s + 1)"),
+    "what is added stands before what is subtracted": (
+        "K = {}, m = {}, k = {}, Omega = {}", "u/(m*s^2 - m*Omega^2 + k)", "1/(m*s^2 + k - m*Omega^2)"),
+    "a positive feedback": ("K = {}", "u/(s - K + 1)", "1/(s + 1 - K)"),
+    "powers of a symbol fall": ("K = {}", "u/(s^2 + 3*K^4 - K^2 + 5)", "1/(s^2 + 3*K^4 - K^2 + 5)"),
+    "products keep the order in which they are typed": (
+        "m = {}, l = {}, J = {}, g = {}, n = {}", "u/((J + n^2*J + m*l^2)*s^2 + m*g*l)",
+        "1/((J + n^2*J + m*l^2)*s^2 + m*g*l)"),
+    "a damping ratio stands before its frequency": (
+        "omega = {}, zeta = {}", "u/(s^2 + omega*(2*zeta*s + omega))", "1/(s^2 + 2*zeta*omega*s + omega^2)"),
+    "large round numbers": ("", "1e9*u/(s^2 + 14000*s + 1e8)", "1e9/(s^2 + 14000*s + 1e8)"),
+    # Nise, Control Systems Engineering, the antenna: 0.318*120*100*2.083*0.1 = 794.8728.
+    "a loop of typed decimals leads with one power of s": (
+        "", "794.8728*u/(s*(s + 100)*(s + 1.71) + 0.318*120*100*2.083*0.1)",
+        "794.8728/(s^3 + 101.71*s^2 + 171*s + 794.8728)"),
+    "what a loop gain is added to stays factored": (
+        "a = {}, b = {}, K = {}", "K*u/(s^3 + (a + b)*s^2 + a*b*s + K)", "K/(s*(s + a)*(s + b) + K)"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
                  "1/((J + m*(a + b)^2)*s^2 + 1)"),
 }  # fmt: skip
@@ -438,8 +458,8 @@ outputs.Y = "y"
     num, den = printed(tf_of(text, "Y", "r"))
     assert num == "K*(b*s + k)*(s^2 + 4*pi^2*f^2)"
     assert den == (
-        "M*s^2*(m*s^2*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2) + K*(s^2 + 4*pi^2*f^2))"
-        " + (b*s + k)*(s^2*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2)*(m + M) + K*(s^2 + 4*pi^2*f^2))"
+        "s^2*(m*(M*s^2 + b*s + k) + M*(b*s + k))*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2)"
+        " + K*(M*s^2 + b*s + k)*(s^2 + 4*pi^2*f^2)"
     )
 
 
@@ -577,6 +597,20 @@ def test_pi_stands_beside_the_number_in_a_coefficient():
     head = "symflex = 1\nparameters = { f = {}, a = {}, b = {} }\ninputs.u = {}\n"
     text = head + 'outputs.y = "u/(s + 2*pi*f*(a + b))"'
     assert printed(tf_of(text, "y", "u"), "polynomial")[1] == "s + 2*pi*f*(a + b)"
+
+
+def test_state_equations_of_four_digits_print_the_characteristic_polynomial():
+    # McRuer, Ashkenas & Graham 1973 print such data; s^2 - (a + d)*s + a*d - b*c by hand.
+    block = "A = [[-0.0558, -0.9968], [0.598, -0.115]], B = [0.0073, -0.475], C = [0, 1]"
+    text = f'symflex = 1\nblocks.G = {{ type = "ss", {block} }}\ninputs.u = {{}}\noutputs.y = "G*u"'
+    # -0.475*(s + 0.0558) + 0.598*0.0073; 0.0558*0.115 + 0.9968*0.598
+    assert printed(tf_of(text, "y", "u")) == ("-(0.475*s + 0.0221396)", "s^2 + 0.1708*s + 0.6025034")
+
+
+def test_normalised_forms_are_normalised_where_decimals_are_typed():
+    text = 'symflex = 1\ninputs.u = {}\noutputs.y = "1.6*u/(1e-8*s^2 + 1.4e-4*s + 1)"'
+    assert printed(tf_of(text, "y", "u"), "constant") == ("1.6", "1e-8*s^2 + 0.00014*s + 1")
+    assert printed(tf_of(text, "y", "u"), "monic") == ("1.6e8", "s^2 + 14000*s + 1e8")
 
 
 def test_numbers_nobody_can_read_are_printed_as_decimals():
