@@ -7,8 +7,9 @@ What stands above the numbers names the columns, and comment lines may hold what
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Final
 
@@ -73,7 +74,8 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
     table = TextTable.of(name, data)
-    if (turned := _turned(table)) is not None or (turned := _listed(table)) is not None:
+    turned = _turned(table) or _listed(table) or _spaced(table)
+    if turned is not None:
         text, origin, said = turned
         try:
             made_of_lines = read_columns(name, text, stem, asked)
@@ -132,6 +134,34 @@ def _listed(table: TextTable) -> _Rewritten | None:
         return None
     rows = [names, *(cells[i + 1 : i + width] for i in range(0, len(cells), width))]
     return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()
+
+
+def _spaced(table: TextTable) -> _Rewritten | None:
+    """Return the text with a column of the frequencies that its header gives; None if it does so nowhere.
+
+    LabVIEW gives the first one and their step, a CITIFILE both ends and their number, or a list.
+    """
+    head, names, rows = table.source.text.partition("\nX_Value\t")
+    fields = {key: more.partition("\t")[0] for key, _, more in (x.partition("\t") for x in head.split("\n"))}
+    start, step = (number(fields.get(key, ""), table.decimal) for key in ("X0", "Delta_X"))
+    axis: Iterable[str] = ()
+    if fields.get("X_Columns") == "No" and isinstance(start, float) and isinstance(step, float):
+        first, _, rows = rows.partition("\n")
+        head = head.replace("\nX_Columns\tNo", "") + f"{names}{first}\n"
+        axis = (f"{start + i * step!r}".replace(".", table.decimal) for i in count())
+    elif head.startswith("CITIFILE"):
+        head, _, rows = head.partition("\nBEGIN\n")
+        rows = rows.partition("\nEND")[0].replace(",", "\t")
+        axis = head.partition("VAR_LIST_BEGIN\n")[2].partition("VAR_LIST_END")[0].split()
+        if ends := re.search(r"^SEG (\S{1,30}) (\S{1,30}) (\d{1,7})$", head, re.M):
+            start, step = number(ends[1]), number(ends[2])
+            if isinstance(start, float) and isinstance(step, float):
+                axis = map(repr, np.linspace(start, step, min(int(ends[3]), MAX_LINES)).tolist())
+        head = "frequency_hz\tre\tim\n" if re.search(r"^DATA \S+ RI$", head, re.M) else ""
+    written = [row.strip() for row in rows.split("\n") if row.strip()]
+    lines = "".join(f"{x}\t{row}\n" for x, row in zip(axis, written, strict=False))
+    said = ("the frequencies are those that the header gives",)
+    return ((head + lines).encode(), lambda _: None, said) if lines and head else None
 
 
 def _turned(table: TextTable) -> _Rewritten | None:
@@ -320,7 +350,8 @@ def _units(table: TextTable, line: int, width: int) -> list[str]:
     units = units if len(units) == width else cut(text.lstrip("#%!/*"), table.delimiter)
     if len(units) == width - 1 and table.lines[line].startswith("\t") and table.delimiter == "\t":
         units = ["", *units]
-    is_row = 2 <= len(units) <= width and any(  # noqa: PLR2004
+    is_apart = table.delimiter != " " and table.delimiter in text  # a unit of the frequency alone: MHz,,
+    is_row = 2 - is_apart <= len(units) <= width and any(
         u.strip("[]()").lower() in UNITS or ratio_unit(u.strip("[]"), "") for u in units
     )
     return units if is_row else []

@@ -614,6 +614,19 @@ def simulated_files():
     )
     yield Saved("lag.csv", ("Frequency (Hz),Gain (dB),Phase lag (deg)\n" + rows(F, DB, -DEG)).encode())
     yield Saved("chinese.csv", ("频率(Hz),幅值(dB),相位(°)\n" + rows(F, DB, DEG)).encode("gb18030"))
+    head = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tNo\n***End_of_Header***\t\n\t\n"
+    channels = (
+        "Channels\t2\t\nY_Unit_Label\tdB\tDegree\t\nX_Dimension\tFrequency\tFrequency\t\nX0\t1,0E+0\t1,0E+0\t\n"
+        "Delta_X\t0,5\t0,5\t\n***End_of_Header***\t\t\nX_Value\tFRF (Magnitude)\tFRF (Phase)\tComment\n"
+    )
+    lines = rows(DB, DEG, sep="\t", decimal=",").splitlines()
+    yield Saved("without_x.lvm", (head + channels + "".join(f"\t{line}\n" for line in lines)).encode())
+    citi = "CITIFILE A.01.00\nNAME DATA\nVAR FREQ MAG 99\nDATA S[2,1] RI\n"
+    listed = "VAR_LIST_BEGIN\n" + "".join(f"{f:.9g}\n" for f in F) + "VAR_LIST_END\nBEGIN\n"
+    segment = "SEG_LIST_BEGIN\nSEG 1 50 99\nSEG_LIST_END\nBEGIN\n"
+    yield Saved("segment.cti", (citi + segment + rows(RE, IM) + "END\n").encode())
+    yield Saved("list.citi", (citi + listed + rows(RE, IM) + "END\n").encode())
+    yield Saved("unit_alone.csv", ("Stimulus,Real,Imag\nMHz,,\n" + rows(F / 1e6, RE, IM)).encode())
     parts = "\n".join(",".join(f"{x:.9e}" for x in row) for row in (F, RE, IM))
     yield Saved("bare_rows.csv", parts.encode(), columns="f,re,im")
 

@@ -70,6 +70,7 @@ GUESSES = {
     "whole_de.csv": "'|H| [%]' is read in per cent",
     "volts.csv": "the magnitude is 'CH2 Amplitude (V)' over 'CH1 Amplitude (V)'",
     "spectra.csv": "the response is 'Accel' over 'Force'",
+    "without_x.lvm": "the frequencies are those that the header gives",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 
