@@ -191,6 +191,20 @@ def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
     return tuple(PageColumn((h,)) if isinstance(h, str) else PageColumn((h[0],), h[1]) for h in heads)
 
 
+def filled(heads: tuple[PageColumn, ...], rows: Sequence[tuple[Cell, ...]], latex: str = "") -> Table:
+    """Return a table without the columns in which no row says anything.
+
+    Examples
+    --------
+    >>> filled(columns("Name", "Meaning"), [(("k",), ("",)), (("b",), ("–",))]).rows
+    ((('k',),), (('b',),))
+    """
+    kept = [i for i in range(len(heads)) if any(row[i] not in (("",), ("–",)) for row in rows)]
+    return Table(
+        tuple(heads[i] for i in kept), tuple(tuple(row[i] for i in kept) for row in rows), latex=latex
+    )
+
+
 def mathematics(expression: Expression, model: Model) -> Mathematics:
     """Return an expression with a model's labels."""
     return labelled(expression, model_labels(model))

@@ -22,7 +22,7 @@ from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, text
+from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.sweep.run import end_with_parent
@@ -385,7 +385,7 @@ def _overview(
             ((PageLink(c.section.title, f"#{c.stem}"),), (c.facts.source or "–",), (mark,), (_stability(c),))
         )
     heads = columns("Model", "Source", ("Poles and zeros", "plain"), ("Stability", "plain"))
-    blocks.append(Table(heads, tuple(rows)))
+    blocks.append(filled(heads, rows))
     return Section("Overview", tuple(blocks), "models")
 
 

@@ -41,6 +41,7 @@ from symflex.report.document import (
     columns,
     counted,
     exponents,
+    filled,
     labelled,
     marked,
     mathematics,
@@ -87,8 +88,7 @@ def parameter_section(study: Study) -> ChapterPart | None:
         value = "symbolic" if exact is None else exponents(decimal_text(exact))
         rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(unit),), (p.doc,)))
     heads = columns(("Symbol", "plain"), ("Name", "plain"), ("Value", "number"), ("Unit", "plain"), "Meaning")
-    table = Table(heads, tuple(rows), latex=parameter_table(model))
-    return ChapterPart("Parameters", (table,))
+    return ChapterPart("Parameters", (filled(heads, rows, parameter_table(model)),))
 
 
 LONGEST_LATEX: Final = 60_000
