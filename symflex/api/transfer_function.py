@@ -20,6 +20,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
+from symflex.model.fields import counted
 from symflex.model.loss_factors import check_causal
 from symflex.options import RootsOptions, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
@@ -310,8 +311,9 @@ class TransferFunction(_Derived):
     def __repr__(self) -> str:
         if self.is_distributed:
             return f"<TransferFunction {self.name}: {self.quantity}, distributed>"
-        zeros, poles = ("infinitely many" if n is None else n for n in counts_of(self.exact))
-        return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
+        many = zip(counts_of(self.exact), ("zero", "pole"), strict=True)
+        said = ", ".join(f"infinitely many {of}s" if n is None else counted(n, of) for n, of in many)
+        return f"<TransferFunction {self.name}: {self.quantity}, {said}>"
 
 
 @dataclass(frozen=True)
