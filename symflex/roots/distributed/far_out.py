@@ -536,11 +536,10 @@ class _SumsOnAxis:
             terms = []
             for exponent, amplitude in zip(total.terms, factors, strict=True):
                 own = [(i, *((a, b), (a - b, a + b), (-b, a))[turns[i]]) for i, a, b in exponent]
-                if any(not sizes[i].unit.is_finite() or (n and not sizes[i].power) for i, _, n in own):
+                if any(not sizes[i].unit.is_finite() for i, _, _ in own):
                     return False
-                still = sum((sizes[i].unit * g for i, g, _ in own if not sizes[i].power), acb(0)).exp()
-                growth = tuple((i, g, 0) for i, g, _ in own if g and sizes[i].power)
-                terms.append((growth, {i: n for i, _, n in own if n}, _summed(amplitude, numbers, still)))
+                growth = tuple((i, g, 0) for i, g, _ in own if g)
+                terms.append((growth, {i: n for i, _, n in own if n}, _summed(amplitude, numbers)))
             found = _fastest(terms, sizes, radius)
             if found is None:
                 return False
@@ -562,41 +561,27 @@ class _SumsOnAxis:
     def _generators(self, radius: float) -> dict[str, tuple[int, Fraction, arb]] | None:
         """Return s and wavenumbers from a radius on: eighths of a turn, powers of omega, and their factors.
 
-        None where a wavenumber is neither real nor, but for such a turn, has a sign.
+        None where the square of a wavenumber, in bending its fourth power, is not even in s and has no sign.
         """
         named = {LAPLACE: (2, Fraction(1), arb(1))}
         kernels = self.values.evaluator
-        for law in kernels.table.dispersions:
-            found = [_on_axis(kernels, c, radius) for c in law.characteristic[::2]]
-            known = [each for each in found if each is not None]
-            if len(known) < len(found) or law.kind not in (*ROOTS, "pair", "exponential"):
+        for law in (law for law in kernels.table.dispersions if law.wavenumbers):
+            found = _on_axis(kernels, law.characteristic[0], radius) if law.kind in ROOTS else None
+            if found is None:
                 return None
-            if law.kind == "exponential":
-                continue
-            order, (p, c) = ROOTS.get(law.kind, 2), known[0]
-            roots = [(p, c / 4 if law.kind == "bending" else -c)]
-            if law.kind == "pair":
-                q, b = known[1]
-                power = max(q, p / 2)
-                b, c0 = b * _from(radius, q - power), c * _from(radius, p - 2 * power)
-                root = (b * b - 4 * c0).sqrt()
-                first = (-b - root if b > 0 else root - b) / 2
-                other = (power, (-b - root) / 2) if c0 < 0 and not b > 0 else (p - power, c / first)
-                roots = [(power, first), other]
-            for name, (power, square) in zip(law.wavenumbers, roots, strict=True):
-                if not abs(square) > 0:
-                    return None
-                named[name] = (0 if square > 0 else 4 // order, power / order, abs(square).root(order))
+            order, power, value = ROOTS[law.kind], found[0], found[1] / (4 if law.kind == "bending" else -1)
+            if not (abs(value) > 0 and power > 0):
+                return None
+            turn = 0 if value > 0 else 4 // order
+            named[law.wavenumbers[0]] = (turn, Fraction(power, order), abs(value).root(order))
         return named
 
 
-def _summed(
-    amplitude: Valued, numbers: Mapping[str, tuple[Fraction, acb]], scale: acb
-) -> dict[Fraction, acb]:
+def _summed(amplitude: Valued, numbers: Mapping[str, tuple[Fraction, acb]]) -> dict[Fraction, acb]:
     """Return an amplitude as a sum of powers of omega."""
     found: dict[Fraction, acb] = {}
     for number, powers in amplitude:
-        power, total = Fraction(0), number * scale
+        power, total = Fraction(0), number
         for name, e in powers:
             power, total = power + numbers[name][0] * e, total * numbers[name][1] ** e
         found[power] = found.get(power, acb(0)) + total
@@ -619,12 +604,17 @@ def _fastest(
 
     fastest = max((growth for growth, _, _ in terms), key=rate)
     highest = max(p for growth, _, factors in terms if growth == fastest for p in factors)
+
+    def bounded(power: Fraction) -> arb:
+        value = arb(radius) ** ball(power - highest)
+        return arb(0).union(value) if power < highest else value
+
     found, error = [], arb(0)
     for growth, phase, factors in terms:
         faded = _faded(_sum((growth, 1), (fastest, -1)), sizes, arb(radius))
         if faded is None or any(p > highest and not -faded[1] > ball(p - highest) for p in factors):
             return None
-        size = sum((c * _from(radius, p - highest) for p, c in factors.items()), acb(0))
+        size = sum((c * bounded(p) for p, c in factors.items()), acb(0))
         if growth == fastest:
             found.append((phase, size))
         else:
@@ -632,26 +622,13 @@ def _fastest(
     return found, error.upper()
 
 
-def _from(radius: float, power: Fraction) -> arb:
-    """Return a power of omega from a radius on, what grows at the radius itself."""
-    value = arb(radius) ** ball(power)
-    return arb(0).union(value) if power < 0 else value
-
-
-def _on_axis(kernels: KernelValues, value: Factored, radius: float) -> tuple[Fraction, arb] | None:
+def _on_axis(kernels: KernelValues, value: Factored, radius: float) -> tuple[int, arb] | None:
     """Return a power of omega and what a value is times it from a radius on, None unless it is even in s."""
-    if value.is_zero:
-        return Fraction(0), arb(0)
-    odd = 0
-    for factor, exponent in value.factors:
-        parities = {dict(monomial).get(0, 0) % 2 for monomial, _ in terms_of(factor)}
-        if len(parities) > 1:
-            return None
-        odd += parities.pop() * exponent
     found = _at_infinity(kernels, value, radius)
-    if found is None or odd % 2:
-        return None
-    return Fraction(found[0]), found[1].real * (-1) ** (found[0] // 2)
+    parities = [{dict(monomial).get(0, 0) % 2 for monomial, _ in terms_of(f)} for f, _ in value.factors]
+    if found is None or found[0] % 2 or any(len(own) > 1 for own in parities):
+        return None  # each factor is even or odd, and the highest power is even
+    return found[0], found[1].real * (-1) ** (found[0] // 2)
 
 
 @dataclass(frozen=True, slots=True)
