@@ -16,6 +16,7 @@ from symflex.expressions import format_expression
 from symflex.report.document import Mathematics, mathematics
 from symflex.report.minimum_phase import PhaseCondition, minimum_phase
 from symflex.report.structure import compliances, is_colocated
+from symflex.roots.pole_zero_map import NOT_EXAMINED
 
 if TYPE_CHECKING:
     from flint import arb
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
+    from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
@@ -94,8 +96,7 @@ class TransferFacts:
     bracket: str = ""  # the expression that must not be negative, in the spec language; empty without one
     bracket_mathematics: Mathematics | None = None  # the same for print
     truncation: TruncationFacts | None = None  # of distributed systems
-    # ``stable``, ``marginal``, ``unstable`` or ``unknown``: of all poles, listed or not.
-    stability: str = "unknown"
+    verdict: StabilityVerdict = NOT_EXAMINED  # on all poles, listed or not
 
     @property
     def right_half_plane_zeros(self) -> int:
@@ -172,7 +173,7 @@ class TransferFacts:
             "tf": self.tf,
             "quantity": self.quantity,
             "certified": self.certified,
-            "stability": self.stability,
+            "stability": self.verdict.word,
             "is_infinite": self.is_infinite,
             "zeros": None if self.counts is None else self.counts[0],
             "poles": None if self.counts is None else self.counts[1],
@@ -359,7 +360,7 @@ def _of_roots(model: Model, tf: AnyTransferFunction, found: PoleZeroMap, reason:
         explained="unknown",
         condition="unknown",
         reason=reason,
-        stability=found.verdict.word,
+        verdict=found.verdict,
     )
 
 

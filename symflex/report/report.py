@@ -25,6 +25,7 @@ from symflex.report.comparison import comparison_section
 from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
+from symflex.roots.pole_zero_map import WORST_FIRST
 from symflex.sweep.run import end_with_parent
 
 if TYPE_CHECKING:
@@ -391,9 +392,9 @@ def _overview(
 
 def _stability(chapter: Chapter) -> Badge | str:
     """Return the worst that was found of a model's transfer functions."""
-    found = {f.stability for f in chapter.facts.functions}
-    worst = next((word for word in ("unstable", "unknown", "marginal", "stable") if word in found), "")
-    return stability_mark(worst) if worst else "–"
+    found = [f.verdict for f in chapter.facts.functions]
+    worst = min(found, key=lambda v: WORST_FIRST.index(v.word), default=None)
+    return stability_mark(worst.brief) if worst else "–"
 
 
 def _provenance(date: str) -> Section:

@@ -41,7 +41,8 @@ class StabilityVerdict:
     ``stable``: all poles that input and output see lie in the open left half plane, and no hidden one lies in
     the right. ``marginal``: no pole lies in the right half plane, and input and output see some on the
     imaginary axis. ``unstable``: a pole lies in the right half plane, seen or hidden. ``unknown``: none of
-    these is proved. Hidden poles on the axis leave the word as it is and are named beside it.
+    these is proved, or only that no pole lies in the right half plane. Hidden poles on the axis leave the
+    word as it is and are named beside it.
 
     Examples
     --------
@@ -49,6 +50,8 @@ class StabilityVerdict:
     'unstable: 2 poles in the right half plane'
     >>> StabilityVerdict("unknown", None, False, "poles have no end").headline
     'stability not known'
+    >>> StabilityVerdict("unknown", 0, False, "passive").headline
+    'stable or marginal'
     >>> StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=("phi",)).hidden_motion
     'a hidden pole at s = 0: phi may rest anywhere'
     """
@@ -71,7 +74,7 @@ class StabilityVerdict:
     def sentence(self) -> str:
         """What stands at the head of a list of poles."""
         if self.word == "unknown":
-            return f"stability not known: {self.reason}"
+            return f"{self.brief}: {self.reason}"
         if self.word == "unstable":
             least = "" if self.right is not None else "at least "
             poles = "1 pole" if self.found == 1 else f"{self.found} poles"
@@ -101,7 +104,9 @@ class StabilityVerdict:
     @property
     def brief(self) -> str:
         """The verdict in a word or two."""
-        return "stability not known" if self.word == "unknown" else self.word
+        if self.word == "unknown":
+            return "stability not known" if self.right is None else "stable or marginal"
+        return self.word
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the verdict as JSON data."""
@@ -129,7 +134,7 @@ class StabilityVerdict:
         decides = (each for each in both if each.word == word or (right is None and each.right is None))
         return StabilityVerdict(
             word,
-            None if word == "unknown" else right,
+            right,
             word != "unknown",
             "; ".join(dict.fromkeys(each.reason for each in decides if each.reason)),
             self.found + other.found,

@@ -121,7 +121,7 @@ def _stability(verdict: StabilityVerdict, more: str = "") -> Block:
     """Return what is said of stability, with its badge, and the motion that nothing sees."""
     said = f"{verdict.sentence.removeprefix(verdict.brief)}{more}."
     motion = verdict.hidden_motion
-    return marked(stability_mark(verdict.word), f"{said} {sentence(motion)}" if motion else said)
+    return marked(stability_mark(verdict.brief), f"{said} {sentence(motion)}" if motion else said)
 
 
 def stability_mark(word: str) -> Badge:
@@ -129,11 +129,11 @@ def stability_mark(word: str) -> Badge:
 
     Examples
     --------
-    >>> [stability_mark(word).tone for word in ("stable", "marginal", "unstable", "unknown")]
+    >>> [stability_mark(word).tone for word in ("stable", "marginal", "unstable", "stability not known")]
     ['good', 'fair', 'bad', 'fair']
     """
     tones: dict[str, Tone] = {"stable": "good", "unstable": "bad"}
-    return Badge("stability not known" if word == "unknown" else word, tones.get(word, "fair"))
+    return Badge(word, tones.get(word, "fair"))
 
 
 def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
