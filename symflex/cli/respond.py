@@ -93,7 +93,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         _draw(found, given, Path(given.output))
         note(f"wrote {given.output}")
     else:
-        is_told = given.to == "step" and shaper is None and found.certified
+        is_told = given.to == "step" and shaper is None and found.certified and _may_rest(known)
         info = find_step_info(bound, given.digits, found.modes) if is_told else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
@@ -110,6 +110,12 @@ def _growth(known: PoleZeroMap | None) -> list[str]:
     if known is None or not any(root.re > 0 for root in known.all_poles):
         return []
     return [f"the response grows without bound; the system is {known.verdict.sentence}"]
+
+
+def _may_rest(known: PoleZeroMap | None) -> bool:
+    """Tell whether no pole that is known keeps a step response from rest: the others are not needed then."""
+    poles = () if known is None else known.all_poles
+    return not any(not p.is_zero and (p.on_imaginary_axis or p.re > 0) for p in poles)
 
 
 def _check_place(given: RespondOptions) -> None:

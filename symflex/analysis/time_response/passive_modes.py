@@ -159,7 +159,10 @@ def _colocated(
     # What else drives the model stays, at rest: without it a support would be missing.
     given = replace(model, inputs=(*model.inputs, *forces), outputs=tuple(shown), figures=(), published=())
     pairs = [(o.name, i.name) for o in shown for i in forces]
-    found = [bind(tf, dict(bound.values)) for tf in derive_all(given, pairs)]
+    # A model of which some numbers are written into the wavenumbers has no longer all parameters.
+    left = {p.name for p in given.parameters}
+    values = {name: value for name, value in bound.values if name in left}
+    found = [bind(tf, values) for tf in derive_all(given, pairs)]
     return [found[0], found[-1]] if (found[1].ratio / found[2].ratio).is_one else []
 
 

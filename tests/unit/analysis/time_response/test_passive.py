@@ -484,3 +484,18 @@ outputs.X = "x"
     assert found.certified
     assert found.radius.max() < 1e-6
     assert found.values == pytest.approx(finite_elements(40, 0, 0.01, b, [0.95, 1.9]), abs=3e-6)
+
+
+def test_the_ends_of_matched_rods_whose_wavenumbers_hold_numbers_are_bounded():
+    rods = "".join(
+        f'{name} = {{ type = "rod", between = ["{a}", "{b}"], '
+        f'E = "E{k}", rho = "r{k}", A = "1e-4 m^2", l = "1 m" }}\n'
+        for name, a, b, k in (("one", "ground", "p", 1), ("two", "p", "q", 2), ("three", "q", "x", 1))
+    )
+    text = (
+        'symflex = 1\nparameters = { E1 = "4 GPa", E2 = "1 GPa", r1 = "1000 kg/m^3", r2 = "4000 kg/m^3" }\n'
+        f'inputs.F = {{ force = "x" }}\noutputs.X = "p"\n[elements]\n{rods}'
+    )
+    model = pipeline.loads(text)
+    (bound,) = pipeline.derive_for_roots(model, model.transfer_functions, is_explained=True)
+    assert not isinstance(passive_bound(bound, 1), Refused)
