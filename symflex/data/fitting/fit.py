@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.data.fitting.least_squares import FLAT, Refined, widened
-from symflex.data.fitting.lines import isolated, single_lines, wild_lines
+from symflex.data.fitting.lines import isolated, single_lines, step_line, wild_lines
 from symflex.data.fitting.order import (
     CRITERIA,
     LAST_SHARE,
@@ -411,6 +411,11 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         is_lag = not fit.problem.free.delay and bool(np.any(found.real_z < 0) or np.any(is_beyond))
         advice = ": zeros on the right above the band may stand for a dead time, try --delay"
         reasons.append("the gain is lost in its error" + advice * is_lag)
+    for r, line in enumerate(fit.problem.lines):
+        if reasons and (k := step_line(line.omega, line.measured.values)) is not None:
+            low, high = line.measured.frequency_hz[k : k + 2]
+            where = f"{fit.of_response(r)} between {low:.6g} and {high:.6g} Hz"
+            reasons.append(f"the magnitude steps{where}, as where an analyser changes its range")
     return tuple(reasons)
 
 

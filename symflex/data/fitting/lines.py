@@ -34,6 +34,8 @@ MOST_DIGITS = 7
 """Numbers with so many digits, or fewer, count as rounded."""
 EXACT, SMALLEST = 1e-9, 1e-13
 """Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
+STEP_REACH, STEP = 8, 6.5
+"""Lines on either side of a step of the gain, and how many of their deviations it is at least."""
 FIRST_SHARE = 4
 """Part of the lines of a thinner grid, its inverse, that is spread evenly."""
 CAP = 0.05
@@ -81,6 +83,29 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
         line, *near = (np.array([place]) for place in places)
         others[line] = np.maximum(others[line], off(near[0], near[1], near[2]))
     return np.flatnonzero((alone > WILD * others) & (alone > LEAST_OFF))
+
+
+def step_line(omega: Real, values: Complex) -> int | None:
+    """Return the line after which all others are larger or smaller by a factor; None if there is none.
+
+    Examples
+    --------
+    >>> omega = np.arange(60.0)
+    >>> values = 1 / (1 + 0.01j * omega)
+    >>> step_line(omega, np.where(omega > 30, 1.05, 1) * values), step_line(omega, values)
+    (30, None)
+    """
+    ratios = np.log(values[1:] / values[:-1]) / np.diff(omega)
+    if ratios.size < 2 * STEP_REACH + 1:
+        return None
+    near = np.lib.stride_tricks.sliding_window_view(ratios, 2 * STEP_REACH + 1)
+    others, middle = np.delete(near, STEP_REACH, axis=1), near[:, STEP_REACH]
+    least = np.finfo(float).eps
+    size = np.abs(middle.real - others.real.mean(axis=1)) / (others.real.std(axis=1) + least)
+    turn = np.abs(middle.imag - others.imag.mean(axis=1)) / (others.imag.std(axis=1) + least)
+    size[np.median(np.abs(others.real), axis=1) == 0] = 0.0  # rounded numbers, which have steps of their own
+    place = int(np.argmax(size))
+    return place + STEP_REACH if size[place] > STEP and turn[place] < STEP / 2 else None
 
 
 def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> Whole:

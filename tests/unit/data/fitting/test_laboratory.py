@@ -7,9 +7,20 @@ import pytest
 
 from symflex.budget import Budget
 from symflex.data.fitting import fit_resonances
+from symflex.data.fitting.lines import step_line
 from symflex.data.measurement import MeasuredResponse
 from symflex.options import FitOptions
-from tests.unit.data.laboratory import SHAPES, deviations, judged, limit_for, pair, study, summary, wild
+from tests.unit.data.laboratory import (
+    SHAPES,
+    deviations,
+    judged,
+    limit_for,
+    pair,
+    simulated,
+    study,
+    summary,
+    wild,
+)
 
 OMEGA = 2 * np.pi
 
@@ -112,6 +123,26 @@ def test_what_poles_with_weak_evidence_move_by_many_errors_is_called_poor(seed, 
     assert len(fit.candidate.doubts) == 1
     assert (off.max() > limit_for(off.size)) == is_wrong
     assert any("weak evidence" in reason for reason in fit.poor) == is_wrong
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [1.05, 1.12, 0.9])
+def test_a_step_of_the_gain_is_named_with_its_lines(factor):
+    data = two_modes(7, noise=0.005)
+    values = np.where(data.frequency_hz > 45.1, factor, 1.0) * data.values
+    fit = fit_resonances([MeasuredResponse("y/u", data.frequency_hz, values)], None, FitOptions(modes=2))
+    assert any("the magnitude steps between 45 and 45.2 Hz" in reason for reason in fit.poor)
+
+
+def test_noise_resonances_and_rounded_numbers_are_no_step_of_the_gain():
+    x = np.arange(1.0, 300)
+    flat = 10 ** (np.round(20 * np.log10(abs(1 / pair(1j * x, 800, 0.3))), 1) / 20) + 0j
+    cases = [draw(3, number) for draw in (wild, simulated) for number in range(60)]
+    found = [step_line(case.frequency_hz, case.values) for case in cases]
+    assert [step_line(x, flat), *found] == [None] * 121
+    gap = np.delete(x, 100)
+    assert step_line(gap, 1 / pair(1j * gap, 80, 0.3)) is None
+    assert step_line(x, np.where(x > 150, 1.03, 1) / pair(1j * x, 80, 0.3)) == 149
 
 
 def written(number, digits):
