@@ -16,11 +16,19 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in, square_free_factors
+from symflex.algebra import (
+    LAPLACE,
+    NO_KERNELS,
+    Factored,
+    KernelTable,
+    Ring,
+    degree_in,
+    square_free_factors,
+    terms_of,
+)
 from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
-from symflex.algebra.ring import by_powers
 from symflex.balls import at_centre
 from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.transfer_function import HiddenFactor
@@ -91,15 +99,42 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
 
 
 def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
-    """Return the function as a rational one where no kernel depends on s: of members without mass."""
-    ring, laws = bound.ratio.ring, bound.kernels.dispersions
-    if not laws or any(law.matrix or c.depends_on(LAPLACE) for law in laws for c in law.coefficients):
+    """Return the function with numbers for waves that do not depend on s: of members without mass.
+
+    Of what flows one way, as in a heat exchanger, the delay is left.
+    """
+    ring, table = bound.ratio.ring, bound.kernels
+    still = [
+        law for law in table.dispersions if law.characteristic and not any(map(_has_s, law.characteristic))
+    ]
+    if not still:
         return bound
-    kernels = frozenset(bound.kernels.generators)
-    plain = tuple(name for name in ring.names if name not in kernels)
+    delays = [k for k in table.kernels if k.function == "exp" and _has_s(k.dispersion.shift)]
+    left = [k for k in table.kernels if k in delays or k.dispersion not in still]
+    later = {
+        law: replace(law, kind="exponential", characteristic=(), wavenumbers=()) if law in still else law
+        for law in table.dispersions
+        if any(k.dispersion is law for k in left)
+    }
+    waves = (*(n for law in later.values() for n in law.wavenumbers), *(k.generator for k in left))
+    gone = frozenset(table.generators) - {*waves}
+    moving = {0, *(ring.index[name] for name in waves)}
+
+    def by_moving(f: fmpz_mpoly) -> dict[tuple[tuple[int, int], ...], Factored]:
+        """Return numbers by what they are multiplied with, in falling powers of s."""
+        found: dict[tuple[tuple[int, int], ...], Factored] = {}
+        for monomial, c in terms_of(f):
+            key = tuple((i, e) for i, e in monomial if i in moving)
+            term = prod((own[i] ** e for i, e in monomial if i not in moving), start=own[0] ** 0 * int(c))
+            found[key] = found[key] + term if key in found else term
+        return dict(sorted(found.items(), key=lambda item: -dict(item[0]).get(0, 0)))
+
+    own = [Factored.generator(ring, name) for name in ring.names]
     hidden = [Factored(ring, Fraction(1), ((h.polynomial, h.multiplicity),)) for h in bound.hidden]
-    most = sum(1 + degree_in(f, 0) for v in (bound.ratio, *hidden) for f, _ in v.factors) + 1
-    small = Ring((*plain, *(f"c[{i}]" for i in range(most))))
+    values = (bound.ratio, *hidden)
+    most = len(values) + sum(len(by_moving(f)) for v in values for f, _ in v.factors)
+    plain = tuple(name for name in ring.names if name not in table.generators)
+    small = Ring((*plain, *(f"c[{i}]" for i in range(most)), *waves))
     moved = [small.generator(n) if n in small.index else small.constant(0) for n in ring.names]
     numbers: list[Factored] = []
 
@@ -107,34 +142,48 @@ def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
         numbers.append(value)
         return Factored.generator(small, f"c[{len(numbers) - 1}]")
 
+    def image_of(f: fmpz_mpoly) -> Factored:
+        return Factored.polynomial(small, f.compose(*moved, ctx=small.context))
+
     def lumped(value: Factored) -> Factored:
         front, image = Factored.number(ring, 1), Factored.number(small, value.unit)
         for f, e in value.factors:
-            if ring.used_in([f]).isdisjoint(kernels):
-                image = image * Factored.polynomial(small, f.compose(*moved, ctx=small.context)) ** e
+            if ring.used_in([f]).isdisjoint(gone):
+                image = image * image_of(f) ** e
                 continue
-            parts = {n: Factored.polynomial(ring, c) for n, c in by_powers(ring, f, 0).items()}
-            lead = parts.pop(degree := max(parts))
-            own = (number(c / lead) * Factored.generator(small, LAPLACE) ** n for n, c in parts.items())
-            front, image = (
-                front * lead**e,
-                image * sum(own, Factored.generator(small, LAPLACE) ** degree) ** e,
-            )
+            ((first, lead), *others) = by_moving(f).items()
+            total = _monomial(small, ring, first)
+            total = sum((number(c / lead) * _monomial(small, ring, key) for key, c in others), total)
+            front, image = front * lead**e, image * total**e
         return image if front.is_one else image * number(front)
 
     def evaluated(value: Factored) -> arb:
         evaluator = bound.kernel_values()
         return at_centre(evaluator.value(value, evaluator.at(acb(1)))).real
 
-    ratio, *known = map(lumped, (bound.ratio, *hidden))
+    ratio, *known = map(lumped, values)
+    delayed = KernelTable(
+        tuple(later.values()), tuple(replace(k, dispersion=later[k.dispersion]) for k in left)
+    )
     return replace(
         bound,
         ratio=ratio,
-        hidden=tuple(HiddenFactor(f, e) for v in known for f, e in v.factors if degree_in(f, 0)),
-        kernels=NO_KERNELS,
+        hidden=tuple(
+            HiddenFactor(f, e) for v in known for f, e in v.factors if small.used_in([f]) & {LAPLACE, *waves}
+        ),
+        kernels=delayed.embedded((v, v.map_factors(small, image_of)) for v in delayed.values),
         parts=None,
         fixed=tuple((f"c[{i}]", partial(evaluated, value)) for i, value in enumerate(numbers)),
     )
+
+
+def _has_s(value: Factored) -> bool:
+    return value.depends_on(LAPLACE)
+
+
+def _monomial(small: Ring, ring: Ring, powers: tuple[tuple[int, int], ...]) -> Factored:
+    start = Factored.number(small, 1)
+    return prod((Factored.generator(small, ring.names[i]) ** e for i, e in powers), start=start)
 
 
 def _value(kernel: Kernel) -> int:

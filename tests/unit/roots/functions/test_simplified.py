@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from math import cos, exp, pi, sin, sqrt, tanh
+from math import cos, exp, log, pi, sin, sqrt, tanh
 
 import pytest
 
 from symflex import loads, pipeline
 from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.roots.region import Modes
 
 HEAD = """
 symflex = 1
@@ -199,3 +200,30 @@ def test_a_string_that_moves_along_has_the_poles_of_both_waves():
     """
     turns = sorted(im / 1.5 / pi for _, im in poles(text) if im > 0)
     assert turns == pytest.approx([1, 3, 5, 7, 9])
+
+
+CO_FLOW = """
+symflex = 1
+parameters = { v = "0.5 m/s", h = "0.2 1/s", g = "0.1 1/s", l = "2 m" }
+inputs.T_0 = { unit = "K" }
+outputs.Y = "T(l)"
+[fields.pipes]
+unknowns = ["T", "W"]
+domain = ["0", "l"]
+equations = ["v*T' + s*T + h*(T - W) = 0", "v*W' + s*W + g*(W - T) = 0"]
+conditions = ["T(0) = T_0 - T(l)/2", "W(0) = 0"]
+"""
+
+
+def test_fluids_that_flow_one_way_come_late_and_mixed():
+    # Seen from where they flow, (T, W) mixes with the rate h + g for the time l/v.
+    mixed = (0.1 + 0.2 * exp(-0.3 * 4)) / 0.3
+    (bound,) = pipeline.derive_bound(pipeline.loads(CO_FLOW), [("Y", "T_0")])
+    found = pipeline.roots(bound, Modes(3))
+    assert (found.verdict.word, found.certificate.certified) == ("stable", True)
+    expected = [complex(log(mixed / 2), (2 * n + 1) * pi) / 4 for n in range(3)]
+    poles = [complex(r.enclosure()) for r in found.poles if r.im > 0]
+    assert poles == pytest.approx(expected, rel=1e-12)
+    step = time_response(bound, "step", SampleTimes.of([3.9, 4.1, 8.1]))
+    assert step.certified
+    assert step.values.tolist() == pytest.approx([0, mixed, mixed - mixed**2 / 2], abs=1e-12)
