@@ -7,13 +7,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import accumulate
 from math import gcd, isqrt
 from operator import add, neg, sub
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
+from symflex.algebra import (
+    LAPLACE,
+    Factored,
+    Ring,
+    by_powers,
+    degree_in,
+    irreducible_factors,
+    square_free_factors,
+)
 from symflex.expressions import (
     Call,
     Expression,
@@ -454,6 +462,8 @@ class ProductPrinter:
     def square_root(self, value: Factored) -> Expression:
         """Return one square root of a product, with what is a square outside the sign of the root."""
         outside, inside = value**0, value**0
+        if not value.ring.is_sparse:  # (h + g)^2 is a factor by itself
+            value = value.map_factors(value.ring, partial(_with_squares, value.ring))
         for factor, exponent in value.factors:
             half = int(exponent / 2)
             outside = outside * Factored(value.ring, Fraction(1), ((factor, half),) if half else ())
@@ -538,6 +548,11 @@ def _cost(expression: Expression) -> int:
 def length(*expressions: Expression) -> int:
     """Return how many characters expressions take."""
     return sum(len(format_expression(e)) for e in expressions)
+
+
+def _with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
+    unit, factors = square_free_factors(polynomial)
+    return Factored(ring, Fraction(unit), tuple(factors))
 
 
 def reading(expression: Expression) -> float:
