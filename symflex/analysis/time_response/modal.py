@@ -63,7 +63,7 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
 
 
 def proved_modes(
-    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int | None = None
 ) -> PartialSum | None:
     """Return a sum over modes with a proved bound of those left out; None where there is none.
 

@@ -59,8 +59,6 @@ MEDIAN = 1.177
 """Median of the size of a complex Gaussian error whose parts have the deviation 1."""
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
-MOVED = 2.5
-"""Standard errors by which poles without strong evidence may move what else was found."""
 NAMED_LINES = 6
 """Wild lines whose frequencies are listed."""
 ROUNDS = 3
@@ -397,8 +395,6 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
     if fit.candidate.is_rivalled:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
-    if (place := _doubted(fit)) is not None:
-        reasons.append(f"more poles, with weak evidence for them, move what lies at {place:.4g} Hz far off")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together: the model lacks something")
     weak, why = (WEAK_ROUNDED, ", and the data have few digits") if _is_rounded(fit) else (WEAK, "")
@@ -417,22 +413,6 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
             where = f"{fit.of_response(r)} between {low:.6g} and {high:.6g} Hz"
             reasons.append(f"the magnitude steps{where}, as where an analyser changes its range")
     return tuple(reasons)
-
-
-def _doubted(fit: ResonanceFit) -> float | None:
-    """Return where a pair in the band lies [Hz] that a fit with more poles puts many errors away; or None."""
-    found, errors = fit.resonances, fit.standard_errors()
-    low, high = fit.problem.band
-    rows = [[(x.omega_p, x.zeta_p), *zip(x.omega_z, x.zeta_z, strict=True)] for x in (found, errors)]
-    for other in fit.candidate.doubts:
-        theirs = [(other.omega_p, other.zeta_p), *zip(other.omega_z, other.zeta_z, strict=True)]
-        for (omega, zeta), (omega_error, zeta_error), (omegas, zetas) in zip(*rows, theirs, strict=True):
-            for i in np.flatnonzero((omega > low) & (omega < high)).tolist():
-                near = int(np.argmin(np.hypot(omegas / omega[i] - 1, zetas - zeta[i])))
-                off = abs(omegas[near] - omega[i]) > MOVED * omega_error[i]
-                if off or abs(zetas[near] - zeta[i]) > MOVED * zeta_error[i]:
-                    return float(omega[i]) / (2 * np.pi)
-    return None
 
 
 def _is_rounded(fit: ResonanceFit) -> bool:

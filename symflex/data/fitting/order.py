@@ -119,8 +119,6 @@ class Candidate:
     failure: Diagnostic | None  # why it had better not be a result
     rival: Refined | None = None  # the best fit met with another power of s
     is_rivalled: bool = False  # whether that describes the lines as well
-    # Fits with more poles that the criterion prefers, without strong evidence for these.
-    doubts: tuple[Resonances, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,8 +281,6 @@ def chosen_order(
             break
         given_up.append((score, best))
     result = result or given_up[0][1]
-    more = [one for _, one in given_up if one.failure is None and one.order > result.order]
-    result = replace(result, doubts=tuple(one.refined.resonances for one in more))
     if result.failure is not None:
         reasons.append(result.failure.message)
     return result, tuple(scores), tuple(reasons)

@@ -113,19 +113,6 @@ def test_errors_of_zeros_that_stand_for_a_mode_outside_the_band_count_what_is_no
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "number", "is_wrong"), [(1, 210, True), (2, 0, True), (1, 50, False)])
-def test_what_poles_with_weak_evidence_move_by_many_errors_is_called_poor(seed, number, is_wrong):
-    # In all three sets the criterion prefers more poles, without strong evidence. They move a zero of the
-    # first two, which is 6 standard errors off the truth, and nothing of the third.
-    case = wild(seed, number)
-    fit = fit_resonances([MeasuredResponse("y/u", case.frequency_hz, case.values)])
-    off, _ = judged(case, fit)
-    assert len(fit.candidate.doubts) == 1
-    assert (off.max() > limit_for(off.size)) == is_wrong
-    assert any("weak evidence" in reason for reason in fit.poor) == is_wrong
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1.05, 1.12, 0.9])
 def test_a_step_of_the_gain_is_named_with_its_lines(factor):
     data = two_modes(7, noise=0.005)
