@@ -66,7 +66,7 @@ def eliminate(
 ) -> Eliminated:
     """Eliminate so many columns by as many rows, which are used up; by pivots in this order if it is given.
 
-    UndecidedError where no pivot is told from 0. The last one may vanish if there are no further rows.
+    Raises UndecidedError if no pivot is proved to differ from 0. Without borders, the last one may vanish.
 
     Examples
     --------

@@ -62,7 +62,7 @@ HALVINGS = 50
 MORE_DIGITS = 10
 """Of poles: differences of their terms lose some."""
 MODES_DIGITS, MOST_MODES = 8, 100
-"""Of responses of waves, of which few high modes are needed then; where more are, there are fewer digits."""
+"""Digits of responses of waves, which need few high modes, and how many modes: more cost digits."""
 MODES_BITS = 128
 DELAYS_DIGITS = 60
 """Of poles of loops with delays: high powers of their differences lose some."""

@@ -74,7 +74,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
     table = TextTable.of(name, data)
-    turned = _turned(table) or _listed(table) or _spaced(table)
+    turned = _turned(table) or _listed(table) or _stepped(table) or _citi(table)
     if turned is not None:
         text, origin, said = turned
         try:
@@ -136,32 +136,37 @@ def _listed(table: TextTable) -> _Rewritten | None:
     return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()
 
 
-def _spaced(table: TextTable) -> _Rewritten | None:
-    """Return the text with a column of the frequencies that its header gives; None if it does so nowhere.
-
-    LabVIEW gives the first one and their step, a CITIFILE both ends and their number, or a list.
-    """
+def _stepped(table: TextTable) -> _Rewritten | None:
+    """Return a LabVIEW file with a column of its frequencies, where its header gives the first and a step."""
     head, names, rows = table.source.text.partition("\nX_Value\t")
     fields = {key: more.partition("\t")[0] for key, _, more in (x.partition("\t") for x in head.split("\n"))}
     start, step = (number(fields.get(key, ""), table.decimal) for key in ("X0", "Delta_X"))
-    axis: Iterable[str] = ()
-    if fields.get("X_Columns") == "No" and isinstance(start, float) and isinstance(step, float):
-        first, _, rows = rows.partition("\n")
-        head = head.replace("\nX_Columns\tNo", "") + f"{names}{first}\n"
-        axis = (f"{start + i * step!r}".replace(".", table.decimal) for i in count())
-    elif head.startswith("CITIFILE"):
-        head, _, rows = head.partition("\nBEGIN\n")
-        rows = rows.partition("\nEND")[0].replace(",", "\t")
-        axis = head.partition("VAR_LIST_BEGIN\n")[2].partition("VAR_LIST_END")[0].split()
-        if ends := re.search(r"^SEG (\S{1,30}) (\S{1,30}) (\d{1,7})$", head, re.M):
-            start, step = number(ends[1]), number(ends[2])
-            if isinstance(start, float) and isinstance(step, float):
-                axis = map(repr, np.linspace(start, step, min(int(ends[3]), MAX_LINES)).tolist())
-        head = "frequency_hz\tre\tim\n" if re.search(r"^DATA \S+ RI$", head, re.M) else ""
+    if fields.get("X_Columns") != "No" or not (isinstance(start, float) and isinstance(step, float)):
+        return None
+    first, _, rows = rows.partition("\n")
+    head = head.replace("\nX_Columns\tNo", "") + f"{names}{first}\n"
+    return _with_axis(head, (f"{start + i * step!r}".replace(".", table.decimal) for i in count()), rows)
+
+
+def _citi(table: TextTable) -> _Rewritten | None:
+    """Return a CITIFILE as a table; its header lists the frequencies, or gives both ends and their number."""
+    head, _, rows = table.source.text.partition("\nBEGIN\n")
+    if not head.startswith("CITIFILE") or not re.search(r"^DATA \S+ RI$", head, re.M):
+        return None
+    axis = head.partition("VAR_LIST_BEGIN\n")[2].partition("VAR_LIST_END")[0].split()
+    if ends := re.search(r"^SEG (\S{1,30}) (\S{1,30}) (\d{1,7})$", head, re.M):
+        start, stop = number(ends[1]), number(ends[2])
+        if isinstance(start, float) and isinstance(stop, float):
+            axis = [repr(x) for x in np.linspace(start, stop, min(int(ends[3]), MAX_LINES)).tolist()]
+    return _with_axis("frequency_hz\tre\tim\n", axis, rows.partition("\nEND")[0].replace(",", "\t"))
+
+
+def _with_axis(head: str, axis: Iterable[str], rows: str) -> _Rewritten | None:
+    """Return rows with a frequency in front of each; None where there are none."""
     written = [row.strip() for row in rows.split("\n") if row.strip()]
     lines = "".join(f"{x}\t{row}\n" for x, row in zip(axis, written, strict=False))
     said = ("the frequencies are those that the header gives",)
-    return ((head + lines).encode(), lambda _: None, said) if lines and head else None
+    return ((head + lines).encode(), lambda _: None, said) if lines else None
 
 
 def _turned(table: TextTable) -> _Rewritten | None:

@@ -55,7 +55,7 @@ _EASTERN: Final = {"GB18030": "频率", "Shift_JIS": "周波数"}
 SAMPLE, MOST_SAMPLED = 400, 200_000
 """Lines from the middle of a file by which delimiter and decimal sign are chosen, and their characters."""
 MAX_CELLS: Final = 5_000_000
-"""Of all rows: 15 s and 800 MB."""
+"""Cells that all rows may have together; reading them takes 15 s and 800 MB."""
 LONGEST_LINE: Final = 20_000
 LONGEST_NUMBER: Final = 100
 FEWEST_ROWS: Final = 3

@@ -79,9 +79,10 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
         above = parts[exponent] / common
         if int(below.leading_coefficient()) < 0:
             above, below = -above, -below
-        coefficient = quotient(arranger.coefficient(above), arranger.coefficient(below))
         if above.is_constant() and below.is_constant():
             coefficient = number(Fraction(*(int(side.leading_coefficient()) for side in (above, below))))
+        else:
+            coefficient = quotient(arranger.coefficient(above), arranger.coefficient(below))
         terms.append(product_of([coefficient, power(Name(LAPLACE), exponent)]))
     return sum_of(terms) if terms else number(0)
 

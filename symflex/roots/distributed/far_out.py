@@ -16,7 +16,7 @@ from itertools import product
 from math import gcd, inf, sqrt
 from typing import TYPE_CHECKING
 
-from flint import acb, arb, fmpz_mpoly
+from flint import acb, acb_poly, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
@@ -414,20 +414,13 @@ def _wave(kernels: KernelValues, law: Dispersion, radius: float) -> tuple[_Power
 
 def _polynomial(kernels: KernelValues, value: Factored) -> list[acb] | None:
     """Return the coefficients of a polynomial in s, that of the lowest power first; None of other values."""
-    found = [acb(ball(value.unit))]
+    found = acb_poly([acb(ball(value.unit))])
     for factor, exponent in value.factors:
         own = _coefficients(kernels, factor)
         if exponent < 0 and len(own) > 1:
             return None
-        for _ in range(abs(exponent)):
-            if exponent < 0:
-                found = [c / own[0] for c in found]
-                continue
-            total = [acb(0)] * (len(found) + len(own) - 1)
-            for (i, a), (k, b) in product(enumerate(found), enumerate(own)):
-                total[i + k] += a * b
-            found = total
-    return found
+        found = found * (acb_poly(own) ** exponent if exponent > 0 else acb_poly([own[0] ** exponent]))
+    return found.coeffs()
 
 
 def _coefficients(kernels: KernelValues, factor: fmpz_mpoly) -> list[acb]:
@@ -493,7 +486,7 @@ def _is_mirrored(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
 def _together(ring: Ring, factor: fmpz_mpoly) -> list[fmpz_mpoly]:
     """Return the even and the odd part in s, and what vanishes with both: a term of each cancels in that.
 
-    Of a dashpot that a mass is at: ``m s^2 X + Y`` and ``b s X`` leave Y.
+    A mass with a dashpot, for example, has ``m s^2 X + Y`` and ``b s X``, which leave Y.
     """
     parts = by_powers(ring, factor)
     s, found = ring.context.gen(0), list[fmpz_mpoly]()

@@ -101,7 +101,7 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
 def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
     """Return the function with numbers for waves that do not depend on s: of members without mass.
 
-    Of what flows one way, as in a heat exchanger, the delay is left.
+    What flows one way, as in a heat exchanger, keeps its delay.
     """
     ring, table = bound.ratio.ring, bound.kernels
     still = [
