@@ -191,14 +191,14 @@ def _approached(
             size, least = step.abs_upper(), s.abs_lower()
         if level >= bits and size < least * 2.0 ** (-CLOSE * bits):
             return s, chosen
-        if size < least * 2.0 ** (-level / 3) and level < bits:
+        # Steps of unknown sign ask for more digits.
+        if level < bits and (step.contains(0) or size < least * 2.0 ** (-level / 3)):
             level, patience = min(2 * level, bits), PATIENCE
             continue
+        if step.contains(0):
+            return None
         patience -= 1
         if patience < 0:
-            # Steps of unknown sign ask for more digits; others are right, and too short.
-            if step.contains(0):
-                return None
             raise _SlowError
     return None
 
