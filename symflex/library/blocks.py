@@ -26,6 +26,9 @@ class Block(Stateless):
     remark: ClassVar[str] = ""  # ends the summary
     parameters: ClassVar[tuple[ParameterPort, ...]]
     kernel_time: ClassVar[str] = ""
+    # What its unit is that of: parameters, each times a power of s. None of them is a pure number; ``None``
+    # fits any unit.
+    gains: ClassVar[tuple[tuple[str, int], ...] | None] = ()
 
     @property
     def summary(self) -> str:
@@ -71,6 +74,7 @@ class LowPass(Block):
 
     type_name = "low_pass"
     formula = "k*omega^2/(s^2 + 2*zeta*omega*s + omega^2)"
+    gains = (("k", 0),)
     parameters = (
         ParameterPort("k", "", "a gain", "1"),
         ParameterPort("omega", "rad/s", "an angular frequency"),
@@ -83,6 +87,7 @@ class TransferFunctionBlock(Block):
 
     type_name = "tf"
     formula = "num/den"
+    gains = None
     remark = ", each an expression in s or a list of coefficients (highest power first)"
     parameters = (
         ParameterPort("num", "", "a numerator"),
@@ -98,6 +103,7 @@ class StateSpaceBlock(Block):
     """
 
     type_name = "ss"
+    gains = None
     remark = "C (s - A)^-1 B + D, with matrices as arrays of rows"
     parameters = (
         ParameterPort("A", "", "a square matrix"),
@@ -146,6 +152,7 @@ class Integrator(Block):
 
     type_name = "integrator"
     formula = "k/s"
+    gains = (("k", -1),)
     parameters = (ParameterPort("k", "", "a gain", "1"),)
 
 
@@ -154,6 +161,7 @@ class LeadLag(Block):
 
     type_name = "lead_lag"
     formula = "k*(1 + T_1*s)/(1 + T_2*s)"
+    gains = (("k", 0),)
     parameters = (
         ParameterPort("k", "", "a gain", "1"),
         ParameterPort("T_1", "s", "a time constant"),
@@ -166,6 +174,7 @@ class Lag(Block):
 
     type_name = "lag"
     formula = "k/(1 + T*s)"
+    gains = (("k", 0),)
     parameters = (ParameterPort("k", "", "a gain", "1"), ParameterPort("T", "s", "a time constant"))
 
 
@@ -174,6 +183,7 @@ class Pid(Block):
 
     type_name = "pid"
     formula = "k_p + k_i/s + k_d*s/(1 + T_f*s)"
+    gains = (("k_p", 0), ("k_i", -1), ("k_d", 1))
     parameters = (
         ParameterPort("k_p", "", "a proportional gain"),
         ParameterPort("k_i", "", "an integral gain", "0"),

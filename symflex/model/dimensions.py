@@ -146,14 +146,16 @@ class DimensionSystem:
         quantities: Mapping[str, Quantity | None],  # what was declared; ``None`` when without unit
         definitions: Mapping[str, Expression],
         known: Mapping[Variable, Dimension],  # variables whose dimension their domain fixes
-        block_measures: Mapping[str, Measure],  # what transfer functions of blocks are measured in
+        blocks: Mapping[
+            str, Measure | Expression
+        ],  # what transfer functions of blocks are measured in, or as
         laplace: Dimension = PER_SECOND,
     ) -> None:
         self._scope = scope
         self._quantities = quantities
         self._definitions = definitions
         self._known = dict(known)
-        self._blocks = block_measures
+        self._blocks = dict(blocks)
         self._laplace = laplace
         self._solved: dict[Variable, Solution] = {}
         self._uses: dict[str, list[Use]] = {}
@@ -381,7 +383,7 @@ class DimensionSystem:
         if meaning.kind == "definition":
             return self.definition(meaning.name)
         if meaning.kind == "block":
-            return self._blocks.get(meaning.name, Measure(open=True))
+            return self._block(meaning.name)
         return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
 
     def _varies(self, expression: Expression) -> bool:
@@ -410,6 +412,15 @@ class DimensionSystem:
             )
             self._defined[name] = Measure(open=True) if fits_any else measure
         return self._defined[name]
+
+    def _block(self, name: str) -> Measure:
+        """Return what a block is measured in; a gain that is a bare number fits any unit."""
+        gain = self._blocks.get(name, Measure(open=True))
+        if not isinstance(gain, Measure):
+            measure = self._reduce(self.measure(gain))
+            gain = Measure(measure.dimension, measure.unknowns, measure.open or measure.literal)
+            self._blocks[name] = gain
+        return gain
 
     def variable(self, variable: Variable) -> Measure:
         """Return what a variable is measured in."""

@@ -6,8 +6,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE
 from symflex.errors import Span
-from symflex.expressions import Equation, Expression, Name, names, power, product_of, substitute
+from symflex.expressions import Equation, Expression, Name, Sum, names, number, power, product_of, substitute
 from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import PER_SECOND, DimensionSystem, Measure
@@ -47,7 +48,7 @@ def check_units(
     """
     quantities = declared_quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
-    blocks = {b.name: _block_measure(b) for b in draft.blocks}
+    blocks = {b.name: _block_gain(b) for b in draft.blocks}
     system = DimensionSystem(
         scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks, laplace
     )
@@ -204,16 +205,25 @@ def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Var
     return known
 
 
-def _block_measure(block: PlacedBlock) -> Measure:
+def _block_gain(block: PlacedBlock) -> Measure | Expression:
+    """Return what a block is measured in, or an expression that is measured alike."""
     if block.submodel is not None and block.tf is not None:
         output = next(o for o in block.submodel.outputs if o.name == block.tf[0])
         source = next(i for i in block.submodel.inputs if i.name == block.tf[1])
         if output.dimension is None or source.dimension is None:
             return Measure(open=True)
         return Measure(output.dimension / source.dimension)
-    if block.block is not None and (block.block.type_name == "resonance" or block.block.kernel_time):
-        return Measure(DIMENSIONLESS)
-    return Measure(open=True)
+    gains = block.block.gains if block.block else None
+    if gains is None:
+        return Measure(open=True)
+    values = dict(block.values)
+    # What was not written has no span; a default of 1 in an integral fits any unit, as a number in its place.
+    terms = [
+        replace(product_of([values[name], power(Name(LAPLACE), number(e))]), span=values[name].span)
+        for name, e in gains
+        if values[name].span is not None
+    ]
+    return Sum(tuple(terms)) if terms else Measure(open=any(e for _, e in gains))
 
 
 def measured_variables(draft: Draft) -> list[Variable]:

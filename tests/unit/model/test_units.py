@@ -175,6 +175,48 @@ def test_terms_of_a_sum_must_agree():
     assert codes(f'{HEADER}m = "1 kg"\nk = "2 N/m"\n' + SIGNAL.format("(m + k)*U")) == ["SF205"]
 
 
+@pytest.mark.parametrize(
+    ("gain", "block", "fits"),
+    [
+        # The torque that a position in rad gives at a gain in N m.
+        ("2 N*m", '"lag", T = "1 ms"', True),
+        ("2 V", '"lag", T = "1 ms"', False),
+        ("2 V", '"lag", k = 5, T = "1 ms"', True),
+        ("2 V", '"lag", k = "3 N*m/V", T = "1 ms"', True),
+        ("2 V", '"lead_lag", T_1 = "9 ms", T_2 = "1 ms"', False),
+        ("2 V", '"low_pass", omega = "9 Hz", zeta = 1', False),
+        ("2 V", '"notch", omega = "9 Hz", zeta_p = 1', False),
+        ("2 N*m/s", '"integrator"', True),
+        ("2 N*m", '"integrator", k = "3 1/s"', True),
+        ("2 V", '"integrator", k = "3 1/s"', False),
+        ("2 V", '"pid", k_p = "3 N*m/V", k_i = "2 N*m/(V*s)", k_d = "4 N*m*s/V"', True),
+        ("2 N*m", '"pid", k_p = 3, k_i = "2 1/s"', True),
+        ("2 N*m", '"pid", k_p = 3, k_i = "2 V/s"', False),
+    ],
+)
+def test_a_block_has_the_unit_of_its_gain_and_a_bare_number_there_fits_any(gain, block, fits):
+    text = f"""{HEADER}K = "{gain}"
+        [elements]
+        rotor = {{ type = "inertia", at = "phi", J = "1 kg*m^2" }}
+        drive = {{ type = "torque_source", at = "phi", tau = "K*G*(r - phi)" }}
+        [blocks]
+        G = {{ type = {block} }}
+        [inputs]
+        r = {{ unit = "rad" }}
+        [outputs]
+        Phi = "phi"
+        """
+    if fits:
+        resolve(text)
+    else:
+        assert codes(text) == ["SF203"]
+
+
+def test_the_gains_of_a_controller_differ_by_seconds():
+    block = 'K = "3 V/m"\n[blocks]\nG = { type = "pid", k_p = "K", k_i = "K" }\n'
+    assert codes(HEADER + block + SIGNAL.format("G*U")) == ["SF205"]
+
+
 def test_a_parameter_of_the_wrong_unit_is_refused_where_it_is_used():
     text = f'{HEADER}m = "1 N"\n[elements]\nM = {{ type = "mass", at = "x", m = "m" }}\n'
     text += '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n'
