@@ -34,6 +34,8 @@ from symflex.balls import (
     narrowed,
     precision,
     precisions,
+    raised,
+    series_quotient,
     series_terms,
 )
 from symflex.budget import spend
@@ -142,13 +144,9 @@ def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeri
         count = max(last - order, 0) + 1
         above, below = sides.taylor(finer * digits)
         series = [part(acb(0), side.at_zero + count) for part, side in ((above, num), (below, den))]
-        with precision(num.series.bits), series_terms(count):
-            first, second = (
-                acb_series((known or [])[side.at_zero :], count)
-                for known, side in zip(series, (num, den), strict=True)
-            )
-            quotient = first / second
-            found = [acb(quotient[i].real) for i in range(count)]
+        with precision(num.series.bits):
+            first, second = ((c or [])[side.at_zero :] for c, side in zip(series, (num, den), strict=True))
+            found = [acb(c.real) for c in series_quotient(first, second, count)]
         if _is_accurate(found, digits, bits_for_digits(digits)):
             return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found))
     message = f"the behaviour of {sides.bound.name} near s = 0 could not be determined"
@@ -190,9 +188,7 @@ def _quotient(
     with series_terms(terms):
         total = acb_series([acb(_fraction(ratio))], terms)
         for coefficients, first, (_, exponent) in zip(series, firsts, ratio.factors, strict=True):
-            rest = acb_series(coefficients[first:], len(coefficients) - first)
-            for _ in range(abs(exponent)):
-                total = total * rest if exponent > 0 else total / rest
+            total = total * raised(acb_series(coefficients[first:], len(coefficients) - first), exponent)
     if total.prec < wanted:
         return "longer"
     found = tuple(total[branches * i] for i in range(count))
@@ -266,7 +262,7 @@ def _expanded(
     for extra in range(COINCIDENT + 1):
         order = root.multiplicity + extra
         pole = _refined(below, root, order) if is_refined else _on_axis(root, root.enclosure())
-        found = _principal(above, below, pole, root.multiplicity, extra)
+        found = principal_part(above, below, pole, root.multiplicity, extra)
         if found is not None:
             return pole, found, extra
     return None
@@ -294,8 +290,13 @@ def _on_axis(root: Root, ball: acb) -> acb:
     return acb(arb(0), ball.imag) if root.on_imaginary_axis else ball
 
 
-def _principal(above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int) -> list[acb] | None:
-    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``."""
+def principal_part(
+    above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int = 0
+) -> list[acb] | None:
+    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``.
+
+    So many zeros are ``extra``, on top of as many poles.
+    """
     count = 2 * multiplicity + extra
     num, den = above(pole, count), below(pole, count)
     if num is None or den is None:
@@ -303,10 +304,7 @@ def _principal(above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra
     first = multiplicity + extra
     if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
         return None
-    with series_terms(multiplicity):
-        rest = acb_series(den[first:], multiplicity)
-        quotient = acb_series(num[extra : extra + multiplicity], multiplicity) / rest
-    found = [quotient[i] for i in range(multiplicity)]
+    found = series_quotient(num[extra:], den[first:], multiplicity)
     return found if all(c.is_finite() for c in found) else None
 
 
@@ -319,10 +317,7 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
         total = acb_series([acb(_fraction(part))], terms)
         for factor, exponent in part.factors:
             series = acb_series(_coefficients(evaluator.polynomial(factor, values)), terms)
-            if exponent < 0 and series[0].contains(0):
-                return None
-            for _ in range(abs(exponent)):
-                total = total * series if exponent > 0 else total / series
+            total = total * raised(series, exponent)
     return [total[i] for i in range(terms)]
 
 
