@@ -314,11 +314,7 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
     if values is None:
         return None
     with series_terms(terms):
-        total = acb_series([acb(_fraction(part))], terms)
-        for factor, exponent in part.factors:
-            series = acb_series(_coefficients(evaluator.polynomial(factor, values)), terms)
-            total = total * raised(series, exponent)
-    return [total[i] for i in range(terms)]
+        return _coefficients(evaluator.value(part, values))[:terms]
 
 
 def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[Taylor, Taylor] | None:
