@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable, degree_in
-from symflex.analysis.time_response.delayed_terms import linear_in_s
+from symflex.analysis.time_response.delayed_terms import polynomial_in_s
 from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed, too_early
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
@@ -253,7 +253,7 @@ def _by_delays(asked: Asked) -> Plan | Refused:
     if not asked.has_delays or asked.quotient is not None:
         return Refused()
     laws = [law for law in asked.bound.kernels.dispersions if law.kind == "exponential"]
-    if any(linear_in_s(law.shift) is None for law in laws):
+    if any(polynomial_in_s(law.shift, 1) is None for law in laws):
         return Refused("what is late changes its form")
     parts = _taken_apart(asked.bound)
     return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
