@@ -239,30 +239,28 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
     for i, d in enumerate(pairs):
         names_of_pair = (lambdas[2 * i], lambdas[2 * i + 1])
         symbols |= {w: Name(n) for w, n in zip(d.wavenumbers, names_of_pair, strict=True)}
-        c0, c2 = pair_coefficients(naming)
+        own = pair_lines(names_of_pair, deltas[i], naming, [printer.quotient(c) for c in d.characteristic])
         position = next(k for k, known in enumerate(tf.kernels.dispersions) if known is d)
-        symbols |= {coefficient_name(position, 0): c0, coefficient_name(position, 2): c2}
-        delta, half = Name(deltas[i]), quotient(c2, number(2))
-        lines += [
-            (names_of_pair[0], Call("sqrt", sum_of([delta, negative(half)]))),
-            (names_of_pair[1], Call("sqrt", sum_of([negative(half), negative(delta)]))),
-            (delta.name, pair_root(c0, c2)),
-            (c2.name, printer.quotient(d.characteristic[2])),
-            (c0.name, printer.quotient(d.characteristic[0])),
-        ]
+        symbols |= {coefficient_name(position, n): Name(own[-1 - n // 2][0]) for n in (0, 2)}
+        lines += own
     return Notation(symbols, tuple(lines))
 
 
-def pair_coefficients(naming: Naming) -> tuple[Name, Name]:
-    """Return names for ``c_0`` and ``c_2``."""
+def pair_lines(
+    waves: Sequence[str], delta: str, naming: Naming, printed: Sequence[Expression], *, on_axis: bool = False
+) -> list[Line]:
+    """Return the lines of a pair of wavenumbers, delta, ``c_2`` and ``c_0``; on the axis one wave travels."""
     family = free_family("cbde", 3, naming.taken)
     naming.keep(family)
-    return Name(family[0]), Name(family[2])
-
-
-def pair_root(c0: Expression, c2: Expression) -> Expression:
-    """Return half the difference of the squares of a pair."""
-    return Call("sqrt", sum_of([quotient(power(c2, 2), number(4)), negative(c0)]))
+    c0, c2 = Name(family[0]), Name(family[2])
+    half, root = quotient(c2, number(2)), Name(delta)
+    return [
+        (waves[0], Call("sqrt", sum_of([root, negative(half)]))),
+        (waves[1], Call("sqrt", sum_of([root, half] if on_axis else [negative(half), negative(root)]))),
+        (delta, Call("sqrt", sum_of([quotient(power(c2, 2), number(4)), negative(c0)]))),
+        (c2.name, printed[2]),
+        (c0.name, printed[0]),
+    ]
 
 
 def coefficient_name(dispersion: int, order: int) -> str:
