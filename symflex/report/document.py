@@ -245,20 +245,6 @@ def unit_text(unit: str) -> str:
     return _POWER.sub(lambda m: m[1].translate(_RAISED), unit).replace("*", "·")
 
 
-def counted(count: int, noun: str, plural: str = "") -> str:
-    """Return a number of things.
-
-    Examples
-    --------
-    >>> counted(1, "pole"), counted(0, "zero"), counted(3, "zero")
-    ('1 pole', 'no zeros', '3 zeros')
-    """
-    many = plural or f"{noun}s"
-    if not count:
-        return f"no {many}"
-    return f"{count} {noun if count == 1 else many}"
-
-
 @dataclass(frozen=True, slots=True)
 class ChapterPart:
     """One section of the chapter about a model."""
