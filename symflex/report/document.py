@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from symflex.errors import UncertifiedError
 from symflex.figures import render
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.print.mathml import MathRow
-    from symflex.report.study import Study
 
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
@@ -274,14 +273,3 @@ def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> 
     files[f"figures/{stem}.svg"] = svg
     files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
     return PageFigure(stem, svg.decode(), caption)
-
-
-class SectionMaker(Protocol):
-    """A function that writes one section; a key of :data:`symflex.report.sections.SECTIONS` names it."""
-
-    def __call__(self, study: Study) -> ChapterPart | None:
-        """Return the section, None where a model gives no cause for it.
-
-        Raises SymflexError when what it needs cannot be computed; the report says so in its place.
-        """
-        ...
