@@ -247,18 +247,13 @@ class _AxisDoubles:
         total, slope, size = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for g, p, even, odd, even_slope, odd_slope in self._terms:
             sine, cosine = turns[p][0] * growths[g], turns[p][1] * growths[g]
-            for n, c in even:
-                term = (c * t**n if n else c) * cosine
-                total += term
-                size += np.abs(term)
-            for n, c in odd:
-                term = (c * t**n if n else c) * sine
-                total += term
-                size += np.abs(term)
-            for n, c in even_slope:
-                slope += (c * t**n if n else c) * cosine
-            for n, c in odd_slope:
-                slope += (c * t**n if n else c) * sine
+            for turn, values, slopes in ((cosine, even, even_slope), (sine, odd, odd_slope)):
+                for n, c in values:
+                    term = (c * t**n if n else c) * turn
+                    total += term
+                    size += np.abs(term)
+                for n, c in slopes:
+                    slope += (c * t**n if n else c) * turn
         return total, slope, size
 
 
