@@ -182,10 +182,7 @@ class _FrequencyPage:
             if doubled is None:
                 continue
             images = {g: ring.generator(whole[f]) for f, g in half.items()}
-            moved = doubled[0].compose(
-                *(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context
-            )
-            work, halvings = self._reduced(moved), halvings + doubled[1]
+            work, halvings = self._reduced(ring.replaced(doubled[0], images)), halvings + doubled[1]
         return Factored.polynomial(ring, work) / Factored.number(ring, 2) ** halvings
 
     def _lowered(self, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, Factored]:
