@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
-from math import factorial
+from math import factorial, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_mat
@@ -114,12 +114,8 @@ class EnclosedQuotient:
 
     def multiplied_out(self) -> tuple[acb_poly, acb_poly]:
         """Return numerator and denominator."""
-        num, den = acb_poly([self.unit]), acb_poly([1])
-        for f, e in self.above:
-            num = num * f**e
-        for f, e in self.below:
-            den = den * f**e
-        return num, den
+        num = prod((f**e for f, e in self.above), start=acb_poly([self.unit]))
+        return num, prod((f**e for f, e in self.below), start=acb_poly([1]))
 
 
 def partial_fractions(

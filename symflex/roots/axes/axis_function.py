@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import frexp, inf, isfinite, sqrt
+from math import frexp, inf, isfinite, prod, sqrt
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -64,10 +64,7 @@ class Enclosures:
 
     def product(self, monomial: Monomial) -> arb:
         """Return a product of powers of constants."""
-        total = arb(1)
-        for i, e in monomial:
-            total *= self.constants[i] ** e
-        return total
+        return prod((self.constants[i] ** e for i, e in monomial), start=arb(1))
 
     def coefficients(self, polynomial: Polynomial) -> dict[int, arb]:
         """Return the coefficients of a polynomial in t."""

@@ -278,9 +278,7 @@ class _Arc:
         square = x * x
         total = acb(0)
         for i, (p, q) in enumerate(self._differences(largest)):
-            amplitude = acb(0)
-            for n, c in self._terms[i].powers:
-                amplitude += c * x**n if n else c
+            amplitude = sum((c * x**n if n else c for n, c in self._terms[i].powers), acb(0))
             total += amplitude if i == largest else amplitude * (p * x + q * square).exp()
         return total
 
@@ -330,10 +328,7 @@ class LosslessFunction:
         """
         with precision(FLOAT_BITS):
             radius = (arb(z) / 2).exp()
-            total = arb(0)
-            for terms, exponent in self._sums:
-                total += exponent * terms.turn(radius)
-            return total
+            return sum((exponent * terms.turn(radius) for terms, exponent in self._sums), arb(0))
 
     def estimate(self, z: float) -> float:
         """Return about how far arg turns on that arc [rad], from the largest terms."""

@@ -93,9 +93,7 @@ class CertifiedWinding(Winding):
         """
         smallest = max(SMALLEST, 1e-9 * cell.size)
         with precision(BITS):
-            total = arb(0)
-            for start, end in cell.edges:
-                total += self.certified_turn(start, end, smallest)
+            total = sum((self.certified_turn(start, end, smallest) for start, end in cell.edges), arb(0))
             return _whole(total / (2 * arb.pi()))
 
     def count_right(self, low: float, high: float) -> int:
