@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from symflex import pipeline
 from symflex.api.analyses import budget_of
@@ -13,7 +13,13 @@ from symflex.api.face import face_of
 from symflex.api.plots import plot_loop
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
-from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
+from symflex.api.toolboxes import refuse_attribute
+from symflex.api.transfer_function import (
+    BoundTransferFunction,
+    NestedTransferFunction,
+    Number,
+    TransferFunction,
+)
 from symflex.errors import BudgetError
 from symflex.model.spec import write
 from symflex.options import (
@@ -99,6 +105,12 @@ class Model:
         above: dict[str, object] = {key: given.pop(key) for key in ("title", "source") if key in given}
         text = write({"symflex": 1, **above, **given})
         object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            """Say what a method is called, or what a transfer function answers once it has numbers."""
+            refuse_attribute(self, name, BoundTransferFunction, 'model.transfer_function("X/F").bind()')
 
     @staticmethod
     def of(resolved: model_room.Model) -> Model:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from symflex.model.loss_factors import check_causal
 
@@ -16,11 +16,55 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 
+CALLED = {
+    "derive": "transfer_function",
+    "tf": "transfer_function",
+    "roots": "poles",
+    "damp": "poles",
+    "pzmap": "pole_zero_plot",
+    "step": "step_response",
+    "impulse": "impulse_response",
+    "ramp": "ramp_response",
+    "respond": "step_response",
+    "lsim": "forced_response",
+    "freqresp": "frequency_response",
+    "c2d": "discretise",
+    "residue": "residues",
+    "modes": "mode_shapes",
+    "plot": "bode",
+    "margin": "stability",
+    "margins": "stability",
+    "is_stable": "stability",
+    "root_locus": "locus",
+    "export": "export_numpy",
+}
+"""Methods by what commands, MATLAB and python-control call them."""
+OF_LOOPS = ("stability", "locus", "colocation", "sweep")
+
+
+def refuse_attribute(item: object, name: str, bound: type | None = None, way: str = "G.bind()") -> NoReturn:
+    """Say what an attribute is called here, or the way to what has numbers, which is ``bound``."""
+    message = f"'{type(item).__name__}' object has no attribute '{name}'"
+    own = CALLED.get(name, name)
+    if own != name and hasattr(type(item), own):
+        message += f"; it is called {own}"
+    elif not name.startswith("_") and hasattr(bound, own):
+        message += f"; a function has it once it has numbers: {way}.{own}"
+    elif own in OF_LOOPS:
+        message += f"; it is asked of a model, model.{own}"
+    raise AttributeError(message, name=name, obj=item)
+
+
 class Toolboxes:
     """State equations, samples, and systems of python-control, scipy and SymPy.
 
     ``bound`` is the function of the transfer room, ``_expanded`` the same as a quotient of polynomials.
     """
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            refuse_attribute(self, name)
 
     if TYPE_CHECKING:
 

@@ -14,7 +14,7 @@ from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
 from symflex.api.root import Sensitivity, SensitivityTable
 from symflex.api.state_space import StateSpace
-from symflex.api.toolboxes import Toolboxes
+from symflex.api.toolboxes import Toolboxes, refuse_attribute
 from symflex.errors import Diagnostic, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
@@ -181,10 +181,7 @@ class _Derived:
 
         def __getattr__(self, name: str) -> NoReturn:
             """Say which attributes a function has once it has numbers."""
-            message = f"'{type(self).__name__}' object has no attribute '{name}'"
-            if not name.startswith("_") and hasattr(BoundTransferFunction, name):
-                message += f"; call bind() first, as in G.bind().{name}"
-            raise AttributeError(message, name=name, obj=self)
+            refuse_attribute(self, name, BoundTransferFunction)
 
 
 @dataclass(frozen=True)

@@ -287,8 +287,11 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
     meanings = scope.meanings.get(call.name)
     if meanings:
         message = f"'{call.name}' is {meanings[0].described}, not a function"
-        return Diagnostic("SF210", message, call.span, f"write '{call.name}*(...)' to multiply")
+        hint = f"write '{call.name}*(...)' to multiply"
+        hint += "; a derivative in time is written with s: s*x" if call.name == "d" else ""
+        return Diagnostic("SF210", message, call.span, hint)
     if call.name.lower() in NONLINEAR:
         return Diagnostic("SF222", f"{call.name} is not linear", call.span, LINEARISE)
-    hint = nearest(call.name, FUNCTIONS) or "functions: " + ", ".join(FUNCTIONS)
+    hint = nearest(call.name, [*FUNCTIONS, *scope.unknowns]) or "functions: " + ", ".join(FUNCTIONS)
+    hint += "; unknowns of fields: " + ", ".join(scope.unknowns) if scope.unknowns else ""
     return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)

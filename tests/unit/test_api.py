@@ -211,6 +211,19 @@ def test_a_function_without_numbers_says_how_it_gets_them(colocated):
     assert not hasattr(colocated, "pole")
 
 
+def test_a_name_of_another_program_leads_to_the_method(colocated):
+    model = symflex.loads('symflex = 1\n[inputs]\nU = {}\n[outputs]\nY = "U/(s + 1)"\n')
+    for item, name, method in [
+        (model, "derive", "it is called transfer_function"),
+        (model, "step", r"bind\(\)\.step_response"),
+        (colocated, "roots", r"G\.bind\(\)\.poles"),
+        (colocated.bind(), "impulse", "it is called impulse_response"),
+        (colocated.bind(), "margins", r"model\.stability"),
+    ]:
+        with pytest.raises(AttributeError, match=method):
+            getattr(item, name)
+
+
 def test_a_bound_function_evaluates_at_a_number(colocated):
     for s in (1j, 50j, -3 + 2j, 1.5):
         value = colocated.bind()(s)

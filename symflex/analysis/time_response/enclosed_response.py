@@ -193,7 +193,8 @@ def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
 
 def _told(ball: arb, digits: int) -> tuple[str, str]:
     told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS)).told
-    return told.re, told.radius
+    # Within 1e-2913 is within 1e-99, which is short enough for a column.
+    return told.re, told.radius if len(told.radius.partition("e-")[2]) < len("100") else "1.0e-99"
 
 
 def _short(ball: arb) -> str:

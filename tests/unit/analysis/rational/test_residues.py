@@ -16,6 +16,7 @@ from symflex.analysis.rational import expand_at_pole, expand_at_zero, find_resid
 from symflex.balls import to_complex_mpmath
 from symflex.errors import UncertifiedError
 from symflex.roots import Modes
+from symflex.roots.locate import locate
 from tests.independent import classics
 from tests.unit.analysis.rods import CLAMPED_ROD, FREE_ROD, bound, rational
 from tests.unit.roots import distributed_models as distributed
@@ -294,3 +295,41 @@ def test_a_slender_free_beam_on_a_lossy_foundation_translates_and_turns_at_one_p
         pole = (-damping + mpmath.sqrt(mpmath.mpc(damping**2 - 4 * mass * stiffness))) / (2 * mass)
         # From end to end turning counts (l/2)(-l/2)/(l^2/12) = -3 times what translating does.
         assert_holds(residues[0].coefficients[0], -2 / (2 * mass * pole + damping), 14)
+
+
+@pytest.mark.slow  # twenty modes
+def test_modes_with_a_node_at_the_output_have_next_to_no_residue():
+    # Pinned beams with a layer between them bend together or against each other, with the same shapes. A
+    # moment at the end of one is read at 3/10, where both modes 10 stand still.
+    text = """
+    symflex = 1
+    [parameters]
+    B = "4e6 N*m^2"
+    m = "100 kg/m"
+    K = "1e5 N/m^2"
+    l = "10 m"
+    a = "3 m"
+    [fields.w]
+    unknowns = ["w", "v"]
+    domain = ["0", "l"]
+    equations = ["B*w'''' + m*s^2*w + K*(w - v) = 0", "B*v'''' + m*s^2*v + K*(v - w) = 0"]
+    conditions = [
+        "w(0) = 0", "w''(0) = 0", "w(l) = 0", "B*w''(l) = M",
+        "v(0) = 0", "v''(0) = 0", "v(l) = 0", "v''(l) = 0",
+    ]
+    [inputs]
+    M = { unit = "N*m" }
+    [outputs]
+    Y = "w(a)"
+    """
+    beams = pipeline.bind(pipeline.derive_all(pipeline.loads(text))[0])
+    poles = [r for r in locate(beams, Modes(20), 15, with_zeros=False).complete().all_poles if r.im > 0]
+    found = {float(r.im.mid()): expand_at_pole(beams, r, 15)[1].principal_part[0] for r in poles}
+    expected = []
+    for wave in np.arange(1, 11) * np.pi / 10:
+        for omega in (200 * wave**2, np.hypot(200 * wave**2, 2000**0.5)):
+            # Of mass m*l, with the moment at its slope; 1/(s^2 + omega^2) has the residue 1/(2 j omega).
+            expected.append((omega, wave * abs(np.sin(3 * wave)) / (100 * 10) / (2 * omega)))
+    assert sorted(found) == pytest.approx(sorted(omega for omega, _ in expected), rel=1e-12)
+    for residue, (_, size) in zip([found[omega] for omega in sorted(found)], sorted(expected), strict=True):
+        assert float(abs(residue).upper()) == pytest.approx(size, rel=1e-12, abs=1e-18)
