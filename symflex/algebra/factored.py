@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb, lcm
+from math import comb, lcm, prod
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -186,10 +186,7 @@ class Factored:
 
     def map_factors(self, ring: Ring, image: Callable[[fmpz_mpoly], Factored]) -> Factored:
         """Return the value with every factor replaced by its image in ``ring``."""
-        result = Factored.number(ring, self.unit)
-        for factor, exponent in self.factors:
-            result = result * image(factor) ** exponent
-        return result
+        return prod((image(f) ** e for f, e in self.factors), start=Factored.number(ring, self.unit))
 
     def __str__(self) -> str:
         parts = [str(self.unit)] if self.unit != 1 or not self.factors else []
@@ -225,10 +222,7 @@ class Factored:
                         "keep repeated sums in [definitions]",
                     )
                 )
-        result = self.ring.constant(int(unit))
-        for factor, exponent in self.factors:
-            result = result * factor**exponent
-        return result
+        return prod((factor**e for factor, e in self.factors), start=self.ring.constant(int(unit)))
 
 
 def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:

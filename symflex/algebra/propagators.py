@@ -111,9 +111,7 @@ class Propagation:
         decay = self._known[dispersion, position, EXPONENTIAL]
         found = []
         for k in range(n):
-            total = one * 0
-            for j in range(k + 1):
-                total = total + plain[j] * minus ** (k - j) * comb(k, j)
+            total = sum((plain[j] * minus ** (k - j) * comb(k, j) for j in range(k + 1)), one * 0)
             found.append(total * decay)
         return tuple(found)
 

@@ -117,6 +117,10 @@ class Ring:
         check_expansion(polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)
 
+    def replaced(self, polynomial: fmpz_mpoly, images: Mapping[str, fmpz_mpoly]) -> fmpz_mpoly:
+        """Return a polynomial of this ring with others in place of some generators."""
+        return polynomial.compose(*(images.get(n, self.generator(n)) for n in self.names), ctx=self.context)
+
     def coefficients(self, polynomial: fmpz_mpoly, generator: int = 0) -> list[fmpz_mpoly]:
         """Return the coefficients of ascending powers of one generator, over the same ring."""
         found = by_powers(self, polynomial, generator)

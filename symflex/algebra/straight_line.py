@@ -330,9 +330,7 @@ class Workbench:
             return self.number(self.fraction(x) * self.fraction(y))
         key = _pair_key(_MULTIPLY, x, y)
         known = self._known.get(key)
-        if known is not None:
-            return known
-        return self._make(_MULTIPLY, (x, y), key)
+        return self._make(_MULTIPLY, (x, y), key) if known is None else known
 
     def product(self, factors: Sequence[int]) -> int:
         """Return a product of positive factors as one step."""
@@ -341,9 +339,7 @@ class Workbench:
             return kept[0] if kept else ONE
         key = _pair_key(_MULTIPLY, *kept) if len(kept) == 2 else (_MULTIPLY, *sorted(kept))  # noqa: PLR2004
         known = self._known.get(key)
-        if known is not None:
-            return known
-        return self._make(_MULTIPLY, kept, key)
+        return self._make(_MULTIPLY, kept, key) if known is None else known
 
     def divide(self, x: int, y: int) -> int:
         """Return a quotient.

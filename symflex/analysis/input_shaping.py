@@ -22,9 +22,8 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.balls import bits_for_digits, precision
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors import Diagnostic, ModelError, UsageError, counted
 from symflex.errors.diagnostic import nearest
-from symflex.model.fields import counted
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes

@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil
+from math import ceil, prod
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -347,9 +347,7 @@ def _mapped(roots: Sequence[Root], move: Callable[[acb], acb]) -> tuple[acb, ...
 
 def _product(roots: Sequence[acb]) -> list[arb]:
     """Return the monic polynomial with conjugate or real roots, in descending powers."""
-    found = acb_poly([1])
-    for root in roots:
-        found = found * acb_poly([-root, acb(1)])
+    found = prod((acb_poly([-root, acb(1)]) for root in roots), start=acb_poly([1]))
     return [c.real for c in found.coeffs()[::-1]]
 
 

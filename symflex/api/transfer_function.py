@@ -15,12 +15,11 @@ from symflex.api.response import TimeResponse
 from symflex.api.root import Sensitivity, SensitivityTable
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes, refuse_attribute
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
-from symflex.model.fields import counted
 from symflex.model.loss_factors import check_causal
 from symflex.options import RootsOptions, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form

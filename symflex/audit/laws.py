@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import pi
+from math import pi, prod
 from typing import TYPE_CHECKING, Literal
 
 from flint import acb, arb
@@ -118,9 +118,7 @@ def _without(
 
 def _shown(reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
     """Return a product of factors in the printed symbols, up to one without zeros; nothing if long."""
-    product = terms.ring.constant(1)
-    for factor, times in factors:
-        product = product * factor**times
+    product = prod((factor**times for factor, times in factors), start=terms.ring.constant(1))
     value = full_angles(reading.field, terms.ring, product)
     expression = None if value is None else factor_expression(reading, value)
     text = "" if expression is None else format_expression(expression)

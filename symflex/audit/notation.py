@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
-from math import lcm
+from math import lcm, prod
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
@@ -75,9 +75,7 @@ def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) ->
     monomials: list[tuple[tuple[int, ...], Factored]] = []
     for degree in range(MOST_DEGREE + 1):
         for chosen in combinations_with_replacement(range(len(symbols)), degree):
-            product = field.number(1)
-            for i in chosen:
-                product = product * symbols[i].value
+            product = prod((symbols[i].value for i in chosen), start=field.number(1))
             monomials.append((chosen, product))
         if len(monomials) > MOST_MONOMIALS:
             return None
@@ -248,9 +246,7 @@ def derived_in_symbols(reading: FormulaReading) -> Expression | None:
         return None
     parts = []
     for factors in (terms.zeros, terms.poles):
-        product = terms.ring.constant(1)
-        for factor, times in factors:
-            product = product * factor**times
+        product = prod((factor**times for factor, times in factors), start=terms.ring.constant(1))
         value = full_angles(field, terms.ring, product)
         found = None if value is None else _in_symbols(field, value, symbols)
         if found is None:

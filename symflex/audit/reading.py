@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
@@ -157,15 +158,9 @@ class _FormulaReader:
             case Negative(operand):
                 return -self._value(operand)
             case Sum(terms):
-                total = self.field.number(0)
-                for term in terms:
-                    total = total + self._value(term)
-                return total
+                return sum((self._value(term) for term in terms), self.field.number(0))
             case Product(factors):
-                product = self.field.number(1)
-                for factor in factors:
-                    product = product * self._value(factor)
-                return product
+                return prod((self._value(factor) for factor in factors), start=self.field.number(1))
             case Quotient(numerator, denominator):
                 divisor = self._value(denominator)
                 if self.field.is_zero(divisor):

@@ -27,5 +27,6 @@ from symflex.balls.values import (
     expansion,
     plan,
     raised,
+    series_quotient,
     value_at,
 )

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import acb, acb_series, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.balls.precision import series_terms
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
@@ -132,6 +134,19 @@ def balancing(sizes: Sequence[Mapping[int, int]], columns: int, passes: int) -> 
                 largest[j] = e + left[i] if known is None else max(known, e + left[i])
         right = [0 if e is None else -e for e in largest]
     return left, right
+
+
+def series_quotient(above: Sequence[acb], below: Sequence[acb], count: int) -> list[acb]:
+    """Return the first coefficients of a quotient of power series; the divisor's first is not zero.
+
+    Examples
+    --------
+    >>> [complex(c) for c in series_quotient([acb(1)], [acb(1), acb(-2)], 3)]
+    [(1+0j), (2+0j), (4+0j)]
+    """
+    with series_terms(count):
+        found = acb_series(above, count) / acb_series(below, count)
+    return [found[i] for i in range(count)]
 
 
 Step = tuple[int, tuple[int, ...], int]

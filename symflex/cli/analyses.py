@@ -79,9 +79,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         if wanted:
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
         if explained is not None:
-            from symflex.analysis.explanation import explanation_json  # most calls need none of it
-
-            more["explanation"] = explanation_json(explained)
+            more["explanation"] = explained.to_json_dict()
         emit_json({**found.to_json_dict(), **more})
     else:
         say(roots_text(found, shown, terminal_width()))

@@ -202,10 +202,7 @@ def guess(value: Factored, numbers: Mapping[str, ExactValue | None]) -> float:
 
 
 def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
-    total = zero
-    for a, b in zip(left, right, strict=True):
-        total = total + a * b
-    return total
+    return sum((a * b for a, b in zip(left, right, strict=True)), zero)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from math import isqrt
+from math import isqrt, prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
@@ -244,10 +244,7 @@ class ExactEvaluator:
         forms = [v for v in values if isinstance(v, LinearForm)]
         constants = [v for v in values if isinstance(v, Factored) and not v.is_zero]
         if not forms:
-            total = Factored.number(self.ring, 0)
-            for value in constants:
-                total = total + value
-            return total
+            return sum(constants, Factored.number(self.ring, 0))
         if constants:
             raise ModelError(Diagnostic("SF221", "the sum has a term without an unknown", expression.span))
         return LinearForm.total(forms)
@@ -418,10 +415,7 @@ def written_denominator(
         case Negative(operand):
             return written_denominator(operand, evaluator, poles)
         case Product(factors):
-            result = one
-            for factor in factors:
-                result = result * written_denominator(factor, evaluator, poles)
-            return result
+            return prod((written_denominator(factor, evaluator, poles) for factor in factors), start=one)
         case Quotient(numerator, denominator):
             below = _in_s(evaluator.constant(denominator).numerator())
             return written_denominator(numerator, evaluator, poles) * below

@@ -1,6 +1,6 @@
 """Positions, diagnostics and the exceptions every other room raises."""
 
-from symflex.errors.diagnostic import Diagnostic, Source, Span, Text, nearest
+from symflex.errors.diagnostic import Diagnostic, Source, Span, Text, counted, nearest
 from symflex.errors.exceptions import (
     REPORT,
     BudgetError,

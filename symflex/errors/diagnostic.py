@@ -165,3 +165,14 @@ def nearest(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
     bare = [n for n in known if n == name.rstrip("0123456789_")]
     matches = same or get_close_matches(name, known, n=1, cutoff=alike) or bare
     return f"did you mean '{matches[0]}'?" if matches else None
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number of things.
+
+    Examples
+    --------
+    >>> counted(1, "pole"), counted(0, "zero"), counted(3, "zero")
+    ('1 pole', 'no zeros', '3 zeros')
+    """
+    return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"

@@ -442,9 +442,7 @@ def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matri
     adjugate = [b]
     for k in range(1, n + 1):
         product = _product(matrix, b)
-        trace = zero
-        for i in range(n):
-            trace = trace + product[i][i]
+        trace = sum((product[i][i] for i in range(n)), zero)
         c = trace * Fraction(-1, k)
         descending.append(c)
         if k < n:
@@ -516,8 +514,6 @@ def _shifted(coefficients: Sequence[Factored], shift: Factored) -> tuple[Factore
     full = (*coefficients, one)
     found = []
     for j in range(n):
-        total = one * 0
-        for k in range(j, n + 1):
-            total = total + full[k] * (-shift) ** (k - j) * comb(k, j)
+        total = sum((full[k] * (-shift) ** (k - j) * comb(k, j) for k in range(j, n + 1)), one * 0)
         found.append(total)
     return tuple(found)

@@ -282,9 +282,7 @@ class _GainSearch:
 
     def _count(self, gain: Fraction) -> PoleCount:
         spend()
-        total = self.apart
-        for factor in self.lumped:
-            total = total + factor.count(gain)
+        total = sum((factor.count(gain) for factor in self.lumped), self.apart)
         if self.along is not None:
             total = total + self.along.count(gain)
         return total

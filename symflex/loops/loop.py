@@ -53,10 +53,7 @@ class GainPolynomial:
 
     def at(self, gain: Fraction) -> Factored:
         """Return the factor for one value of the gain, a function of s."""
-        total = self.coefficients[0]
-        for i, coefficient in enumerate(self.coefficients[1:], 1):
-            total = total + coefficient * gain**i
-        return total
+        return sum((c * gain**i for i, c in enumerate(self.coefficients[1:], 1)), self.coefficients[0])
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.errors import nearest
+from symflex.errors import counted, nearest
 from symflex.expressions import Attribute, Equation, Name, names
-from symflex.model.fields import counted, name_problem, parsed
+from symflex.model.fields import name_problem, parsed
 from symflex.model.model import Signal
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import Text
+from symflex.errors import Text, counted
 from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
 from symflex.model.brackets import open_brackets
 from symflex.model.declarations import read_label
@@ -213,8 +213,3 @@ def parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ..
     read = [reader.read(parse_equation, text) for text in texts or ()]
     found = [equation for equation in read if equation is not None]
     return tuple(found) if texts is not None and len(found) == len(texts) else None
-
-
-def counted(count: int, word: str) -> str:
-    """Return a number with a noun."""
-    return f"{count} {word}{'' if count == 1 else 's'}"

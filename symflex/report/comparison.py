@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Final
 
+from symflex.errors import counted
 from symflex.report.document import (
     Aside,
     Badge,
@@ -21,7 +22,6 @@ from symflex.report.document import (
     Side,
     Table,
     columns,
-    counted,
     text,
 )
 from symflex.report.facts import ModelFacts

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from symflex.errors import UncertifiedError
 from symflex.figures import render
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.print.mathml import MathRow
-    from symflex.report.study import Study
 
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
@@ -245,20 +244,6 @@ def unit_text(unit: str) -> str:
     return _POWER.sub(lambda m: m[1].translate(_RAISED), unit).replace("*", "·")
 
 
-def counted(count: int, noun: str, plural: str = "") -> str:
-    """Return a number of things.
-
-    Examples
-    --------
-    >>> counted(1, "pole"), counted(0, "zero"), counted(3, "zero")
-    ('1 pole', 'no zeros', '3 zeros')
-    """
-    many = plural or f"{noun}s"
-    if not count:
-        return f"no {many}"
-    return f"{count} {noun if count == 1 else many}"
-
-
 @dataclass(frozen=True, slots=True)
 class ChapterPart:
     """One section of the chapter about a model."""
@@ -288,14 +273,3 @@ def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> 
     files[f"figures/{stem}.svg"] = svg
     files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
     return PageFigure(stem, svg.decode(), caption)
-
-
-class SectionMaker(Protocol):
-    """A function that writes one section; a key of :data:`symflex.report.sections.SECTIONS` names it."""
-
-    def __call__(self, study: Study) -> ChapterPart | None:
-        """Return the section, None where a model gives no cause for it.
-
-        Raises SymflexError when what it needs cannot be computed; the report says so in its place.
-        """
-        ...

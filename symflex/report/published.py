@@ -11,11 +11,10 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from symflex.errors import Diagnostic, SymflexError
+from symflex.errors import Diagnostic, SymflexError, counted
 from symflex.files.examples import file_or_example
 from symflex.files.write import check_folder, write_tree
 from symflex.report.article import report_article
-from symflex.report.document import counted
 from symflex.report.page import report_page
 from symflex.report.report import (
     compose,

@@ -15,14 +15,22 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 from symflex.budget import TIME_OVER, Budget, entered_budget
-from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, UncertifiedError, UsageError
+from symflex.errors import (
+    BudgetError,
+    Diagnostic,
+    SpecError,
+    SymflexError,
+    UncertifiedError,
+    UsageError,
+    counted,
+)
 from symflex.errors.diagnostic import printable
 from symflex.files.write import free_name
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, filled, text
+from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.roots.pole_zero_map import WORST_FIRST

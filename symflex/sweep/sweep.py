@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from symflex.errors import counted
 from symflex.errors.optional import installed
-from symflex.model.fields import counted
 from symflex.print.text import Passage, passages_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors

@@ -18,7 +18,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache, cached_property
 from itertools import combinations
-from math import inf, lcm
+from math import inf, lcm, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb
@@ -77,18 +77,12 @@ class EnclosedTransferFunction:
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]."""
         with precision(self.bits):
-            value = self.unit
-            for polynomial, exponent in self.factors:
-                value = value * polynomial(s) ** exponent
-            return value
+            return prod((f(s) ** exponent for f, exponent in self.factors), start=self.unit)
 
     def logarithmic_derivative(self, s: acb) -> acb:
         """Return a ball around ``G'(s)/G(s)``."""
         with precision(self.bits):
-            total = acb(0)
-            for polynomial, exponent in self.factors:
-                total = total + exponent * polynomial.derivative()(s) / polynomial(s)
-            return total
+            return sum((exponent * f.derivative()(s) / f(s) for f, exponent in self.factors), acb(0))
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around ``G(s)`` and ``G'(s)/G(s)``."""

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import combinations
+from math import prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
@@ -315,11 +316,7 @@ class KernelReduction:
             (above if exponent > 0 else below).append(piece / orders ** abs(exponent))
             rest = rest * orders**exponent
         rest = self._whole(_merge_splits(rest, splits.values()), table, splits)
-        num, den = rest.numerator(), rest.denominator()
-        for piece in above:
-            num = num * piece
-        for piece in below:
-            den = den * piece
+        num, den = prod(above, start=rest.numerator()), prod(below, start=rest.denominator())
         return self._apart_at_origin(num, den, table)
 
     def _apart_at_origin(self, num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:

@@ -150,9 +150,7 @@ def principal_values(
 def evaluated(value: Factored, number: Callable[[str], Arithmetic], one: Arithmetic) -> Arithmetic:
     """Return a rational function with a number in place of every generator; ``one`` is 1 of their kind."""
     total, names = one * ball(value.unit), value.ring.names
-    for factor, exponent in value.factors:
-        total = total * raised(summed(terms_of(factor), names, number, one), exponent)
-    return total
+    return prod((raised(summed(terms_of(f), names, number, one), e) for f, e in value.factors), start=total)
 
 
 def summed(
@@ -164,8 +162,6 @@ def summed(
     """Return the same of a polynomial, by its terms."""
     total = one * 0
     for monomial, coefficient in terms:
-        term = one * coefficient
-        for i, exponent in monomial:
-            term = term * raised(number(names[i]), exponent)
+        term = prod((raised(number(names[i]), e) for i, e in monomial), start=one * coefficient)
         total = total + term
     return total

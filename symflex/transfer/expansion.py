@@ -168,14 +168,10 @@ def compose_rational(
                 message = f"the closed form would have more than {most} terms before it is reduced"
                 hint = "let equal parts share their parameters, or split the model"
                 raise BudgetError(Diagnostic("SF502", message, None, hint))
-        term = ring.constant(int(coefficient))
-        for each in used:
-            term = term * powers[each]
+        term = prod((powers[each] for each in used), start=ring.constant(int(coefficient)))
         terms.append(term)
     total = _sum(terms, ring)
-    scale = Factored.number(ring, 1)
-    for i, below in denominators.items():
-        scale = scale * below ** degrees[i]
+    scale = prod((below ** degrees[i] for i, below in denominators.items()), start=Factored.number(ring, 1))
     return Factored.polynomial(ring, total) / scale
 
 

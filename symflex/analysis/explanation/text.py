@@ -1,17 +1,22 @@
-"""An explanation of zeros as plain text for a terminal, and as JSON data."""
+"""What explains zeros, as plain text for a terminal, and as JSON data."""
 
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 from symflex.print.text import Passage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from symflex.analysis.explanation.ends import Bending
     from symflex.analysis.explanation.parts import ConstrainedPart
-    from symflex.analysis.explanation.zeros import ZeroExplanation
+    from symflex.roots import Root
+
+Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
+Status = Literal["proved", "not shown"]
 
 WIDTH = 80
 INDENT = "  "
@@ -28,6 +33,142 @@ CONTEXT = {
     "free": "poles of the system whose motion is not imposed",
     "zero": "identically zero",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class EndChange:
+    """How the ends of a beam, rod, shaft, string or field are held in the system and when constrained."""
+
+    name: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class RealZero:
+    """A real zero in the right half plane, and whether its mirror image is a zero too."""
+
+    root: Root
+    is_paired: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ZeroExplanation:
+    """What the zeros of a transfer function are the poles of.
+
+    Parameters
+    ----------
+    tf : str
+        ``"OUT/IN"``.
+    kind : str
+        ``colocated``: the zeros are the poles of the system with one coordinate held, on which the input
+        acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those
+        parts of the held system that it does not drive. ``partly``: such poles, and others.
+        ``noncolocated``: the poles of no held system. ``open circuit``: of the system with the terminals
+        open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
+        identically zero.
+    status : str
+        ``proved`` in the exact ring of the equations; ``not shown`` where the two forms cannot be compared.
+    output, input : str
+        Their names.
+    is_direct : bool
+        The input acts on the very coordinate that the output shows.
+    held, words, spec : str
+        What is zero in the constrained system, in words, and the line that makes it of the specification.
+    order : int
+        Power of s by which the output multiplies its coordinate: zeros at 0 that hold nothing.
+    filtered, extra, transmission : str
+        Factors in s: of the output itself; whose roots are poles of the constrained system and no zeros;
+        whose roots are zeros and no poles of it. Empty without such, ``...`` when too long to print.
+    is_delayed : bool
+        The numerator holds exponentials of s besides, which have no zeros.
+    has_hidden : bool
+        There are hidden modes: together with the zeros they are the poles of the constrained system, but
+        cancel with poles of the system itself.
+    parts : tuple of ConstrainedPart
+        What the constrained system separates into.
+    ends : tuple of EndChange
+        Of line elements and fields, where the constraint changes them.
+    right_half_plane : int
+        Zeros with a positive real part in the region shown, with multiplicity.
+    real_zeros : tuple of RealZero
+        The real ones of them.
+    on_axis : int
+        Zeros in the region shown that are proved to lie on the imaginary axis, 0 left out.
+    bending : Bending or None
+        The beam that lies between input and output.
+    has_zeros : bool
+        Whether the function has zeros at all.
+    """
+
+    tf: str
+    kind: Kind
+    status: Status
+    output: str
+    input: str
+    is_direct: bool = False
+    held: str = ""
+    words: str = ""
+    spec: str = ""
+    order: int = 0
+    filtered: str = ""
+    extra: str = ""
+    transmission: str = ""
+    is_delayed: bool = False
+    has_hidden: bool = False
+    parts: tuple[ConstrainedPart, ...] = ()
+    ends: tuple[EndChange, ...] = ()
+    right_half_plane: int = 0
+    real_zeros: tuple[RealZero, ...] = ()
+    on_axis: int = 0
+    bending: Bending | None = None
+    has_zeros: bool = True
+
+    def __repr__(self) -> str:
+        return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html(Passage(lines) for lines in ([_title(self)], *explanation_paragraphs(self)))
+
+    def __str__(self) -> str:
+        return explanation_text(self)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return it as JSON data, the key ``explanation`` of ``symflex.roots/1``."""
+        bending = self.bending
+        return {
+            "kind": self.kind,
+            "status": self.status,
+            "direct": self.is_direct,
+            "held": self.held or None,
+            "spec": self.spec or None,
+            "power_of_s": self.order,
+            "output_factor": self.filtered or None,
+            "poles_without_zero": self.extra or None,
+            "zeros_of_transmission": self.transmission or None,
+            "parts": [
+                {
+                    "elements": list(part.elements),
+                    "fields": list(part.fields),
+                    "signals": list(part.signals),
+                    "poles": part.order,
+                    "driven": part.has_input,
+                }
+                for part in self.parts
+            ],
+            "ends": [{"name": e.name, "before": e.before, "after": e.after} for e in self.ends],
+            "right_half_plane": self.right_half_plane,
+            "real_zeros": [
+                {"re": zero.root.decimal(DIGITS).re, "paired": zero.is_paired} for zero in self.real_zeros
+            ],
+            "on_imaginary_axis": self.on_axis,
+            "beam_between": None
+            if bending is None
+            else {"name": bending.name, "massless": bending.is_massless, "evanescent": bending.is_evanescent},
+            "text": [" ".join(paragraph) for paragraph in explanation_paragraphs(self)],
+        }
 
 
 def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
@@ -49,52 +190,8 @@ def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
     return "\n".join(lines)
 
 
-def explanation_html(explained: ZeroExplanation) -> str:
-    """Return the same for a notebook: a paragraph for each."""
-    from symflex.print.html import passages_html  # only notebooks ask
-
-    paragraphs = explanation_paragraphs(explained)
-    return passages_html(Passage(lines) for lines in ([_title(explained)], *paragraphs))
-
-
 def _title(explained: ZeroExplanation) -> str:
     return f"zeros of {explained.tf} explained   {CONTEXT[explained.kind]}"
-
-
-def explanation_json(explained: ZeroExplanation) -> dict[str, object]:
-    """Return an explanation as JSON data, the key ``explanation`` of ``symflex.roots/1``."""
-    bending = explained.bending
-    return {
-        "kind": explained.kind,
-        "status": explained.status,
-        "direct": explained.is_direct,
-        "held": explained.held or None,
-        "spec": explained.spec or None,
-        "power_of_s": explained.order,
-        "output_factor": explained.filtered or None,
-        "poles_without_zero": explained.extra or None,
-        "zeros_of_transmission": explained.transmission or None,
-        "parts": [
-            {
-                "elements": list(part.elements),
-                "fields": list(part.fields),
-                "signals": list(part.signals),
-                "poles": part.order,
-                "driven": part.has_input,
-            }
-            for part in explained.parts
-        ],
-        "ends": [{"name": e.name, "before": e.before, "after": e.after} for e in explained.ends],
-        "right_half_plane": explained.right_half_plane,
-        "real_zeros": [
-            {"re": zero.root.decimal(DIGITS).re, "paired": zero.is_paired} for zero in explained.real_zeros
-        ],
-        "on_imaginary_axis": explained.on_axis,
-        "beam_between": None
-        if bending is None
-        else {"name": bending.name, "massless": bending.is_massless, "evanescent": bending.is_evanescent},
-        "text": [" ".join(paragraph) for paragraph in explanation_paragraphs(explained)],
-    }
 
 
 def explanation_paragraphs(explained: ZeroExplanation) -> Iterator[list[str]]:

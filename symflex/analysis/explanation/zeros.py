@@ -19,27 +19,25 @@ ASME J. Dyn. Sys. Meas. Control 113).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import (
-    Bending,
     bending_between,
     ends_of_element,
     ends_of_field,
     is_line,
 )
 from symflex.analysis.explanation.parts import (
-    ConstrainedPart,
     Relation,
     Separation,
     relate,
     separate,
     varying,
 )
-from symflex.analysis.explanation.text import explanation_html, explanation_json, explanation_text
+from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
 from symflex.equations import Equations
 from symflex.equations.elimination import Determinants
 from symflex.errors import ModelError
@@ -52,118 +50,12 @@ from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.of_model import assemble
 
 if TYPE_CHECKING:
-    from symflex.roots import PoleZeroMap, Root
-
-Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
-Status = Literal["proved", "not shown"]
+    from symflex.roots import PoleZeroMap
 
 SYMBOLIC_ELEMENTS = 12
 """Lumped models up to this size keep their symbols, so that factors print in them."""
 LONGEST = 100
 """Characters of a factor that is printed."""
-
-
-@dataclass(frozen=True, slots=True)
-class EndChange:
-    """How the ends of a beam, rod, shaft, string or field are held in the system and when constrained."""
-
-    name: str
-    before: str
-    after: str
-
-
-@dataclass(frozen=True, slots=True)
-class RealZero:
-    """A real zero in the right half plane, and whether its mirror image is a zero too."""
-
-    root: Root
-    is_paired: bool
-
-
-@dataclass(frozen=True, slots=True)
-class ZeroExplanation:
-    """What the zeros of a transfer function are the poles of.
-
-    Parameters
-    ----------
-    tf : str
-        ``"OUT/IN"``.
-    kind : str
-        ``colocated``: the zeros are the poles of the system with one coordinate held, on which the input
-        acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those
-        parts of the held system that it does not drive. ``partly``: such poles, and others.
-        ``noncolocated``: the poles of no held system. ``open circuit``: of the system with the terminals
-        open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
-        identically zero.
-    status : str
-        ``proved`` in the exact ring of the equations; ``not shown`` where the two forms cannot be compared.
-    output, input : str
-        Their names.
-    is_direct : bool
-        The input acts on the very coordinate that the output shows.
-    held, words, spec : str
-        What is zero in the constrained system, in words, and the line that makes it of the specification.
-    order : int
-        Power of s by which the output multiplies its coordinate: zeros at 0 that hold nothing.
-    filtered, extra, transmission : str
-        Factors in s: of the output itself; whose roots are poles of the constrained system and no zeros;
-        whose roots are zeros and no poles of it. Empty without such, ``...`` when too long to print.
-    is_delayed : bool
-        The numerator holds exponentials of s besides, which have no zeros.
-    has_hidden : bool
-        There are hidden modes: together with the zeros they are the poles of the constrained system, but
-        cancel with poles of the system itself.
-    parts : tuple of ConstrainedPart
-        What the constrained system separates into.
-    ends : tuple of EndChange
-        Of line elements and fields, where the constraint changes them.
-    right_half_plane : int
-        Zeros with a positive real part in the region shown, with multiplicity.
-    real_zeros : tuple of RealZero
-        The real ones of them.
-    on_axis : int
-        Zeros in the region shown that are proved to lie on the imaginary axis, 0 left out.
-    bending : Bending or None
-        The beam that lies between input and output.
-    has_zeros : bool
-        Whether the function has zeros at all.
-    """
-
-    tf: str
-    kind: Kind
-    status: Status
-    output: str
-    input: str
-    is_direct: bool = False
-    held: str = ""
-    words: str = ""
-    spec: str = ""
-    order: int = 0
-    filtered: str = ""
-    extra: str = ""
-    transmission: str = ""
-    is_delayed: bool = False
-    has_hidden: bool = False
-    parts: tuple[ConstrainedPart, ...] = ()
-    ends: tuple[EndChange, ...] = ()
-    right_half_plane: int = 0
-    real_zeros: tuple[RealZero, ...] = ()
-    on_axis: int = 0
-    bending: Bending | None = None
-    has_zeros: bool = True
-
-    def __repr__(self) -> str:
-        return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
-
-    def _repr_html_(self) -> str:
-        return explanation_html(self)
-
-    def __str__(self) -> str:
-        return explanation_text(self)
-
-    def to_json_dict(self) -> dict[str, object]:
-        """Return the explanation as JSON data, as ``symflex roots --explain --json`` holds it."""
-        return explanation_json(self)
 
 
 @dataclass(frozen=True, eq=False)

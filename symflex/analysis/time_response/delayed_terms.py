@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from math import isqrt, lcm
+from math import isqrt, lcm, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_poly
@@ -151,10 +151,10 @@ class DelayReader:
                 square = slowness[argument.wavenumber] * argument.length**2
                 sign = -1
             else:
-                linear = linear_in_s(argument.rate)
+                linear = polynomial_in_s(argument.rate, 1)
                 if linear is None:
                     return None
-                rate, decay = linear
+                decay, rate = linear
                 square = (rate * argument.length) ** 2
                 sign = 1
                 if not decay.is_zero:
@@ -208,29 +208,19 @@ def _squared_slowness(law: Dispersion) -> Factored | None:
     """Return 1/c^2 of a law ``gamma^2 = s^2/c^2``, None of any other."""
     if law.kind != "wave" or not law.shift.is_zero or not all(c.is_zero for c in law.characteristic[1:]):
         return None
-    return _without_s(-law.characteristic[0], 2)
+    found = polynomial_in_s(-law.characteristic[0], 2)
+    return found[2] if found is not None and found[0].is_zero and found[1].is_zero else None
 
 
-def linear_in_s(value: Factored) -> tuple[Factored, Factored] | None:
-    """Return a and b of ``a s + b``; None of any other value."""
+def polynomial_in_s(value: Factored, degree: int) -> list[Factored] | None:
+    """Return the coefficients of a polynomial in s of a degree, the lowest first; None of any other value."""
     ring = value.ring
     moving = [(f, e) for f, e in value.factors if degree_in(f, 0)]
-    if [degree_in(f, 0) * e for f, e in moving] != [1] or moving[0][1] != 1:
+    if sum(degree_in(f, 0) * e for f, e in moving) != degree or any(e < 0 for _, e in moving):
         return None
     rest = Factored(ring, value.unit, tuple(own for own in value.factors if own not in moving))
-    b, a = (rest * Factored.polynomial(ring, c) for c in ring.coefficients(moving[0][0]))
-    return a, b
-
-
-def _without_s(value: Factored, power: int) -> Factored | None:
-    """Return what a power of s is multiplied with, a number or a product of constants."""
-    ring = value.ring
-    s = ring.context.gen(0)
-    rest = tuple((f, e) for f, e in value.factors if f != s)
-    used = ring.used_in(f for f, _ in rest)
-    if value.exponent_of(s) != power or ring.names[0] in used:
-        return None
-    return Factored(ring, value.unit, rest)
+    whole = prod((f**e for f, e in moving), start=ring.constant(1))
+    return [rest * Factored.polynomial(ring, c) for c in ring.coefficients(whole)]
 
 
 def _ratio(square: Fraction | None, other: Fraction | None) -> Fraction | None:

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable, degree_in
-from symflex.analysis.time_response.delayed_terms import linear_in_s
+from symflex.algebra.ring import coefficients_of
+from symflex.analysis.time_response.delayed_terms import polynomial_in_s
 from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed, too_early
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
@@ -253,7 +254,7 @@ def _by_delays(asked: Asked) -> Plan | Refused:
     if not asked.has_delays or asked.quotient is not None:
         return Refused()
     laws = [law for law in asked.bound.kernels.dispersions if law.kind == "exponential"]
-    if any(linear_in_s(law.shift) is None for law in laws):
+    if any(polynomial_in_s(law.shift, 1) is None for law in laws):
         return Refused("what is late changes its form")
     parts = _taken_apart(asked.bound)
     return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
@@ -321,13 +322,9 @@ def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransf
             mixed = mixed * factor**exponent
         else:
             plain = plain * Factored.polynomial(ring, factor) ** exponent
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-    for monomial, number in mixed.terms():
-        kept = tuple(0 if place in delays else int(e) for place, e in enumerate(monomial))
-        parts.setdefault(tuple(int(monomial[place]) for place in delays), {})[kept] = int(number)
-    found = []
-    for exponents, terms in parts.items():
-        num = plain * Factored.polynomial(ring, ring.context.from_dict(terms))
+    parts, found = coefficients_of(ring, mixed, tuple(delays)), []
+    for exponents, coefficient in parts.items():
+        num = plain * Factored.polynomial(ring, coefficient)
         ratio = num / bound.den
         out = [k for k in delays.values() if not ratio.depends_on(k.generator)]
         kernels = tuple(k for k in table.kernels if k not in out)

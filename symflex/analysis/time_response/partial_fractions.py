@@ -15,13 +15,15 @@ large coefficients of opposite sign; the digits that these lose are made up for 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import zip_longest
-from math import factorial
+from math import factorial, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_mat
 
-from symflex.balls import series_terms
+from symflex.analysis.rational.laurent import principal_part
+from symflex.balls import raised, series_quotient, series_terms
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
@@ -112,12 +114,8 @@ class EnclosedQuotient:
 
     def multiplied_out(self) -> tuple[acb_poly, acb_poly]:
         """Return numerator and denominator."""
-        num, den = acb_poly([self.unit]), acb_poly([1])
-        for f, e in self.above:
-            num = num * f**e
-        for f, e in self.below:
-            den = den * f**e
-        return num, den
+        num = prod((f**e for f, e in self.above), start=acb_poly([self.unit]))
+        return num, prod((f**e for f, e in self.below), start=acb_poly([1]))
 
 
 def partial_fractions(
@@ -140,22 +138,12 @@ def partial_fractions(
     ]
     found = []
     for pole, order, share in places:
-        coefficients = _principal(divided, pole, order)
+        above, below = (partial(_taylor, side) for side in (divided.above, divided.below))
+        coefficients = principal_part(above, below, pole, order)
         if coefficients is None:
             return None
-        found.append(ExponentialTerm(pole, tuple(c * share for c in coefficients)))
+        found.append(ExponentialTerm(pole, tuple(c * divided.unit * share for c in coefficients[::-1])))
     return found
-
-
-def _principal(quotient: EnclosedQuotient, pole: acb, order: int) -> tuple[acb, ...] | None:
-    """Return the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... at a pole of a quotient."""
-    above, below = _taylor(quotient.above, pole, order), _taylor(quotient.below, pole, 2 * order)
-    if below[order].contains(0):
-        return None
-    with series_terms(order):
-        series = acb_series(above, order) / acb_series(below[order:], order) * quotient.unit
-    found = tuple(series[order - 1 - j] for j in range(order))
-    return found if all(c.is_finite() for c in found) else None
 
 
 def _taylor(factors: Sequence[tuple[acb_poly, int]], centre: acb, count: int) -> list[acb]:
@@ -164,9 +152,7 @@ def _taylor(factors: Sequence[tuple[acb_poly, int]], centre: acb, count: int) ->
         total = acb_series([1], count)
         for factor, exponent in factors:
             moved = factor(acb_poly([centre, acb(1)]))
-            series = acb_series(moved.coeffs()[:count] or [0], count)
-            for _ in range(exponent):
-                total = total * series
+            total = total * raised(acb_series(moved.coeffs()[:count] or [0], count), exponent)
         return [total[i] for i in range(count)]
 
 
@@ -180,6 +166,5 @@ def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[ar
     surplus = int(num.degree()) - int(den.degree()) - integrations
     if surplus < -1:
         return (), arb(0)
-    with series_terms(surplus + 2):
-        series = acb_series(num.coeffs()[::-1], surplus + 2) / acb_series(den.coeffs()[::-1], surplus + 2)
-        return tuple(series[surplus - k].real for k in range(surplus + 1)), series[surplus + 1].real
+    *found, last = (c.real for c in series_quotient(num.coeffs()[::-1], den.coeffs()[::-1], surplus + 2))
+    return tuple(found[::-1]), last

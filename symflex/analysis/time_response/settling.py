@@ -14,7 +14,6 @@ zero on it (Nyquist): far out F is about 1, if the delayed terms fall off agains
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
@@ -23,6 +22,7 @@ from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
 from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.modal import proved_at_origin, term_at
+from symflex.balls import UndecidedError, covered
 from symflex.budget import spend
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -163,25 +163,26 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
         right += pole.multiplicity if place > 0 else 0
     # Beyond the radius F is at least 1/2, and H/s falls as one over s squared.
     total = 2 * loop.far(loop.above, rate, radius) / radius
-    turned = arb(0)
-    ends = [radius * k / EFFORT.line_begun for k in range(EFFORT.line_begun + 1)]
-    pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]
-    for _ in range(EFFORT.line_parts):
-        if not pending:
-            break
-        low, high = pending.pop()
-        middle = ((low + high) / 2).mid()
-        part = acb(-rate, middle + arb(0, ((high - low) / 2).abs_upper()))
-        turns, value = loop.turned(part), loop.value(part) / part
-        if turns.contains(0) or not value.is_finite():
-            pending += [(middle, high), (low, middle)]
-            continue
-        turned += (loop.turned(acb(-rate, high)) / loop.turned(acb(-rate, low))).arg()
-        total += value.abs_upper() * (high - low)
-    else:
+    left = iter(range(EFFORT.line_parts))
+
+    def on_part(low: float, high: float) -> tuple[arb, arb] | None:
+        if next(left, None) is None:
+            raise UndecidedError
+        start, end = (acb(-rate, radius * t) for t in (low, high))
+        part = start.union(end)
+        value = loop.value(part) / part
+        if loop.turned(part).contains(0) or not value.is_finite():
+            return None
+        return (loop.turned(end) / loop.turned(start)).arg(), value.abs_upper() * (radius * (high - low))
+
+    turned = loop.turned(acb(-rate, radius)).arg()
+    try:
+        for _, _, (turn, size) in covered(on_part, EFFORT.line_begun, 0.0):
+            turned, total = turned - turn, total + size
+    except UndecidedError:
         return None
     # The rest of the way around is an arc on which F stays within 1/2 of 1.
-    count = right + (loop.turned(acb(-rate, radius)).arg() - turned) / arb.pi()
+    count = right + turned / arb.pi()
     whole = count.unique_fmpz()
     return None if whole is None else ((total / arb.pi()).upper(), int(whole))
 

@@ -118,18 +118,17 @@ class StepInfo:
 
     def _shown(self, digits: int, unit: str = "") -> list[tuple[str, str]]:
         shown = [
-            ("final value", self.final, unit),
-            ("peak", self.peak, unit),
-            ("peak time", self.peak_time, "s"),
-            ("overshoot", None if self.overshoot is None else 100 * self.overshoot, "%"),
-            ("rise time, 10 % to 90 %", self.rise_time, "s"),
-            ("settling time, to 2 %", self.settling_time, "s"),
+            ("final value", self.final, unit, ""),
+            ("peak", self.peak, unit, ""),
+            ("peak time", self.peak_time, "s", ""),
+            ("overshoot", None if self.overshoot is None else 100 * self.overshoot, "%", "not found"),
+            ("rise time, 10 % to 90 %", self.rise_time, "s", "not found"),
+            ("settling time, to 2 %", self.settling_time, "s", "not found"),
         ]
         found = []
-        for name, ball, of in shown:
+        for name, ball, of, without in shown:
             if ball is None:
-                if name.startswith(("overshoot", "rise", "settling")):
-                    found.append((name, "not found"))
+                found += [(name, without)] if without else []
                 continue
             if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"

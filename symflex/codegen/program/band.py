@@ -31,22 +31,24 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, fmpq
 
-from symflex.balls import precision
+from symflex.balls import precision, precisions
+from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
 from symflex.codegen.program.nodes import RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
 from symflex.roots.root import groups
-from symflex.transfer import NestedTransferFunction
+from symflex.transfer import BoundNested, NestedTransferFunction
+from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.codegen.program.nodes import Piecewise
-    from symflex.codegen.program.verify import EnclosedValues
     from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundTransferFunction
+    from symflex.transfer.bind import Enclosed
 
 
 CLOSED_TERMS = 60
@@ -87,6 +89,49 @@ SLACK = 2.0**-40
 
 LUMPED_END = Fraction(10_000)
 """End of the band [Hz] of a function with finitely many roots where nothing says another one."""
+
+
+FIRST_BITS, LAST_BITS, ENOUGH_BITS = 128, 4096, 64
+"""Of reference values: where work begins, where it is given up, and how many must be certain."""
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedValue:
+    """A transfer function's value and logarithmic derivative at a point, in balls."""
+
+    value: acb
+    slope: acb
+    bits: int  # they were computed with
+
+
+class EnclosedValues:
+    """Enclosed values of a bound transfer function, as precise as doubles are compared with."""
+
+    def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
+        self.bound = bound
+        self._first_bits = FIRST_BITS
+        self._known: dict[int, Enclosed | EnclosedNested] = {}
+
+    def at(self, s: complex) -> EnclosedValue | None:
+        """Return the value at ``s``, or ``None`` at a pole or zero."""
+        point = acb(s.real, s.imag)
+        for bits in precisions(self._first_bits, LAST_BITS):
+            spend()
+            function = self._function(bits)
+            value, slope = function.value_and_slope(point)
+            if not value.is_finite() and isinstance(self.bound, BoundNested):
+                # Its program divides by zero for these values; without a slope errors count more.
+                value, slope = self.bound.solved(point, bits), acb(0)
+            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                if isinstance(function, EnclosedNested):
+                    self._first_bits = bits  # the next point most likely needs as many
+                return EnclosedValue(value, slope, bits)
+        return None
+
+    def _function(self, bits: int) -> Enclosed | EnclosedNested:
+        if bits not in self._known:
+            self._known[bits] = self.bound.enclosed(bits)
+        return self._known[bits]
 
 
 @dataclass(frozen=True, slots=True)

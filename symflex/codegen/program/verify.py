@@ -15,16 +15,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from flint import acb, arb
 
-from symflex.balls import precision, precisions
+from symflex.balls import precision
 from symflex.budget import spend
-from symflex.codegen.program.band import BandForm, band_form
+from symflex.codegen.program.band import FIRST_BITS, BandForm, EnclosedValues, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
-from symflex.transfer.nested_form import EnclosedNested
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 if TYPE_CHECKING:
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
     from symflex.codegen.program.nodes import Piecewise
     from symflex.model import ExactValue
     from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
-    from symflex.transfer.bind import Enclosed
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
@@ -60,11 +58,6 @@ LONG = 500
 
 ACCURATE = 1e-14
 """Error below which no other form is looked for: some fifty roundings of a double."""
-
-FIRST_BITS = 128
-LAST_BITS = 4096
-ENOUGH_BITS = 64
-"""Of reference values: where work begins, where it is given up, and how many must be certain."""
 
 SCAN = 3000
 """Frequencies over the band among which a distributed system's resonances and antiresonances are sought."""
@@ -460,45 +453,6 @@ def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[n
     first = next(i for i, size in enumerate(sizes) if size > 0)
     mean = ((sizes[first].log() - sizes[-1].log()) / max(len(sizes) - 1 - first, 1)).exp()
     return float(mean.mid()) * _roots([c * mean**i for i, c in enumerate(coefficients)], is_scaled=True)
-
-
-@dataclass(frozen=True, slots=True)
-class EnclosedValue:
-    """A transfer function's value and logarithmic derivative at a point, in balls."""
-
-    value: acb
-    slope: acb
-    bits: int  # they were computed with
-
-
-class EnclosedValues:
-    """Enclosed values of a bound transfer function, as precise as doubles are compared with."""
-
-    def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
-        self.bound = bound
-        self._first_bits = FIRST_BITS
-        self._known: dict[int, Enclosed | EnclosedNested] = {}
-
-    def at(self, s: complex) -> EnclosedValue | None:
-        """Return the value at ``s``, or ``None`` at a pole or zero."""
-        point = acb(s.real, s.imag)
-        for bits in precisions(self._first_bits, LAST_BITS):
-            spend()
-            function = self._function(bits)
-            value, slope = function.value_and_slope(point)
-            if not value.is_finite() and isinstance(self.bound, BoundNested):
-                # Its program divides by zero for these values; without a slope errors count more.
-                value, slope = self.bound.solved(point, bits), acb(0)
-            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
-                if isinstance(function, EnclosedNested):
-                    self._first_bits = bits  # the next point most likely needs as many
-                return EnclosedValue(value, slope, bits)
-        return None
-
-    def _function(self, bits: int) -> Enclosed | EnclosedNested:
-        if bits not in self._known:
-            self._known[bits] = self.bound.enclosed(bits)
-        return self._known[bits]
 
 
 class References:

@@ -22,7 +22,6 @@ from symflex.expressions import (
     number,
     product_of,
     quotient,
-    sum_of,
 )
 from symflex.model.model import IMAGINARY as LOSS_UNIT
 from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
@@ -34,8 +33,7 @@ from symflex.print.forms.notation import (
     Naming,
     angles_of,
     constant_symbols,
-    pair_coefficients,
-    pair_root,
+    pair_lines,
     plain_printer,
     reachable,
     speed_squared,
@@ -184,10 +182,7 @@ class _FrequencyPage:
             if doubled is None:
                 continue
             images = {g: ring.generator(whole[f]) for f, g in half.items()}
-            moved = doubled[0].compose(
-                *(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context
-            )
-            work, halvings = self._reduced(moved), halvings + doubled[1]
+            work, halvings = self._reduced(ring.replaced(doubled[0], images)), halvings + doubled[1]
         return Factored.polynomial(ring, work) / Factored.number(ring, 2) ** halvings
 
     def _lowered(self, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, Factored]:
@@ -324,16 +319,9 @@ class _FrequencyPage:
             case "wave":
                 return [(named[0], axis.square_root(self._on_axis(c[0])))]
             case "pair":
-                c0, c2 = pair_coefficients(naming)
+                printed = [axis.quotient(self._on_axis(each)) for each in c]
                 (delta,) = naming.take("delta")
-                half = quotient(c2, number(2))
-                return [
-                    (named[0], Call("sqrt", sum_of([Name(delta), negative(half)]))),
-                    (named[1], Call("sqrt", sum_of([Name(delta), half]))),
-                    (delta, pair_root(c0, c2)),
-                    (c2.name, axis.quotient(self._on_axis(c[2]))),
-                    (c0.name, axis.quotient(self._on_axis(c[0]))),
-                ]
+                return pair_lines(named, delta, naming, printed, on_axis=True)
         return []
 
 

@@ -139,7 +139,7 @@ class Invariants:
         images: dict[str, fmpz_mpoly] = {}
         for i, (angle,) in groups:
             images |= {angle.kernels["cosh"]: self._k(i, 0), angle.kernels["sinh"]: gamma * self._k(i, 1)}
-        work = self._composed(work, images)
+        work = self.ring.replaced(work, images)
         return self._even(work, dispersion.wavenumbers[0])
 
     def _even(self, work: fmpz_mpoly, wavenumber: str) -> Step:
@@ -153,10 +153,6 @@ class Invariants:
             return work / self.ring.generator(wavenumber), Factored.generator(self.ring, wavenumber)
         return work, one
 
-    def _composed(self, polynomial: fmpz_mpoly, images: Mapping[str, fmpz_mpoly]) -> fmpz_mpoly:
-        ring = self.ring
-        return polynomial.compose(*(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context)
-
     def _pair(self, work: fmpz_mpoly, number: int, dispersion: Dispersion, groups: Groups) -> Step:
         """Write ``cosh = K_0 + lambda^2 K_2``, ``sinh = lambda K_1 + lambda^3 K_3`` for both wavenumbers."""
         images: dict[str, fmpz_mpoly] = {}
@@ -165,7 +161,7 @@ class Invariants:
                 w = self.ring.generator(angle.wavenumber)
                 images[angle.kernels["cosh"]] = self._k(i, 0) + w**2 * self._k(i, 2)
                 images[angle.kernels["sinh"]] = w * self._k(i, 1) + w**3 * self._k(i, 3)
-        work = self._composed(work, images)
+        work = self.ring.replaced(work, images)
         scale = Factored.number(self.ring, 1)
         for name in dispersion.wavenumbers:
             found = self._even(work, name)
@@ -245,7 +241,7 @@ class Invariants:
                 angle.kernels["cos"]: k["cosh"],
                 angle.kernels["sin"]: j * k["sinh"],
             }
-        turned = real_powers(self.ring, self._composed(work, images))
+        turned = real_powers(self.ring, self.ring.replaced(work, images))
         return next((n for n in range(4) if real_powers(self.ring, turned * j**n) == work), None)
 
     def _opened(
@@ -350,12 +346,7 @@ def in_krylov_functions(
         return change, found
     change, images = change.halved()
     normal = NormalForm(source, table)
-    halved = value.map_factors(
-        source,
-        lambda f: normal.reduce(
-            f.compose(*(images.get(n, source.generator(n)) for n in source.names), ctx=source.context)
-        ),
-    )
+    halved = value.map_factors(source, lambda f: normal.reduce(source.replaced(f, images)))
     found = change.convert(halved)
     return None if found is None else (change, found)
 

@@ -14,7 +14,6 @@ from symflex.print.forms.notation import (
     Line,
     Naming,
     constant_symbols,
-    free_family,
     notation_of,
     reachable,
     wavenumber_laws,
@@ -95,9 +94,7 @@ def _families(change: Invariants, used: frozenset[str], naming: Naming) -> list[
         if not any(krylov_name(i, order) in used for order in range(_order(group))):
             found.append(("",) * _order(group))
             continue
-        family = free_family("KLMNH", _order(group), naming.taken)
-        naming.keep(family)
-        found.append(family)
+        found.append(naming.family("KLMNH", _order(group)))
     return found
 
 

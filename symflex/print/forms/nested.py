@@ -33,7 +33,7 @@ from symflex.expressions import (
     number,
     quotient,
 )
-from symflex.print.forms.notation import free_names, names_of, reachable
+from symflex.print.forms.notation import Naming, names_of, reachable
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, powers_of
 
@@ -148,7 +148,7 @@ def _laws(tf: NestedTransferFunction) -> dict[tuple[int, ...], tuple[str, Waves]
     """Return, by the coefficients of a differential equation, what its solution is called, and a user."""
     users = {w.coefficients: w for w in reversed(tf.waves) if w.coefficients}
     ordered = [users[c] for c in dict.fromkeys(w.coefficients for w in tf.waves if w.coefficients)]
-    found = free_names("h", len(ordered), names_of(tf.model) | tf.generators)
+    found = Naming(names_of(tf.model) | tf.generators).take("h", len(ordered))
     return {w.coefficients: (name, w) for name, w in zip(found, ordered, strict=True)}
 
 

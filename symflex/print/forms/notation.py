@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, islice
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable
@@ -72,8 +72,28 @@ class Naming:
         return Naming((*names_of(tf.model), *tf.ring.names))
 
     def take(self, stem: str, wanted: int = 1) -> tuple[str, ...]:
-        """Return that many free names; see :func:`free_names`."""
-        found = free_names(stem, wanted, self._taken)
+        """Return the stem, or numbered ones where several are wanted or it is taken.
+
+        Examples
+        --------
+        >>> Naming({"E"}).take("q"), Naming({"q_1"}).take("q", 2), Naming({"q"}).take("q")
+        (('q',), ('q_2', 'q_3'), ('q_1',))
+        """
+        free = (name for i in count(1) if (name := f"{stem}_{i}") not in self._taken)
+        found = (stem,) if wanted == 1 and stem not in self._taken else tuple(islice(free, wanted))
+        self._taken.update(found)
+        return found
+
+    def family(self, stems: Sequence[str], members: int) -> tuple[str, ...]:
+        """Return names numbered from zero, of the first stem that leaves all of them free.
+
+        Examples
+        --------
+        >>> Naming({"K_1"}).family("KL", 2)
+        ('L_0', 'L_1')
+        """
+        own = (tuple(f"{stem * n}_{i}" for i in range(members)) for n in count(1) for stem in stems)
+        found = next(family for family in own if self._taken.isdisjoint(family))
         self._taken.update(found)
         return found
 
@@ -239,30 +259,26 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
     for i, d in enumerate(pairs):
         names_of_pair = (lambdas[2 * i], lambdas[2 * i + 1])
         symbols |= {w: Name(n) for w, n in zip(d.wavenumbers, names_of_pair, strict=True)}
-        c0, c2 = pair_coefficients(naming)
+        own = pair_lines(names_of_pair, deltas[i], naming, [printer.quotient(c) for c in d.characteristic])
         position = next(k for k, known in enumerate(tf.kernels.dispersions) if known is d)
-        symbols |= {coefficient_name(position, 0): c0, coefficient_name(position, 2): c2}
-        delta, half = Name(deltas[i]), quotient(c2, number(2))
-        lines += [
-            (names_of_pair[0], Call("sqrt", sum_of([delta, negative(half)]))),
-            (names_of_pair[1], Call("sqrt", sum_of([negative(half), negative(delta)]))),
-            (delta.name, pair_root(c0, c2)),
-            (c2.name, printer.quotient(d.characteristic[2])),
-            (c0.name, printer.quotient(d.characteristic[0])),
-        ]
+        symbols |= {coefficient_name(position, n): Name(own[-1 - n // 2][0]) for n in (0, 2)}
+        lines += own
     return Notation(symbols, tuple(lines))
 
 
-def pair_coefficients(naming: Naming) -> tuple[Name, Name]:
-    """Return names for ``c_0`` and ``c_2``."""
-    family = free_family("cbde", 3, naming.taken)
-    naming.keep(family)
-    return Name(family[0]), Name(family[2])
-
-
-def pair_root(c0: Expression, c2: Expression) -> Expression:
-    """Return half the difference of the squares of a pair."""
-    return Call("sqrt", sum_of([quotient(power(c2, 2), number(4)), negative(c0)]))
+def pair_lines(
+    waves: Sequence[str], delta: str, naming: Naming, printed: Sequence[Expression], *, on_axis: bool = False
+) -> list[Line]:
+    """Return the lines of a pair of wavenumbers, delta, ``c_2`` and ``c_0``; on the axis one wave travels."""
+    c0, _, c2 = map(Name, naming.family("cbde", 3))
+    half, root = quotient(c2, number(2)), Name(delta)
+    return [
+        (waves[0], Call("sqrt", sum_of([root, negative(half)]))),
+        (waves[1], Call("sqrt", sum_of([root, half] if on_axis else [negative(half), negative(root)]))),
+        (delta, Call("sqrt", sum_of([quotient(power(c2, 2), number(4)), negative(c0)]))),
+        (c2.name, printed[2]),
+        (c0.name, printed[0]),
+    ]
 
 
 def coefficient_name(dispersion: int, order: int) -> str:
@@ -347,37 +363,6 @@ def names_of(model: Model) -> frozenset[str]:
     )
     unknowns = (u for field in model.fields for u in field.unknowns)
     return frozenset((LAPLACE, "pi", *FUNCTIONS, *unknowns, *(x.name for table in tables for x in table)))
-
-
-def free_names(stem: str, wanted: int, taken: Collection[str]) -> tuple[str, ...]:
-    """Return the stem, or numbered ones where several are wanted or it is taken.
-
-    Examples
-    --------
-    >>> free_names("q", 1, {"E"}), free_names("q", 2, {"q_1"}), free_names("q", 1, {"q"})
-    (('q',), ('q_2', 'q_3'), ('q_1',))
-    """
-    if wanted == 1 and stem not in taken:
-        return (stem,)
-    numbered = (f"{stem}_{i}" for i in count(1))
-    free = (name for name in numbered if name not in taken)
-    return tuple(next(free) for _ in range(wanted))
-
-
-def free_family(stems: Sequence[str], members: int, taken: Collection[str]) -> tuple[str, ...]:
-    """Return names numbered from zero, of the first stem that leaves all of them free.
-
-    Examples
-    --------
-    >>> free_family("KL", 2, {"K_1"})
-    ('L_0', 'L_1')
-    """
-    for length in count(1):
-        for stem in stems:
-            family = tuple(f"{stem * length}_{i}" for i in range(members))
-            if not set(family) & set(taken):
-                return family
-    raise AssertionError
 
 
 def constant_symbols(tf: TransferFunction) -> dict[str, Expression]:

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.report.document import Aside, Badge, Section, Table, columns, counted, text
+from symflex.errors import counted
+from symflex.report.document import Aside, Badge, Section, Table, columns, text
 from symflex.report.facts import ModelFacts
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from symflex.errors import counted
 from symflex.report.claims.claim import Finding, judged, model_of
-from symflex.report.document import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,9 +1,16 @@
-"""The sections of a model's chapter. A new one is a function here and a line in :data:`SECTIONS`."""
+"""The sections of a model's chapter. A new one is a function here and a line in :data:`SECTIONS`.
 
-from symflex.report.document import SectionMaker
+It returns None where a model gives no cause for it, and raises SymflexError when what it needs cannot be
+computed; the report says so in its place.
+"""
+
+from collections.abc import Callable
+
+from symflex.report.document import ChapterPart
 from symflex.report.sections import files, formulas, roots
+from symflex.report.study import Study
 
-SECTIONS: dict[str, SectionMaker] = {
+SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
     "drawing": files.drawing_section,
     "parameters": formulas.parameter_section,
     "equations": formulas.equation_section,

@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING, Final
 
 from symflex.audit.text import VERDICTS, audit_document
+from symflex.errors import counted
 from symflex.print.forms import counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
@@ -39,7 +40,6 @@ from symflex.report.document import (
     Section,
     Table,
     columns,
-    counted,
     exponents,
     filled,
     labelled,

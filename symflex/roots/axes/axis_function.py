@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import frexp, inf, isfinite, sqrt
+from math import frexp, inf, isfinite, prod, sqrt
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -64,10 +64,7 @@ class Enclosures:
 
     def product(self, monomial: Monomial) -> arb:
         """Return a product of powers of constants."""
-        total = arb(1)
-        for i, e in monomial:
-            total *= self.constants[i] ** e
-        return total
+        return prod((self.constants[i] ** e for i, e in monomial), start=arb(1))
 
     def coefficients(self, polynomial: Polynomial) -> dict[int, arb]:
         """Return the coefficients of a polynomial in t."""
@@ -247,18 +244,13 @@ class _AxisDoubles:
         total, slope, size = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for g, p, even, odd, even_slope, odd_slope in self._terms:
             sine, cosine = turns[p][0] * growths[g], turns[p][1] * growths[g]
-            for n, c in even:
-                term = (c * t**n if n else c) * cosine
-                total += term
-                size += np.abs(term)
-            for n, c in odd:
-                term = (c * t**n if n else c) * sine
-                total += term
-                size += np.abs(term)
-            for n, c in even_slope:
-                slope += (c * t**n if n else c) * cosine
-            for n, c in odd_slope:
-                slope += (c * t**n if n else c) * sine
+            for turn, values, slopes in ((cosine, even, even_slope), (sine, odd, odd_slope)):
+                for n, c in values:
+                    term = (c * t**n if n else c) * turn
+                    total += term
+                    size += np.abs(term)
+                for n, c in slopes:
+                    slope += (c * t**n if n else c) * turn
         return total, slope, size
 
 

@@ -178,7 +178,8 @@ class _Arc:
         first, last = self._between_layers(start, end, largest)
         if last - first < (end - start) / 2 or not self._outweighs(first, last, largest):
             return self._stepwise(start, end)
-        total = self._turn_of_largest(first, last, largest)
+        turned = self._powers[largest] * self._eighth * (arb(last) - arb(first))
+        total = self._turn(first, last, largest, turned)
         for one, other in ((start, first), (last, end)):
             if one < other:
                 total += self.turn_between(one, other)
@@ -226,19 +227,15 @@ class _Arc:
             total += size
         return bool(total < OUTWEIGHED * own)
 
-    def _turn_of_largest(self, start: float, end: float, largest: int) -> arb:
-        """Return how far the argument turns where one term outweighs all others.
+    def _turn(self, start: float, end: float, largest: int, turned: arb) -> arb:
+        """Return how far the argument turns where the sum over one exponential has turned about so far.
 
-        The ratio of the sum to that term keeps to the right of 0.
+        What that leaves of their ratio keeps to the right of 0.
         """
-        turned = self._powers[largest] * self._eighth * (arb(end) - arb(start))
-        ratio = self._ratio_at(end, largest) / self._ratio_at(start, largest)
-        return self._turn_of_exponential(start, end, largest) + turned + (ratio / acb(0, turned).exp()).arg()
-
-    def _turn_of_exponential(self, start: float, end: float, largest: int) -> arb:
-        term = self._terms[largest]
-        here, there = self._point(start), self._point(end)
-        return (term.linear * (there - here) + term.square * (there * there - here * here)).imag
+        term, here, there = self._terms[largest], self._point(start), self._point(end)
+        ratio = self._ratio_at(end, largest) / self._ratio_at(start, largest) / acb(0, turned).exp()
+        exponent = term.linear * (there - here) + term.square * (there * there - here * here)
+        return exponent.imag + turned + ratio.arg()
 
     def _stepwise(self, start: float, end: float) -> arb:
         def place(share: float) -> float:
@@ -255,10 +252,7 @@ class _Arc:
         largest = self._largest_at(middle)
         ball = self._radius * acb(0, self._eighth * arb(middle, half * WIDENED + SPREAD)).exp()
         off = deviation(self._ratio(ball, largest))
-        if off > ROOM:
-            return off, arb(0)
-        turned = self._ratio_at(end, largest) / self._ratio_at(start, largest)
-        return off, self._turn_of_exponential(start, end, largest) + turned.arg()
+        return off, arb(0) if off > ROOM else self._turn(start, end, largest, arb(0))
 
     def _point(self, t: float) -> acb:
         if t not in self._points:
@@ -284,9 +278,7 @@ class _Arc:
         square = x * x
         total = acb(0)
         for i, (p, q) in enumerate(self._differences(largest)):
-            amplitude = acb(0)
-            for n, c in self._terms[i].powers:
-                amplitude += c * x**n if n else c
+            amplitude = sum((c * x**n if n else c for n, c in self._terms[i].powers), acb(0))
             total += amplitude if i == largest else amplitude * (p * x + q * square).exp()
         return total
 
@@ -336,10 +328,7 @@ class LosslessFunction:
         """
         with precision(FLOAT_BITS):
             radius = (arb(z) / 2).exp()
-            total = arb(0)
-            for terms, exponent in self._sums:
-                total += exponent * terms.turn(radius)
-            return total
+            return sum((exponent * terms.turn(radius) for terms, exponent in self._sums), arb(0))
 
     def estimate(self, z: float) -> float:
         """Return about how far arg turns on that arc [rad], from the largest terms."""

@@ -93,9 +93,7 @@ class CertifiedWinding(Winding):
         """
         smallest = max(SMALLEST, 1e-9 * cell.size)
         with precision(BITS):
-            total = arb(0)
-            for start, end in cell.edges:
-                total += self.certified_turn(start, end, smallest)
+            total = sum((self.certified_turn(start, end, smallest) for start, end in cell.edges), arb(0))
             return _whole(total / (2 * arb.pi()))
 
     def count_right(self, low: float, high: float) -> int:
@@ -184,15 +182,10 @@ class CertifiedWinding(Winding):
         off *= self.function.power
         if off > ROOM:
             return off, arb(0)
-        # Both ends lie within a right angle of the middle.
-        return off, _principal(self._phase(there, bits) - self._phase(here, bits))
-
-    def _phase(self, s: acb, bits: int) -> arb:
-        """Return a ball around arg F at a point, up to whole turns."""
-        phase = arb(0)
-        for value, _, exponent in self.function.enclosed(s, bits):
-            phase += exponent * _argument(value)
-        return phase * self.function.power
+        # Both ends of every factor lie within a right angle of its middle.
+        factors = zip(self.function.enclosed(here, bits), self.function.enclosed(there, bits), strict=True)
+        turn = sum((e * (last / first).arg() for (first, _, e), (last, _, _) in factors), arb(0))
+        return off, turn * self.function.power
 
     def _sufficient(self, s: acb, bits: int) -> int:
         """Return a precision at which no factor of F is lost at a point."""
@@ -202,11 +195,6 @@ class CertifiedWinding(Winding):
                 if all(value.is_finite() and not value.contains(0) for value, _, _ in factors):
                     return enough
         raise RootOnPathError
-
-
-def _argument(value: acb) -> arb:
-    """Return an argument of a ball, up to whole turns, also where it crosses the negative real axis."""
-    return value.arg() if value.real.mid() > 0 else (-value).arg() + arb.pi()
 
 
 def _angle(value: float) -> arb:
@@ -219,15 +207,6 @@ def _angle(value: float) -> arb:
 
 def _is_lossy(off: float, turn: arb) -> bool:
     return bool(abs(turn) < LOSSY * off)
-
-
-def _principal(difference: arb) -> arb:
-    """Return a difference of arguments less whole turns, proved to lie between -pi and pi."""
-    turns = round(float(difference.mid()) / (2 * pi))
-    result = difference - 2 * arb.pi() * turns
-    if not abs(result) < arb.pi():
-        raise RootOnPathError
-    return result
 
 
 def _whole(turns: arb) -> int:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from cmath import pi
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from math import ceil, exp, inf, log
 from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.balls import UndecidedError, covered
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.functions.kernel_function import ROOM
@@ -207,20 +207,16 @@ class Winding:
             pieces = abs(end - start) / longest
             if not pieces <= WORK_LIMIT:
                 raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
-            count = max(1, ceil(pieces))
-            points = [start + (end - start) * i / count for i in range(count)] + [end]
-            total = 0.0
-            pending = list(pairwise(points))
-            while pending:
-                a, b = pending.pop()
-                step = continuous_step(self.sample(a), self.sample(b), b - a)
-                if step is not None:
-                    total += step
-                elif abs(b - a) < smallest:
-                    raise RootOnPathError
-                else:
-                    pending += [(a, (a + b) / 2), ((a + b) / 2, b)]
-            self._edges[start, end] = total
+
+            def step(low: float, high: float) -> float | None:
+                a, b = (end if t == 1 else start + (end - start) * t for t in (low, high))
+                return continuous_step(self.sample(a), self.sample(b), b - a)
+
+            steps = covered(step, max(1, ceil(pieces)), smallest / max(abs(end - start), smallest) / 2)
+            try:
+                self._edges[start, end] = sum(turn for _, _, turn in steps)
+            except UndecidedError as error:
+                raise RootOnPathError from error
         return self._edges[start, end]
 
     def count(self, cell: Cell) -> int:

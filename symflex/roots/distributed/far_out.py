@@ -193,9 +193,20 @@ def _quotient(
     # What the denominator's growth does not outweigh says how the quotient falls; where there is none, all.
     highest = max(above.get(grown, {}), default=None)
     power = max(p for own in above.values() for p in own) if highest is None else highest
+    most = _over(above, grown, power, arguments, from_radius)
+    if most is None:
+        return None
+    limit = acb(0) if highest is None else above[grown][highest] / lead
+    return SizeFarOut((most / least).upper(), power - lost, limit)
+
+
+def _over(
+    terms: Terms, grown: Exponent, power: Fraction, arguments: Sequence[_Power], radius: arb
+) -> arb | None:
+    """Return how large a sum over an exponential and a power is from a radius on; None where it may grow."""
     most = arb(0)
-    for exponent, amplitude in above.items():
-        faded = _faded(_sum((exponent, 1), (grown, -1)), arguments, from_radius)
+    for exponent, amplitude in terms.items():
+        faded = _faded(_sum((exponent, 1), (grown, -1)), arguments, radius)
         if faded is None:
             return None
         size, slope = faded
@@ -203,9 +214,8 @@ def _quotient(
             over = ball(p - power)
             if over > 0 and not -slope > over:
                 return None
-            most += abs(c).upper() * from_radius**over * size
-    limit = acb(0) if highest is None else above[grown][highest] / lead
-    return SizeFarOut((most / least).upper(), power - lost, limit)
+            most += abs(c).upper() * radius**over * size
+    return most
 
 
 def _faded(exponent: Exponent, arguments: Sequence[_Power], radius: arb) -> tuple[arb, arb] | None:
@@ -657,23 +667,8 @@ def _dominant(terms: Terms, arguments: Sequence[_Power], radius: arb) -> _Domina
     highest = max(own, default=None)
     if highest is None:
         return None
-    others = arb(0)
-    for power, coefficient in own.items():
-        if power != highest:
-            others += (abs(coefficient) * radius ** ball(power - highest)).upper()
-    for powers, amplitude in terms.items():
-        if powers == chosen:
-            continue
-        faded = _faded(_sum((powers, 1), (chosen, -1)), arguments, radius)
-        if faded is None:
-            return None
-        share, slope = faded
-        for power, coefficient in amplitude.items():
-            over = ball(power - highest)
-            if over > 0 and not -slope > over:
-                return None
-            others += abs(coefficient).upper() * radius**over * share
-    lead = own[highest]
-    if not others < abs(lead).lower():
+    lead = own.pop(highest)
+    others = _over({**terms, chosen: own}, chosen, highest, arguments, radius)
+    if others is None or not others < abs(lead).lower():
         return None
     return _Dominant(chosen, highest, lead, (abs(lead) - others).lower())
