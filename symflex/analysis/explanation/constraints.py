@@ -141,14 +141,9 @@ class ReplacedCondition:
     """A field's condition that gives way to one that keeps an output at zero."""
 
     field: FieldProblem  # as it was
-    number: int  # which condition holds the input
+    loaded: Equation  # its condition that holds the input
     measured: Call  # the value of the field that the output shows
     constraint: Constraint  # the model with the condition replaced
-
-    @property
-    def loaded(self) -> Equation:
-        """The condition that holds the input."""
-        return self.field.conditions[self.number]
 
     @property
     def is_dual(self) -> bool:
@@ -185,20 +180,15 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     rest = [n for n in names(output) if not isinstance(n, Call)]
     if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in rest):
         return None
-    places = [
-        (field, i)
-        for field in model.fields
-        for i, condition in enumerate(field.conditions)
-        if holds(condition, source.name)
-    ]
+    places = [(f, c) for f in model.fields for c in f.conditions if holds(c, source.name)]
     if len(places) != 1 or sum(holds(e, source.name) for _, e in expressions_of(model)) != 1:
         return None
-    ((field, number),) = places
+    ((field, loaded),) = places
     zero = Equation(calls[0], Number(Fraction(0)))
-    conditions = tuple(zero if i == number else c for i, c in enumerate(field.conditions))
+    conditions = tuple(zero if c is loaded else c for c in field.conditions)
     changed = replace(field, conditions=conditions)
     fields = tuple(changed if f is field else f for f in model.fields)
     held = format_expression(zero)
-    words = f"{held} in place of {format_expression(field.conditions[number])}"
+    words = f"{held} in place of {format_expression(loaded)}"
     constraint = Constraint(replace(model, fields=fields), held, words, f'"{held}"')
-    return ReplacedCondition(field, number, calls[0], constraint)
+    return ReplacedCondition(field, loaded, calls[0], constraint)

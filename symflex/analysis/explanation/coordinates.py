@@ -140,13 +140,13 @@ def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
 def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Factored] | None:
     """Return a form with its signals replaced by what they equal, ``None`` where they form a loop."""
     laws = {row.about: row.form for row in equations.rows if row.role == "signal"}
-    terms = _collected(form)
+    terms = collected(form)
     for _ in range(len(laws) + 1):
         found = next((v for v in terms if v in laws), None)
         if found is None:
             return terms
         coefficient = terms.pop(found)
-        law = _collected(laws[found])
+        law = collected(laws[found])
         own = law.pop(found, None)
         if own is None:
             return None
@@ -157,7 +157,8 @@ def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Facto
     return None
 
 
-def _collected(form: LinearForm) -> dict[Variable, Factored]:
+def collected(form: LinearForm) -> dict[Variable, Factored]:
+    """Return the coefficient of every variable in a form, those that are zero left out."""
     found: dict[Variable, Factored] = {}
     for variable, coefficient in form.terms:
         found[variable] = found[variable] + coefficient if variable in found else coefficient
