@@ -99,15 +99,8 @@ class LumpedFactor:
         slope = simple.derivative(w)
         gains = self._real_roots(simple.discriminant(w), K, digits)
         squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
-        found = []
-        for gain in gains:
-            near = tuple(
-                square.re.sqrt()
-                for square in squares
-                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (simple, slope))
-            )
-            found.append(Crossing(gain.re, near, is_symmetric=True))
-        return found
+        found = ((gain.re, self._frequencies(gain, squares, (simple, slope))) for gain in gains)
+        return [Crossing(gain, near, is_symmetric=True) for gain, near in found]
 
     def _on_axis(self, digits: int) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
@@ -123,18 +116,8 @@ class LumpedFactor:
         name = [str(self.ring.context.gen(i)) for i in (W, K)]
         squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS)
         gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits)
-        found = []
-        for gain in gains:
-            # Which frequencies belong to a gain is told by exclusion: at the others E or O is not 0.
-            near = [
-                square.re
-                for square in squares
-                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (self.even, self.odd))
-            ]
-            if near:
-                with precision(gain.working_bits()):
-                    found.append(Crossing(gain.re, tuple(w.sqrt() for w in near)))
-        return found
+        found = ((gain.re, self._frequencies(gain, squares, (self.even, self.odd))) for gain in gains)
+        return [Crossing(gain, near) for gain, near in found if near]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
@@ -145,6 +128,15 @@ class LumpedFactor:
                 return None
             gain = max(usable, key=lambda ball: ball.rel_accuracy_bits())
             return Crossing(gain, (root.re.sqrt(),))
+
+    def _frequencies(
+        self, gain: Root, squares: Sequence[Root], polynomials: Sequence[fmpz_mpoly]
+    ) -> tuple[arb, ...]:
+        """Return the frequencies that belong to a gain: at the others one of the polynomials is not 0."""
+        positive = [square for square in squares if square.re > 0]
+        near = [w for w in positive if all(self._may_vanish(f, w, gain) for f in polynomials)]
+        with precision(gain.working_bits()):
+            return tuple(square.re.sqrt() for square in near)
 
     def _may_vanish(self, polynomial: fmpz_mpoly, square: Root, gain: Root) -> bool:
         with precision(2 * max(square.working_bits(), gain.working_bits())):
