@@ -18,6 +18,7 @@ from flint import acb, arb
 from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.loops.axis import pieces
 from symflex.loops.stability_map import hertz, real_json
 from symflex.roots import decimals
 
@@ -174,13 +175,7 @@ def _first_exit(
         state, cause = state_on(arb(start))
         if state != 1:
             return None, state == -1, False, cause
-        pending: list[tuple[float, float]] = []
-        reached = start
-        while reached < end:
-            following = min(reached * START_RATIO, end)
-            pending.append((reached, following))
-            reached = following
-        pending.reverse()
+        pending = pieces(start, end, START_RATIO)
         for _ in range(MOST_INTERVALS):
             if not pending:
                 return None, True, True, ""
