@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Final
@@ -295,10 +296,7 @@ def _ball(value: Fraction) -> arb:
 def _hull(group: Sequence[Crossing]) -> arb:
     """Return the narrowest of the enclosures of a gain when there is one, else one that holds all."""
     with precision(max(BITS, *(c.gain.bits() for c in group))):
-        total = group[0].gain
-        for crossing in group[1:]:
-            total = total.union(crossing.gain)
-        return total
+        return reduce(arb.union, (crossing.gain for crossing in group))
 
 
 def _sample(low: arb | None, high: arb | None) -> Fraction:

@@ -56,7 +56,6 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
     'hold = { type = "fixed", at = "x" }'
     """
     name = _free_name(model)
-    nodes = {n.name: n for n in model.nodes}
     if len(coordinates) == PAIR:
         (first, _), (second, _) = coordinates
         references = {"from": _reference(first), "to": _reference(second)}
@@ -71,7 +70,7 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
         words = f"{first} and {second} locked to each other"
         return Constraint(_with(model, placed), f"{first} - {second} = 0", words, spec)
     ((variable, _),) = coordinates
-    domain = nodes[variable.owner].domain
+    domain = next(n.domain for n in model.nodes if n.name == variable.owner)
     kind = {"y": "pin", "theta": "slider"}.get(variable.component if domain == "planar" else "", "fixed")
     reference = NodeReference(variable.owner)
     if domain == "plane":

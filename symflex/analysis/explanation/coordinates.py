@@ -109,20 +109,13 @@ def holds(expression: Expression, name: str) -> bool:
 
 def _at(model: Model, references: tuple[NodeReference, ...], domain: Domain) -> Coordinates:
     nodes = {n.name: n for n in model.nodes}
-    signs = (1, -1)
     found = [
         (variable_of(r, nodes[r.node], domain), sign)
-        for r, sign in zip(references, signs, strict=False)
+        for r, sign in zip(references, (1, -1), strict=False)
         if not r.is_ground
     ]
-    return same_sign(tuple(found))
-
-
-def same_sign(coordinates: Coordinates) -> Coordinates:
-    """Return the coordinates in the order of their names, the first with a plus."""
-    ordered = sorted(coordinates, key=lambda found: str(found[0]))
-    lead = ordered[0][1] if ordered else 1
-    return tuple((v, sign * lead) for v, sign in ordered)
+    found.sort(key=lambda coordinate: str(coordinate[0]))
+    return tuple((v, sign * found[0][1]) for v, sign in found)
 
 
 def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
