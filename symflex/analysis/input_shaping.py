@@ -50,27 +50,18 @@ LEAST = 1e-300
 """The smallest bound that is printed."""
 
 
-def _zv(k: arb, tolerance: arb) -> tuple[arb, ...]:
-    del tolerance
-    return (1 / (1 + k), k / (1 + k))
-
-
-def _zvd(k: arb, tolerance: arb) -> tuple[arb, ...]:
-    del tolerance
-    whole = (1 + k) ** 2
-    return (1 / whole, 2 * k / whole, k * k / whole)
-
-
-def _ei(k: arb, tolerance: arb) -> tuple[arb, ...]:
+def _ei(k: arb) -> tuple[arb, ...]:
     # The residual at p is W K^2 over the sum of the amplitudes; this makes it V.
-    width = tolerance * (1 + k) ** 2 / (4 * k * k - tolerance * (1 - k) ** 2)
-    parts = (1 + width, 2 * (1 - width) * k, (1 + width) * k * k)
-    whole = parts[0] + parts[1] + parts[2]
-    return (parts[0] / whole, parts[1] / whole, parts[2] / whole)
+    width = TOLERANCE * (1 + k) ** 2 / (4 * k * k - TOLERANCE * (1 - k) ** 2)
+    return (1 + width, 2 * (1 - width) * k, (1 + width) * k * k)
 
 
-SHAPERS: Mapping[str, Callable[[arb, arb], tuple[arb, ...]]] = {"zv": _zv, "zvd": _zvd, "ei": _ei}
-"""The amplitudes of each kind, from K and V; half a period lies between two."""
+SHAPERS: Mapping[str, Callable[[arb], tuple[arb, ...]]] = {
+    "zv": lambda k: (arb(1), k),
+    "zvd": lambda k: (arb(1), 2 * k, k * k),
+    "ei": _ei,
+}
+"""The sizes of the impulses of each kind beside one another, from K; half a period lies between two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,33 +102,25 @@ class InputShaper:
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the shaper as ``symflex shape --json`` prints it."""
-        zero, digits = arb(0), self.digits
+
+        def told(name: str, value: arb) -> dict[str, str]:
+            found = decimals(value, arb(0), self.digits)
+            return {name: found.re, f"{name}_radius": found.radius}
+
         modes: list[dict[str, object]] = []
         for pole in self.poles:
-            told = pole.decimal(digits)
-            left = decimals(self.residual(pole.enclosure()), zero, digits)
+            place = pole.decimal(self.digits)
             modes.append(
                 {
-                    "re": told.re,
-                    "im": told.im,
-                    "radius": told.radius,
+                    "re": place.re,
+                    "im": place.im,
+                    "radius": place.radius,
                     "frequency_hz": pole.frequency_hz(),
                     "damping_ratio": pole.damping_ratio(),
-                    "residual": left.re,
-                    "residual_radius": left.radius,
+                    **told("residual", self.residual(pole.enclosure())),
                 }
             )
-        impulses = []
-        for time, amplitude in self.impulses:
-            when, size = decimals(time, zero, digits), decimals(amplitude, zero, digits)
-            impulses.append(
-                {
-                    "time": when.re,
-                    "time_radius": when.radius,
-                    "amplitude": size.re,
-                    "amplitude_radius": size.radius,
-                }
-            )
+        impulses = [told("time", time) | told("amplitude", size) for time, size in self.impulses]
         of = {"tf": self.tf, "kind": self.kind, "joint": False}
         return {"schema": SCHEMA, **of, "modes": modes, "impulses": impulses}
 
@@ -231,13 +214,14 @@ def input_shaper(
 
 def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
     half = arb.pi() / root.im
-    amplitudes = SHAPERS[kind]((root.re * half).exp(), arb(TOLERANCE))
-    if not all(a > 0 for a in amplitudes):
+    sizes = SHAPERS[kind]((root.re * half).exp())
+    whole = sum(sizes, arb(0))
+    if not all(size / whole > 0 for size in sizes):
         message = (
             f"the mode of {bound.name} at {root.frequency_hz():g} Hz is too strongly damped for '{kind}'"
         )
         raise ModelError(Diagnostic("SF814", message, None, "use zv, or no shaper: the mode hardly rings"))
-    return [(half * i, a) for i, a in enumerate(amplitudes)]
+    return [(half * i, size / whole) for i, size in enumerate(sizes)]
 
 
 def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:

@@ -273,11 +273,13 @@ class SampledResponse:
     turns: npt.NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "omega", _frozen(np.array(self.omega, dtype=np.float64)))
-        object.__setattr__(self, "values", _frozen(np.array(self.values, dtype=np.complex128)))
-        if self.turns is not None:
-            object.__setattr__(self, "turns", _frozen(np.array(self.turns, dtype=np.int64)))
-        shapes = {a.shape for a in (self.omega, self.values, self.turns) if a is not None}
+        shapes = set()
+        for name, kind in (("omega", np.float64), ("values", np.complex128), ("turns", np.int64)):
+            if getattr(self, name) is not None:
+                array = np.array(getattr(self, name), dtype=kind)
+                array.setflags(write=False)
+                object.__setattr__(self, name, array)
+                shapes.add(array.shape)
         if self.omega.ndim != 1 or len(shapes) != 1:
             message = f"a frequency response needs one-dimensional arrays of one length, not {sorted(shapes)}"
             raise ValueError(message)
@@ -311,11 +313,6 @@ class SampledResponse:
             phase[defined] = np.unwrap(principal[defined])
             return phase
         return np.where(defined, principal + 2 * np.pi * self.turns, np.nan)
-
-
-def _frozen(array: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-    array.setflags(write=False)
-    return array
 
 
 def respond(

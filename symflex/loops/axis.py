@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from math import exp, inf, pi
 from typing import TYPE_CHECKING
 
@@ -62,13 +63,7 @@ def find_on_axis(
     ``equation`` returns its value and its derivative in omega; ``is_excluded`` tells that roots among these
     values are not asked for. SF505, SF506 when there are too many intervals, or the time is over.
     """
-    low, high = limits
-    pending: list[tuple[float, float]] = []
-    end = low
-    while end < high:
-        start, end = end, min(end * FIRST_RATIO, high)
-        pending.append((start, end))
-    pending.reverse()
+    pending = pieces(*limits, FIRST_RATIO)
     roots: list[arb] = []
     undecided: list[arb] = []
     for _ in range(MOST_INTERVALS):
@@ -101,6 +96,14 @@ def find_on_axis(
         pending += [(cut, end), (start, cut)]
     message = "the search for crossings of the imaginary axis takes too long"
     raise BudgetError(Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to"))
+
+
+def pieces(low: float, high: float, ratio: float) -> list[tuple[float, float]]:
+    """Return intervals between two frequencies, the last first; the ends of each have a ratio."""
+    ends = [low]
+    while ends[-1] < high:
+        ends.append(min(ends[-1] * ratio, high))
+    return list(pairwise(ends))[::-1]
 
 
 def _refined(

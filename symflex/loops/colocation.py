@@ -10,7 +10,6 @@ A tip sensor may be away from the joint actuator, and yet respond as the joint d
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -19,11 +18,13 @@ from flint import acb, arb
 from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.loops.axis import pieces
 from symflex.loops.stability_map import hertz, real_json
 from symflex.roots import decimals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from fractions import Fraction
 
     from symflex.transfer import BoundTransferFunction
 
@@ -32,7 +33,6 @@ BITS = 192
 START_RATIO = 1.02
 NARROWEST = 1e-13
 MOST_INTERVALS = 200_000
-TOLERANCE = 2.0**-60
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def dynamic_colocation(
     joint: BoundTransferFunction,
     phase: float = 10.0,
     magnitude: float = 1.0,
-    limits: tuple[float, float] | None = None,
+    limits: tuple[float, float] | tuple[Fraction, Fraction] | None = None,
 ) -> DynamicColocation:
     """Return up to which frequency an output moves with a colocated one, from the same input.
 
@@ -138,96 +138,84 @@ def dynamic_colocation(
     if not 0 < phase < 90 or not magnitude > 0:  # noqa: PLR2004 (degrees)
         message = "the phase tolerance must be between 0 and 90 degrees, the magnitude tolerance above 0 dB"
         raise UsageError(Diagnostic("SF805", message))
-    band = tip.source.model.analysis.band
-    if limits is None and band is None:
+    band = limits or tip.source.model.analysis.band
+    if band is None:
         message = "no band of frequencies is given"
         raise UsageError(Diagnostic("SF804", message, None, "give --band LO HI, or band in [analysis]"))
-    low, high = limits if limits is not None else (float(band[0]), float(band[1])) if band else (0.0, 0.0)
+    low, high = map(float, band)
     if not 0 < low < high < inf:
         message = f"a band runs from a positive to a higher frequency, not from {low:g} to {high:g} Hz"
         raise UsageError(Diagnostic("SF804", message))
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
-    search = _ColocationSearch(tip, joint, phase, magnitude)
-    edge, is_decided, begins, cause = search.first_exit(low, high)
+    within = _Tolerances(_ratio(tip, joint), phase, magnitude)
+    edge, is_decided, begins, cause = _first_exit(within.state, low, high)
     return DynamicColocation(
         tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
     )
 
 
-@dataclass
-class _ColocationSearch:
-    """Follows the ratio of two functions upwards until it leaves the sector."""
+def _ratio(tip: BoundTransferFunction, joint: BoundTransferFunction) -> Callable[[acb], acb]:
+    """Return the ratio with poles that both have cancelled, as far as their factors show."""
+    if tip.ratio.ring != joint.ratio.ring:
+        one, other = tip.enclosed(BITS), joint.enclosed(BITS)
+        return lambda s: one(s) / other(s)
+    # Numerator over numerator where the denominators are the same: no 0/0 at a resonance.
+    ratio = tip.ratio / joint.ratio
+    return tip.enclosed_part(ratio, BITS) if tip.kernels else replace(tip, ratio=ratio).enclosed(BITS)
 
-    tip: BoundTransferFunction
-    joint: BoundTransferFunction
+
+def _first_exit(
+    state_on: Callable[[arb], tuple[int, str]], low: float, high: float
+) -> tuple[arb | None, bool, bool, str]:
+    """Return the frequency of the first exit, whether it is narrow, whether it begins inside, and why."""
+    with precision(BITS):
+        start, end = (float((2 * arb.pi() * arb(x)).mid()) for x in (low, high))
+        state, cause = state_on(arb(start))
+        if state != 1:
+            return None, state == -1, False, cause
+        pending = pieces(start, end, START_RATIO)
+        for _ in range(MOST_INTERVALS):
+            if not pending:
+                return None, True, True, ""
+            spend()
+            left, right = pending.pop()
+            ball = arb(left).union(arb(right))
+            state, cause = state_on(ball)
+            if state == 1:
+                continue
+            if right - left < NARROWEST * right:
+                # It is left within this narrow interval where the other end is outside.
+                after, why = state_on(arb(right * (1 + 4 * NARROWEST)))
+                return ball, after == -1, True, why or cause
+            middle = left + (right - left) / 2
+            pending += [(middle, right), (left, middle)]
+    return ball, False, True, cause
+
+
+@dataclass(frozen=True)
+class _Tolerances:
+    """A sector of phases and magnitudes that a ratio is to stay in."""
+
+    ratio: Callable[[acb], acb]
     phase: float
     magnitude: float
 
-    @cached_property
-    def _ratio(self) -> Callable[[acb], acb]:
-        """The ratio with poles that both have cancelled, as far as their factors show."""
-        # Numerator over numerator where the denominators are the same: no 0/0 at a resonance.
-        ratio = self.tip.ratio / self.joint.ratio if self.tip.ratio.ring == self.joint.ratio.ring else None
-        if ratio is None:
-            one, other = self.tip.enclosed(BITS), self.joint.enclosed(BITS)
-            return lambda s: one(s) / other(s)
-        if not self.tip.kernels:
-            whole = replace(self.tip, ratio=ratio)
-            return whole.enclosed(BITS)
-        return self.tip.enclosed_part(ratio, BITS)
-
-    def first_exit(self, low: float, high: float) -> tuple[arb | None, bool, bool, str]:
-        """Return the frequency of the first exit, whether it is narrow, whether it begins inside, and why."""
-        with precision(BITS):
-            turn = 2 * arb.pi()
-            start, end = (float((turn * arb(x)).mid()) for x in (low, high))
-            state, cause = self._state(arb(start))
-            if state != 1:
-                return None, state == -1, False, cause
-            pending: list[tuple[float, float]] = []
-            reached = start
-            while reached < end:
-                following = min(reached * START_RATIO, end)
-                pending.append((reached, following))
-                reached = following
-            pending.reverse()
-            for _ in range(MOST_INTERVALS):
-                if not pending:
-                    return None, True, True, ""
-                spend()
-                left, right = pending.pop()
-                ball = arb(left).union(arb(right))
-                state, cause = self._state(ball)
-                if state == 1:
-                    continue
-                if right - left < NARROWEST * right:
-                    # It is left within this narrow interval where the other end is outside.
-                    after, why = self._state(arb(right * (1 + 4 * NARROWEST)))
-                    return ball, after == -1, True, why or cause
-                middle = left + (right - left) / 2
-                if not left < middle < right:
-                    return ball, False, True, cause
-                pending += [(middle, right), (left, middle)]
-        return ball, False, True, cause
-
-    def _state(self, omega: arb) -> tuple[int, str]:
+    def state(self, omega: arb) -> tuple[int, str]:
         """Return 1 when the ratio is inside on all of a ball, -1 when outside on all of it, else 0."""
-        value = self._ratio(acb(0, omega))
+        value = self.ratio(acb(0, omega))
         if not value.is_finite():
             return 0, ""
         size = abs(value)
         most = arb(10) ** (arb(self.magnitude) / 20)
         limit = (arb.pi() * arb(self.phase) / 180).tan()
-        above, below = most - size, size - 1 / most
         # Within the sector: abs(Im) <= tan(phase) Re.
-        sideways = limit * value.real - abs(value.imag)
-        if above > 0 and below > 0 and sideways > 0:
+        slacks = {
+            "magnitude": (most - size).min(size - 1 / most),
+            "phase": limit * value.real - abs(value.imag),
+        }
+        if all(slack > 0 for slack in slacks.values()):
             return 1, ""
-        outside = [
-            name
-            for name, slack in (("magnitude", above), ("magnitude", below), ("phase", sideways))
-            if slack < 0
-        ]
-        return (-1, outside[0]) if outside else (0, "")
+        outside = next((name for name, slack in slacks.items() if slack < 0), "")
+        return (-1 if outside else 0), outside

@@ -199,10 +199,7 @@ class DistributedFactors:
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
-        found: list[Crossing] = []
-        for function in self.with_gain:
-            found += self._crossings(function, digits)
-        return found
+        return [c for function in self.with_gain for c in self._crossings(function, digits)]
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
         found: list[Crossing] = []

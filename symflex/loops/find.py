@@ -8,8 +8,9 @@ below one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Final
@@ -120,7 +121,7 @@ def find_stable_gains(
     if loop_gain is not None:
         interval = found.nominal_interval
         if nominal and interval is not None and interval.poles.is_stable:
-            phase_margins = _phase_margins(loop_gain, nominal)
+            phase_margins = loop_gain.margins(nominal)
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
         if is_complete and along is not None and along.is_endless and along.passive:
             beyond = along.passive.least_phase_margin(along.radius[0])
@@ -172,17 +173,16 @@ def _factors(
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
     low, high = _limits(loop, limits, is_distributed=bool(mixed))
-    plain = tuple(factor for factor in plain if factor.degree)
+    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain if factor.degree]
     if not mixed:
-        return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
+        return lumped, None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
         message = f"a loop with beams, rods or delays must be linear in '{loop.gain.name}'"
         hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)
-    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
-    return (lumped, DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to), (low, high))
+    return lumped, DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to), (low, high)
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -230,9 +230,7 @@ class _GainSearch:
     along: DistributedFactors | None
     limits: Limits
     apart: PoleCount  # of poles that no gain moves
-
-    def __post_init__(self) -> None:
-        self.reasons: list[str] = []
+    reasons: list[str] = field(default_factory=list)  # what is not proved
 
     def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
         """Return the boundaries inside the range, and the intervals they part it into.
@@ -296,10 +294,7 @@ def _ball(value: Fraction) -> arb:
 def _hull(group: Sequence[Crossing]) -> arb:
     """Return the narrowest of the enclosures of a gain when there is one, else one that holds all."""
     with precision(max(BITS, *(c.gain.bits() for c in group))):
-        total = group[0].gain
-        for crossing in group[1:]:
-            total = total.union(crossing.gain)
-        return total
+        return reduce(arb.union, (crossing.gain for crossing in group))
 
 
 def _sample(low: arb | None, high: arb | None) -> Fraction:
@@ -358,17 +353,6 @@ def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> Loo
     return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits)
 
 
-def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
-    found = []
-    for omega, ratio in loop_gain.crossovers(nominal):
-        bits = max(BITS, 2 * omega.bits())
-        with precision(bits):
-            # The loop gain is K B/A; its angle beyond that of -1.
-            angle = (-ratio * acb(_ball(nominal))).arg()
-        found.append(PhaseMargin(angle, omega))
-    return tuple(found)
-
-
 @dataclass(frozen=True)
 class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
@@ -377,17 +361,18 @@ class LoopGain:
     along: DistributedFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
 
-    def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
-        """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
+    def margins(self, gain: Fraction) -> tuple[PhaseMargin, ...]:
+        """Return the phase margins where it is one in magnitude, ascending in frequency."""
         if self.along is not None:
-            found = distributed_crossovers(self.along, gain, self.digits)
+            crossovers = distributed_crossovers(self.along, gain, self.digits)
         else:
-            found = lumped_crossovers(self.function, gain, self.digits)
-        return sorted(found, key=lambda pair: float(pair[0].mid()))
-
-    def ratio(self, omega: arb) -> acb:
-        """Return an enclosure of B/A at a frequency [rad/s]."""
-        return _ratio(self.function, omega, BITS)
+            crossovers = lumped_crossovers(self.function, gain, self.digits)
+        found = []
+        for omega, ratio in sorted(crossovers, key=lambda pair: float(pair[0].mid())):
+            with precision(max(BITS, 2 * omega.bits())):
+                # The loop gain is K B/A; its angle beyond that of -1.
+                found.append(PhaseMargin((-ratio * acb(_ball(gain))).arg(), omega))
+        return tuple(found)
 
 
 def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
@@ -468,11 +453,10 @@ def allowed_bandwidth(
     is_limited = begin is not intervals[-1]
     end = Fraction(float(begin.high.mid())) if is_limited or limit is None else limit
     gain = end / MARGIN
-    found = loop_gain.crossovers(gain)
+    found = loop_gain.margins(gain)
     with precision(BITS):
-        size = ball(gain)
-        if not found or not abs(loop_gain.ratio(found[0][0].mid() / 2)) * size > 1:
+        before = _ratio(loop_gain.function, found[0].frequency.mid() / 2, BITS) if found else acb(0)
+        if not abs(before) * ball(gain) > 1:
             return AllowedBandwidth(gain, None, None, is_limited)
-        angles = [(-ratio * acb(size)).arg() for _, ratio in found]
-    worst = min(angles, key=lambda angle: abs(float(angle.mid())))
-    return AllowedBandwidth(gain, found[0][0], worst, is_limited)
+    worst = min(found, key=lambda margin: abs(float(margin.angle.mid())))
+    return AllowedBandwidth(gain, found[0].frequency, worst.angle, is_limited)

@@ -204,18 +204,16 @@ def trace_locus(
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
     # poles accumulate, which no search exhausts.
     reach = max((abs(s) for s in _points(end.poles)), default=0.0) if is_endless else inf
-    known = [_nearest(final, b[-1]) is not None for b in forward]
-    lost = [not k and _is_among(end.excluded, b[-1]) for b, k in zip(forward, known, strict=True)]
-    ends = [
-        b[-1]
-        for b, is_known, is_lost in zip(forward, known, lost, strict=True)
-        if is_known or (not is_lost and abs(b[-1]) < reach)
-    ]
+    ends: list[complex] = []
+    branches: list[tuple[complex, ...]] = []
+    for branch in forward:
+        last = branch[-1]
+        is_known = _nearest(final, last) is not None
+        is_lost = not is_known and _is_among(end.excluded, last)
+        if is_known or (not is_lost and abs(last) < reach):
+            ends.append(last)
+        branches.append(tuple(_before(end.excluded, branch) if is_lost else branch))
     matched = _matched(ends, final)
-    branches = [
-        tuple(_before(end.excluded, branch) if is_lost else branch)
-        for branch, is_lost in zip(forward, lost, strict=True)
-    ]
     lowest = [True] * len(final) if region is None else _lowest(end, wanted)
     kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
     entering: list[tuple[complex, ...]] = []

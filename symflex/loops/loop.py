@@ -94,13 +94,13 @@ def characteristic_loop(
     if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
         message = f"'{gain.name}' is part of a wavenumber, a length or a delay and cannot be a gain"
         raise no_loop("SF801", message, gain)
-    if position is None or not _depends(tf, position):
+    factors = [(f, e, False) for f, e in tf.den.factors]
+    factors += [(h.polynomial, h.multiplicity, True) for h in tf.hidden]
+    if position is None or not any(degree_in(f, position) for f, _, _ in factors):
         message = f"no pole of the model depends on '{gain.name}'"
         raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     bound = _bound(tf, gain, dict(values or {}))
     nominal = dict(bound.values)[gain.name] if gain.value is not None or gain.name in (values or {}) else None
-    factors = [(f, e, False) for f, e in tf.den.factors]
-    factors += [(h.polynomial, h.multiplicity, True) for h in tf.hidden]
     found: list[GainPolynomial] = []
     for factor, exponent, is_hidden in factors:
         pieces = bind_polynomials(tf, bound, tuple(tf.ratio.ring.coefficients(factor, position)))
@@ -113,11 +113,6 @@ def no_loop(code: str, message: str, gain: ModelParameter) -> ModelError:
     """Return what says that a parameter is no gain, and how its poles are followed all the same."""
     hint = f"follow its poles by value: symflex sweep FILE --over {gain.name}=FROM:TO:lin:20"
     return ModelError(Diagnostic(code, message, gain.span, hint))
-
-
-def _depends(tf: TransferFunction, position: int) -> bool:
-    polynomials = [*(f for f, _ in tf.den.factors), *(h.polynomial for h in tf.hidden)]
-    return any(degree_in(f, position) for f in polynomials)
 
 
 def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) -> BoundTransferFunction:

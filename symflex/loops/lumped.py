@@ -49,11 +49,6 @@ class LumpedFactor:
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
 
-    @property
-    def multiplicity(self) -> int:
-        """How often the factor occurs."""
-        return self.factor.multiplicity
-
     @classmethod
     def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:
         """Return a factor without kernels as E and O."""
@@ -87,16 +82,13 @@ class LumpedFactor:
         if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
             return []
         if degree_in(whole[0], W) or len(whole[1]):
-            for gain in self._gains(self.ring.coefficients(whole[0], W)[:1], digits):
-                found.append(Crossing(gain, (arb(0),)))
-        for gain in self._gains([self._leading(whole)], digits):
-            found.append(Crossing(gain, (), is_infinite=True))
+            at_zero = self.ring.coefficients(whole[0], W)[0]
+            found += [Crossing(gain, (arb(0),)) for gain in self._gains(at_zero, digits)]
+        leading = [self._leading(whole)]
         if degree_in(self.common, W):
-            symmetric = [self._leading((self.common, self.common * 0))]
-            found += [Crossing(gain, (), is_infinite=True) for gain in self._gains(symmetric, digits)]
-            found += self._meetings(digits)
-        found += self._on_axis(digits)
-        return found
+            leading.append(self._leading((self.common, self.common * 0)))
+        found += [Crossing(gain, (), is_infinite=True) for f in leading for gain in self._gains(f, digits)]
+        return found + self._meetings(digits) + self._on_axis(digits)
 
     def _meetings(self, digits: int) -> list[Crossing]:
         """Return where poles that mirror each other in the axis meet, on it or beside it."""
@@ -107,15 +99,8 @@ class LumpedFactor:
         slope = simple.derivative(w)
         gains = self._real_roots(simple.discriminant(w), K, digits)
         squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
-        found = []
-        for gain in gains:
-            near = tuple(
-                square.re.sqrt()
-                for square in squares
-                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (simple, slope))
-            )
-            found.append(Crossing(gain.re, near, is_symmetric=True))
-        return found
+        found = ((gain.re, self._frequencies(gain, squares, (simple, slope))) for gain in gains)
+        return [Crossing(gain, near, is_symmetric=True) for gain, near in found]
 
     def _on_axis(self, digits: int) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
@@ -131,18 +116,8 @@ class LumpedFactor:
         name = [str(self.ring.context.gen(i)) for i in (W, K)]
         squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS)
         gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits)
-        found = []
-        for gain in gains:
-            # Which frequencies belong to a gain is told by exclusion: at the others E or O is not 0.
-            near = [
-                square.re
-                for square in squares
-                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (self.even, self.odd))
-            ]
-            if near:
-                with precision(gain.working_bits()):
-                    found.append(Crossing(gain.re, tuple(w.sqrt() for w in near)))
-        return found
+        found = ((gain.re, self._frequencies(gain, squares, (self.even, self.odd))) for gain in gains)
+        return [Crossing(gain, near) for gain, near in found if near]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
@@ -153,6 +128,15 @@ class LumpedFactor:
                 return None
             gain = max(usable, key=lambda ball: ball.rel_accuracy_bits())
             return Crossing(gain, (root.re.sqrt(),))
+
+    def _frequencies(
+        self, gain: Root, squares: Sequence[Root], polynomials: Sequence[fmpz_mpoly]
+    ) -> tuple[arb, ...]:
+        """Return the frequencies that belong to a gain: at the others one of the polynomials is not 0."""
+        positive = [square for square in squares if square.re > 0]
+        near = [w for w in positive if all(self._may_vanish(f, w, gain) for f in polynomials)]
+        with precision(gain.working_bits()):
+            return tuple(square.re.sqrt() for square in near)
 
     def _may_vanish(self, polynomial: fmpz_mpoly, square: Root, gain: Root) -> bool:
         with precision(2 * max(square.working_bits(), gain.working_bits())):
@@ -170,8 +154,8 @@ class LumpedFactor:
         chosen, power = (odd, higher) if len(odd) and 2 * higher + 1 > 2 * high else (even, high)
         return self.ring.coefficients(chosen, W)[power]
 
-    def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int) -> list[arb]:
-        return [root.re for f in polynomials for root in self._real_roots(f, K, digits)]
+    def _gains(self, polynomial: fmpz_mpoly, digits: int) -> list[arb]:
+        return [root.re for root in self._real_roots(polynomial, K, digits)]
 
     def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int) -> list[Root]:
         """Return the real roots of a polynomial in one of w and K; each once."""
@@ -191,7 +175,8 @@ class LumpedFactor:
             message = "it could not be decided on which side of the imaginary axis a pole lies"
             raise UncertifiedError(Diagnostic("SF802", message))
         axis = sum(root.multiplicity for root in roots if root.on_imaginary_axis)
-        return PoleCount(count_right(roots) * self.multiplicity, axis * self.multiplicity)
+        times = self.factor.multiplicity
+        return PoleCount(count_right(roots) * times, axis * times)
 
     def _polynomial(self, coefficients: Sequence[fmpz_mpoly]) -> PolynomialInS:
         small = Ring(self.ring.names[2:])

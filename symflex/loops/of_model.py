@@ -118,5 +118,4 @@ def colocation(model: Model, given: ColocationOptions) -> DynamicColocation:
     tip, joint = derive_bound(model, pick_pairs(model, [given.tf, given.reference]))
     phase = tolerance(given.phase, "--phase", ("deg", "°"), "10 deg")
     magnitude = tolerance(given.magnitude, "--magnitude", ("dB",), "1 dB")
-    limits = None if band is None else (float(band[0]), float(band[1]))
-    return dynamic_colocation(tip, joint, phase, magnitude, limits)
+    return dynamic_colocation(tip, joint, phase, magnitude, band)

@@ -424,9 +424,7 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
 def _status(found: StabilityMap) -> str:
     if found.certified:
         if found.margin_beyond is not None:
-            return "certified: the loop is passive, K acts as a spring and a damper".replace(
-                "K", found.gain, 1
-            )
+            return f"certified: the loop is passive, {found.gain} acts as a spring and a damper"
         return "certified: all poles right of the imaginary axis counted"
     if not found.is_complete and found.radius is not None:
         return f"NOT CERTIFIED beyond {found.radius / (2 * pi):.4g} Hz: poles are counted up to there"

@@ -56,7 +56,6 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
     'hold = { type = "fixed", at = "x" }'
     """
     name = _free_name(model)
-    nodes = {n.name: n for n in model.nodes}
     if len(coordinates) == PAIR:
         (first, _), (second, _) = coordinates
         references = {"from": _reference(first), "to": _reference(second)}
@@ -71,7 +70,7 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
         words = f"{first} and {second} locked to each other"
         return Constraint(_with(model, placed), f"{first} - {second} = 0", words, spec)
     ((variable, _),) = coordinates
-    domain = nodes[variable.owner].domain
+    domain = next(n.domain for n in model.nodes if n.name == variable.owner)
     kind = {"y": "pin", "theta": "slider"}.get(variable.component if domain == "planar" else "", "fixed")
     reference = NodeReference(variable.owner)
     if domain == "plane":
@@ -141,14 +140,9 @@ class ReplacedCondition:
     """A field's condition that gives way to one that keeps an output at zero."""
 
     field: FieldProblem  # as it was
-    number: int  # which condition holds the input
+    loaded: Equation  # its condition that holds the input
     measured: Call  # the value of the field that the output shows
     constraint: Constraint  # the model with the condition replaced
-
-    @property
-    def loaded(self) -> Equation:
-        """The condition that holds the input."""
-        return self.field.conditions[self.number]
 
     @property
     def is_dual(self) -> bool:
@@ -185,20 +179,15 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     rest = [n for n in names(output) if not isinstance(n, Call)]
     if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in rest):
         return None
-    places = [
-        (field, i)
-        for field in model.fields
-        for i, condition in enumerate(field.conditions)
-        if holds(condition, source.name)
-    ]
+    places = [(f, c) for f in model.fields for c in f.conditions if holds(c, source.name)]
     if len(places) != 1 or sum(holds(e, source.name) for _, e in expressions_of(model)) != 1:
         return None
-    ((field, number),) = places
+    ((field, loaded),) = places
     zero = Equation(calls[0], Number(Fraction(0)))
-    conditions = tuple(zero if i == number else c for i, c in enumerate(field.conditions))
+    conditions = tuple(zero if c is loaded else c for c in field.conditions)
     changed = replace(field, conditions=conditions)
     fields = tuple(changed if f is field else f for f in model.fields)
     held = format_expression(zero)
-    words = f"{held} in place of {format_expression(field.conditions[number])}"
+    words = f"{held} in place of {format_expression(loaded)}"
     constraint = Constraint(replace(model, fields=fields), held, words, f'"{held}"')
-    return ReplacedCondition(field, number, calls[0], constraint)
+    return ReplacedCondition(field, loaded, calls[0], constraint)

@@ -109,20 +109,13 @@ def holds(expression: Expression, name: str) -> bool:
 
 def _at(model: Model, references: tuple[NodeReference, ...], domain: Domain) -> Coordinates:
     nodes = {n.name: n for n in model.nodes}
-    signs = (1, -1)
     found = [
         (variable_of(r, nodes[r.node], domain), sign)
-        for r, sign in zip(references, signs, strict=False)
+        for r, sign in zip(references, (1, -1), strict=False)
         if not r.is_ground
     ]
-    return same_sign(tuple(found))
-
-
-def same_sign(coordinates: Coordinates) -> Coordinates:
-    """Return the coordinates in the order of their names, the first with a plus."""
-    ordered = sorted(coordinates, key=lambda found: str(found[0]))
-    lead = ordered[0][1] if ordered else 1
-    return tuple((v, sign * lead) for v, sign in ordered)
+    found.sort(key=lambda coordinate: str(coordinate[0]))
+    return tuple((v, sign * found[0][1]) for v, sign in found)
 
 
 def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
@@ -140,13 +133,13 @@ def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
 def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Factored] | None:
     """Return a form with its signals replaced by what they equal, ``None`` where they form a loop."""
     laws = {row.about: row.form for row in equations.rows if row.role == "signal"}
-    terms = _collected(form)
+    terms = collected(form)
     for _ in range(len(laws) + 1):
         found = next((v for v in terms if v in laws), None)
         if found is None:
             return terms
         coefficient = terms.pop(found)
-        law = _collected(laws[found])
+        law = collected(laws[found])
         own = law.pop(found, None)
         if own is None:
             return None
@@ -157,7 +150,8 @@ def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Facto
     return None
 
 
-def _collected(form: LinearForm) -> dict[Variable, Factored]:
+def collected(form: LinearForm) -> dict[Variable, Factored]:
+    """Return the coefficient of every variable in a form, those that are zero left out."""
     found: dict[Variable, Factored] = {}
     for variable, coefficient in form.terms:
         found[variable] = found[variable] + coefficient if variable in found else coefficient

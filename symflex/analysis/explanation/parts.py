@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.propagators import EXPONENTIAL
+from symflex.analysis.explanation.coordinates import collected
 from symflex.equations.elimination import Determinants
 from symflex.library.elements import COMPONENTS, EquationRow, LinearForm, Variable
 from symflex.library.elements.rigid import Fixed, Pin, Slider
@@ -76,14 +77,9 @@ class _Matrix:
         unknowns = set(equations.unknowns)
         rows, driven = {}, set()
         for i, row in enumerate(equations.rows):
-            collected: dict[Variable, Factored] = {}
-            for variable, coefficient in row.form.terms:
-                if variable.kind == "input" and variable.owner == source:
-                    driven.add(i)
-                if variable in unknowns:
-                    known = collected.get(variable)
-                    collected[variable] = coefficient if known is None else known + coefficient
-            rows[i] = {v: c for v, c in collected.items() if not c.is_zero}
+            if any(v.kind == "input" and v.owner == source for v, _ in row.form.terms):
+                driven.add(i)
+            rows[i] = {v: c for v, c in collected(row.form).items() if v in unknowns}
         return _Matrix(equations, rows, driven, set())
 
     def settle(self) -> None:
@@ -178,12 +174,16 @@ def _determinant(
 
 def _order(equations: Equations, determinant: Factored) -> int | None:
     """Return the degree in s, ``None`` of what holds waves."""
-    ring, waves = equations.ring, equations.propagation
-    names = [] if waves is None else [*waves.table.wavenumbers, *(p.generator for p in waves.propagators)]
-    if any(determinant.depends_on(name) for name in names):
+    if any(determinant.depends_on(name) for name in waves_of(equations)):
         return None
-    s = ring.index[LAPLACE]
+    s = equations.ring.index[LAPLACE]
     return sum(degree_in(f, s) * e for f, e in determinant.factors)
+
+
+def waves_of(equations: Equations) -> list[str]:
+    """Return the names of wavenumbers, and of what they are arguments of."""
+    waves = equations.propagation
+    return [] if waves is None else [*waves.table.wavenumbers, *(p.generator for p in waves.propagators)]
 
 
 def _is_in(model: Model, use: PlacedElement, variables: set[Variable]) -> bool:
@@ -288,11 +288,7 @@ def _composed(images: Sequence[Factored], value: Factored, names: Sequence[str])
 
 def varying(equations: Equations, value: Factored) -> Factored:
     """Return the factors that depend on s; exponentials are left out, for they have no zeros."""
-    ring, waves = equations.ring, equations.propagation
-    places = [ring.index[LAPLACE]]
-    if waves is not None:
-        places += [ring.index[w] for w in waves.table.wavenumbers]
-        places += [ring.index[p.generator] for p in waves.propagators]
+    places = [equations.ring.index[name] for name in (LAPLACE, *waves_of(equations))]
     decays = exponentials(equations)
     return value.filter(lambda f: f not in decays and any(degree_in(f, i) for i in places))
 

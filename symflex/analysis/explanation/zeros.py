@@ -36,6 +36,7 @@ from symflex.analysis.explanation.parts import (
     relate,
     separate,
     varying,
+    waves_of,
 )
 from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
 from symflex.equations import Equations
@@ -232,8 +233,9 @@ def _by_terminals(case: _Case) -> ZeroExplanation | None:
     relation = relate(case.whole, case.pair, one, held)
     if relation is None or not relation.apart.is_constant:
         return None
-    order = relation.transmission.exponent_of(case.equations.ring.generator(LAPLACE))
-    if relation.transmission.filter(lambda f: f != case.equations.ring.generator(LAPLACE)).factors:
+    s = case.equations.ring.generator(LAPLACE)
+    order = relation.transmission.exponent_of(s)
+    if any(f != s for f, _ in relation.transmission.factors):
         return None
     kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
     plain = case.explained(kind, "proved", constraint, is_direct=True, order=order)
@@ -249,9 +251,7 @@ def _text(equations: Equations, value: Factored) -> str:
         return ""
     names = {c.generator: c.expression for c in equations.constants}
     arranger = Arranger.plain(equations.ring, names)
-    waves = equations.propagation
-    hidden = () if waves is None else (*waves.table.wavenumbers, *(p.generator for p in waves.propagators))
-    if any(value.depends_on(name) for name in hidden):
+    if any(value.depends_on(name) for name in waves_of(equations)):
         return "..."
     factors = [power(arranger.collected(f), e) for f, e in value.factors]
     text = format_expression(product_of(factors))

@@ -6,7 +6,7 @@ of the null space of one that is singular somewhere in its balls.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from flint import acb, acb_mat, arb, arb_mat
 from symflex.algebra import LAPLACE, Factored, composed
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
-from symflex.balls import at_centre, balancing, binary_exponent
+from symflex.balls import at_centre, balancing, binary_exponent, current_bits
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.enclose import enclose, enclosure, evaluated
 from symflex.transfer.enclose_kernels import fundamental_functions
@@ -199,42 +199,22 @@ class BoundEquations:
 class ContinuumAt:
     """A distributed part's field equations at one s."""
 
-    name: str
-    kind: str
-    states: tuple[str, ...]
-    matrix: tuple[tuple[acb, ...], ...]
-    load_columns: tuple[tuple[acb, ...], ...]
-    start: arb
-    length: arb
+    at_rest: DistributedShape
+    load_columns: tuple[tuple[acb, ...], ...]  # none where coefficients vary along x
     initial: tuple[Variable | None, ...]
     loads: tuple[Variable, ...]
-    direction: tuple[arb, ...]
-    varying: VaryingCarrier | None  # where coefficients vary along x, and the matrices are empty
 
-    def shape(self, values: Mapping[Variable, acb], bits: int) -> DistributedShape:
+    def shape(self, values: Mapping[Variable, acb]) -> DistributedShape:
         """Return how it moves when the unknowns have these values; inputs are at rest."""
         initial = tuple(acb(0) if v is None else values[v] for v in self.initial)
-        load = [acb(0)] * len(self.states)
-        for variable, column in zip(self.loads if self.load_columns else (), self.load_columns, strict=True):
-            if variable in values:
-                load = [x + b * values[variable] for x, b in zip(load, column, strict=True)]
-        matrix, states = self.matrix, self.states
-        if self.varying is not None:
-            load = [values.get(variable, acb(0)) for variable in self.loads]
-            initial = self.varying.started(initial)
-        within = (self.start, self.length)
-        return DistributedShape(
-            self.name,
-            self.kind,
-            states,
-            matrix,
-            tuple(load),
-            initial,
-            *within,
-            bits,
-            self.direction,
-            self.varying,
-        )
+        load = [values.get(variable, acb(0)) for variable in self.loads]
+        varying = self.at_rest.varying
+        if varying is not None:
+            return replace(self.at_rest, load=tuple(load), initial=varying.started(initial))
+        total = self.at_rest.load
+        for size, column in zip(load if self.load_columns else (), self.load_columns, strict=True):
+            total = tuple(x + b * size for x, b in zip(total, column, strict=True))
+        return replace(self.at_rest, load=total, initial=initial)
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,17 +278,21 @@ def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
     if continuum.parts:
         parts = tuple((states, laws[law]) for states, law in continuum.parts)
         varying = VaryingCarrier(parts, values[LAPLACE], len(system.states))
-    matrix, loads = (() if varying else x for x in (system.matrix, system.loads))
-    return ContinuumAt(
+    matrix, loads = (
+        tuple(tuple(_evaluated(x, values) for x in row) for row in (() if varying else rows))
+        for rows in (system.matrix, system.loads)
+    )
+    at_rest = DistributedShape(
         continuum.name,
         continuum.kind,
         system.states,
-        tuple(tuple(_evaluated(x, values) for x in row) for row in matrix),
-        tuple(tuple(_evaluated(x, values) for x in column) for column in loads),
+        matrix,
+        (acb(0),) * len(system.states),
+        (),
         _evaluated(continuum.start, values).real,
         _evaluated(continuum.length, values).real,
-        continuum.initial,
-        continuum.loads,
+        current_bits(),
         () if axes is None else tuple(_evaluated(x, values).real for x in (axes.cos, axes.sin)),
         varying,
     )
+    return ContinuumAt(at_rest, loads, continuum.initial, continuum.loads)

@@ -47,8 +47,6 @@ DIMENSIONS = 6
 NEAR = 1e-8
 """Relative distance within which two estimates are the same root."""
 NEIGHBOURHOOD = Fraction(1, 4)
-WIDER = 2**8
-"""Times the radius within which an estimated pole is taken to lie."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,11 +175,8 @@ class _ModeSearch:
     def numbered(self, number: int, digits: int) -> tuple[Root, int]:
         """Return the pole of a mode, and which of its modes it is."""
         if number < 0:
-            raise UsageError(
-                Diagnostic(
-                    "SF902", f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}"
-                )
-            )
+            message = f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}"
+            raise UsageError(Diagnostic("SF902", message))
         found = self.map(Modes(max(number, 1)), digits)
         poles = found.poles
         if number == 0:
@@ -256,7 +251,7 @@ class _ModeSearch:
                 if not space.is_refuted:
                     basis = _tidied(space.basis, system.unknowns, self._units)
                     is_proved = dimension == 1 and root.certified
-                    raw = [self._shape(root, system, values, bits, is_proved) for values in basis]
+                    raw = [self._shape(root, system, values, is_proved) for values in basis]
                     scaled = [normalised(shape, digits) for shape in raw]
                     return tuple(x for x in scaled if x is not None) if None not in scaled else ()
                 if dimension == 1:
@@ -268,16 +263,16 @@ class _ModeSearch:
         return ()
 
     def _shape(
-        self, root: Root, system: SystemAt, values: Sequence[acb], bits: int, is_proved: bool
+        self, root: Root, system: SystemAt, values: Sequence[acb], is_proved: bool
     ) -> EnclosedModeShape:
         known = dict(zip(system.unknowns, values, strict=True))
-        starts = {part.name: float(part.start.mid()) for part in system.continua}
+        distributed = tuple(part.shape(known) for part in system.continua)
+        starts = {part.name: float(part.start.mid()) for part in distributed}
         motions = tuple(
             Motion(_name(variable, starts), variable, value, self._units[variable])
             for variable, value in known.items()
             if variable.kind != "value"
         )
-        distributed = tuple(part.shape(known, bits) for part in system.continua)
         return EnclosedModeShape(root, motions, distributed, "", is_proved)
 
 

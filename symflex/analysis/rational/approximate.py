@@ -245,11 +245,11 @@ def product_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Appro
             gain = gain if pole == 0 else gain * -pole
         for zero in zeros:
             gain = gain if zero == 0 else gain / -zero
-        num, den = (
-            exact_coefficients(bound)
-            if kept.is_exact
-            else (_real_coefficients(_from_roots(zeros) * gain), _real_coefficients(_from_roots(poles)))
-        )
+        if kept.is_exact:
+            num, den = exact_coefficients(bound)
+        else:
+            sides = (acb_poly.from_roots(zeros) * gain, acb_poly.from_roots(poles))
+            num, den = map(_real_coefficients, sides)
     function = (tuple(map(to_complex_mpmath, poles)), tuple(map(to_complex_mpmath, zeros)), num[0], num, den)
     evaluator = RationalEvaluator(order, complex(start.coefficients[0].mid()), _array(poles), _array(zeros))
     return Approximant(*function, evaluator, is_estimate=start.is_estimate)
@@ -262,54 +262,45 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
     of G at s = 0, the correction is g_0 minus what the poles other than 0 contribute at s = 0. SF405 when a
     residue cannot be told.
     """
-    highest = kept.excess
     residues = residues_at(bound, kept.poles, digits)
-    start = expand_at_zero(bound, highest, digits)
+    start = expand_at_zero(bound, kept.excess, digits)
     roots = _repeated(kept.poles)
+    terms = [(found, power, c) for found in residues for power, c in enumerate(found.coefficients, 1)]
     with precision(BITS + BITS_PER_ROOT * len(roots)):
-        correction = [start.coefficient(i) for i in range(highest + 1)]
-        whole = _from_roots(roots)
+        correction = [start.coefficient(i) for i in range(kept.excess + 1)]
+        whole = acb_poly.from_roots(roots)
         num = acb_poly([0])
-        for residue in residues:
-            for power, coefficient in enumerate(residue.coefficients, 1):
-                if not residue.root.is_zero:
-                    correction = [
-                        c - coefficient * _taylor(residue.pole, power, i) for i, c in enumerate(correction)
-                    ]
-        for residue in residues:
-            others = _from_roots(_repeated([r for r in kept.poles if r is not residue.root]))
-            own = acb_poly([-residue.root.enclosure(), 1])
-            multiplicity = residue.root.multiplicity
-            for power, coefficient in enumerate(residue.coefficients, 1):
-                num = num + others * own ** (multiplicity - power) * coefficient
+        for residue, power, coefficient in terms:
+            root = residue.root
+            if not root.is_zero:
+                correction = [
+                    c - coefficient * _taylor(residue.pole, power, i) for i, c in enumerate(correction)
+                ]
+            others = acb_poly.from_roots(_repeated([r for r in kept.poles if r is not root]))
+            own = acb_poly([-root.enclosure(), 1])
+            num = num + others * own ** (root.multiplicity - power) * coefficient
         correction = [acb(about_zero(c.real)) for c in correction]
         num = num + whole * acb_poly(correction)
         if start.order > 0:
             num = num - acb_poly([num.coeffs()[0].mid()])
-        above, below = _real_coefficients(num), _real_coefficients(whole)
         if kept.is_exact:
             above, below = exact_coefficients(bound)
-            zeros = tuple(map(to_complex_mpmath, _repeated(kept.zeros)))
+            zeros = _repeated(kept.zeros)
         else:
-            zeros = tuple(map(to_complex_mpmath, _zeros_of(num.coeffs()[: len(above)])))
-    terms = tuple(
-        (complex(residue.root.enclosure().mid()), power, complex(coefficient.mid()))
-        for residue in residues
-        for power, coefficient in enumerate(residue.coefficients, 1)
-    )
-    polynomial = tuple(float(c.real.mid()) for c in correction)
+            above, below = _real_coefficients(num), _real_coefficients(whole)
+            zeros = _zeros_of(num.coeffs()[: len(above)])
     evaluator = RationalEvaluator(
         start.order,
         complex(start.coefficients[0].mid()),
         _array(roots),
         np.empty(0, dtype=complex),
-        terms,
-        polynomial,
+        tuple((complex(r.root.enclosure().mid()), power, complex(c.mid())) for r, power, c in terms),
+        tuple(float(c.real.mid()) for c in correction),
     )
     is_estimate = start.is_estimate or any(residue.is_estimate for residue in residues)
     constants = tuple(to_mpmath(c.real) for c in correction)
-    function = (tuple(map(to_complex_mpmath, roots)), zeros, above[0], above, below)
-    return Approximant(*function, evaluator, residues, constants, is_estimate)
+    function = (tuple(map(to_complex_mpmath, roots)), tuple(map(to_complex_mpmath, zeros)), above[0])
+    return Approximant(*function, above, below, evaluator, residues, constants, is_estimate)
 
 
 FORMS: dict[str, Form] = {"product": product_form, "modal": modal_form}
@@ -326,10 +317,6 @@ def _repeated(roots: Sequence[Root]) -> list[acb]:
 
 def _array(roots: Sequence[acb]) -> np.ndarray[tuple[int], np.dtype[np.complex128]]:
     return np.array([complex(root) for root in roots if root != 0], dtype=np.complex128)
-
-
-def _from_roots(roots: Sequence[acb]) -> acb_poly:
-    return acb_poly.from_roots(roots) if roots else acb_poly([1])
 
 
 def _real_coefficients(polynomial: acb_poly) -> tuple[mpmath.mpf, ...]:

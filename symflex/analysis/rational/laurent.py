@@ -223,10 +223,11 @@ def expand_at_pole(
                 known = _expanded(above, below, root, is_refined=is_refined)
                 if known is None:
                     continue
-                pole, found, extra, usual = known
+                pole, found, extra = known
                 if root.is_real:
                     found = [acb(c.real) for c in found]
-                if _is_accurate(found, digits, bits, usual):
+                is_known = _is_accurate(found, digits, bits)
+                if is_known or (bits >= DETECTION_BITS and _is_unseen(found, above, below, pole, extra)):
                     found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
                     return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
     re, im = float(root.re.mid()), float(root.im.mid())
@@ -257,18 +258,25 @@ def _network_sides(sides: NetworkSides, digits: int) -> Iterator[tuple[int, tupl
 
 def _expanded(
     above: Taylor, below: Taylor, root: Root, *, is_refined: bool
-) -> tuple[acb, list[acb], int, arb] | None:
-    """Return a pole, refined or as it is, its principal part, how many zeros lie on top of it, and a size.
-
-    The size is that which the coefficients would have if no further zero were near.
-    """
+) -> tuple[acb, list[acb], int] | None:
+    """Return a pole, refined or as it is, its principal part, and how many zeros lie on top of it."""
     for extra in range(COINCIDENT + 1):
         order = root.multiplicity + extra
         pole = _refined(below, root, order) if is_refined else _on_axis(root, root.enclosure())
         found = principal_part(above, below, pole, root.multiplicity, extra)
         if found is not None:
-            return pole, found[0], extra, found[1]
+            return pole, found, extra
     return None
+
+
+def _is_unseen(found: Sequence[acb], above: Taylor, below: Taylor, pole: acb, extra: int) -> bool:
+    """Tell whether a principal part is next to nothing beside what it is where no zero is near."""
+    first = len(found) + extra
+    num, den = above(pole, first + 1), below(pole, first + 1)
+    if num is None or den is None:
+        return False
+    nothing = abs(num[first] * pole ** len(found) / den[first]).mid() * arb(2) ** (-(current_bits() // 3))
+    return all(c.abs_upper() < nothing for c in found)
 
 
 def _refined(below: Taylor, root: Root, order: int) -> acb:
@@ -295,8 +303,8 @@ def _on_axis(root: Root, ball: acb) -> acb:
 
 def principal_part(
     above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int = 0
-) -> tuple[list[acb], arb] | None:
-    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``, and their usual size.
+) -> list[acb] | None:
+    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``.
 
     So many zeros are ``extra``, on top of as many poles.
     """
@@ -308,8 +316,7 @@ def principal_part(
     if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
         return None
     found = series_quotient(num[extra:], den[first:], multiplicity)
-    usual = abs(num[first] * pole**multiplicity / den[first]).mid()
-    return (found, usual) if all(c.is_finite() for c in found) else None
+    return found if all(c.is_finite() for c in found) else None
 
 
 def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> list[acb] | None:
@@ -378,15 +385,12 @@ def _fraction(value: Factored) -> arb:
     return arb(value.unit.numerator) / arb(value.unit.denominator)
 
 
-def _is_accurate(coefficients: Sequence[acb], digits: int, bits: int, usual: arb | int = 0) -> bool:
-    """Tell whether every coefficient has its digits, or is next to nothing beside the largest.
-
-    A mode that the output does not see has no large one: it is next to nothing beside what is ``usual``.
-    """
+def _is_accurate(coefficients: Sequence[acb], digits: int, bits: int) -> bool:
+    """Tell whether every coefficient has its digits, or is next to nothing beside the largest."""
     wanted = bits_for_digits(digits)
     if not all(c.is_finite() for c in coefficients):
         return False
-    largest = arb(usual if bits >= DETECTION_BITS else 0)
+    largest = arb(0)
     for c in coefficients:
         largest = largest.max(abs(c).mid())
     nothing = largest * arb(2) ** (-(bits // 3))

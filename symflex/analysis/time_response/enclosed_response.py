@@ -11,6 +11,7 @@ import numpy as np
 from flint import arb
 
 from symflex.errors import Diagnostic, UsageError
+from symflex.print.text import aligned
 from symflex.roots.root import RootDecimals, decimals
 
 if TYPE_CHECKING:
@@ -184,8 +185,7 @@ def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     rows = [("t [s]", "value", "radius")]
     for i in range(0, count, step):
         rows.append((f"{found.times[i]:.6g}", *_told(found.enclosures[i], found.digits)))
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
+    lines += aligned(rows, "  ")
     if step > 1:
         lines += ["", f"  every {step} of {count} points; --json and -o FILE.csv have them all"]
     return "\n".join(lines)

@@ -12,6 +12,7 @@ one duration, so the sum is a product of two polynomials, in balls.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import gcd, lcm
@@ -21,7 +22,6 @@ import numpy as np
 from flint import arb, arb_poly
 
 from symflex.analysis.response import real_numbers
-from symflex.analysis.time_response.enclosed_response import EnclosedResponse
 from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
 from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt
@@ -29,7 +29,6 @@ from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.options import exact
-from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +36,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.time_response.enclosed_response import EnclosedResponse
     from symflex.transfer import BoundTransferFunction
 
 MORE_DIGITS = 10
@@ -107,20 +107,17 @@ def forced_response(
             jumps = tuple(JumpAt(j.time + origin, j.height * begun) for j in sudden.jumps)
         found = tuple(total[i] if i >= 0 else arb(0) for i in moments)
     reason = next((r for r in reasons if r is not None), None)
-    return EnclosedResponse(
-        bound.name,
-        FORCED,
-        unit_of_response(bound.source.output, bound.source.input),
-        np.array([float(t) for t in times]),
-        found,
-        impulses,
-        jumps,
-        reason is None,
-        reason,
-        digits,
-        ramp.shaper,
-        method=ramp.method,
-        refused=ramp.refused,
+    return replace(
+        ramp,
+        input=FORCED,
+        times=np.array([float(t) for t in times]),
+        enclosures=found,
+        impulses=impulses,
+        jumps=jumps,
+        certified=reason is None,
+        reason=reason,
+        digits=digits,
+        modes=None,
     )
 
 

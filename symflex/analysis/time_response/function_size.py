@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, pi
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar
 
 from flint import acb, acb_series, arb
 
 from symflex.algebra.exponential_sum import REAL
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.analysis.time_response.sampled import ZERO
 from symflex.balls import UndecidedError, at_centre, ball, covered, precision
 from symflex.budget import spend
 from symflex.roots.counting.argument_principle import LogarithmicLine
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
     from symflex.roots import Root
     from symflex.roots.counting.winding import Cell
     from symflex.transfer import BoundTransferFunction
-
-
-ZERO: Final = arb(0)
 
 
 @dataclass(frozen=True, slots=True)

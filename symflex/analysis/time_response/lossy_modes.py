@@ -32,8 +32,8 @@ from typing import TYPE_CHECKING, ClassVar
 from flint import arb
 
 from symflex.analysis.time_response.effort import EFFORT
-from symflex.analysis.time_response.function_size import ZERO, BoundBySize, Rest, SizeOfExponentials
-from symflex.analysis.time_response.sampled import Refused
+from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
+from symflex.analysis.time_response.sampled import ZERO, Refused
 from symflex.balls import ball, precision
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
 from symflex.roots.functions.kernel_function import KernelFunction

@@ -139,10 +139,10 @@ def partial_fractions(
     found = []
     for pole, order, share in places:
         above, below = (partial(_taylor, side) for side in (divided.above, divided.below))
-        part = principal_part(above, below, pole, order)
-        if part is None:
+        coefficients = principal_part(above, below, pole, order)
+        if coefficients is None:
             return None
-        found.append(ExponentialTerm(pole, tuple(c * divided.unit * share for c in part[0][::-1])))
+        found.append(ExponentialTerm(pole, tuple(c * divided.unit * share for c in coefficients[::-1])))
     return found
 
 
