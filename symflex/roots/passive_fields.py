@@ -299,8 +299,14 @@ def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tupl
     unit = [[zero + int(i == j) for j in range(n)] for i in range(n)]
     # Finite solutions at a tip are told in the field's own states.
     if None not in field.initial:
-        if n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
-            yield from ((*each, None) for each in _bent(matrix, unit))
+        if n % BEAM == 0 and all(_is_slope(matrix, i) for i in range(n) if i % BEAM != BEAM - 1):
+            beams = range(0, n, BEAM)
+            # The moment turns, and the shear force moves against its sign.
+            pairs = [
+                tuple(pair for i in beams for pair in ((i + 1, i + 2, sign), (i, i + 3, -sign)))
+                for sign in (1, -1)
+            ]
+            yield from ((*each, None if n <= MOST_STATES else pairs) for each in _bent(matrix, unit))
         elif all(_is_slope(matrix, i) for i in range(0, n, 2)):
             m = n // 2
             pairs = [tuple((i, m + i, sign) for i in range(m)) for sign in (1, -1)]
@@ -378,17 +384,29 @@ def _moves(value: Factored) -> bool:
 def _bent(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
     """Yield w'''' = a w'' + a' w' + b w as (w'')'' - (a w')' - b w = 0, whose force is w''' - a w'.
 
-    All of it is multiplied by what it was divided by, so that a loss stays with its stiffness.
+    All of it is multiplied by what it was divided by, so that a loss stays with its stiffness. Several beams
+    may be joined along x, each b being a matrix.
     """
-    load, slope, tension, odd = matrix[-1]
-    zero, common = load * 0, load.denominator()
-    change = tension.slope(COORDINATE) if _moves(tension) else zero
-    if load.is_zero or _moves(common) or not odd.is_zero or not (slope - change).is_zero:
-        return
-    held = tension * common
-    states = [*unit[:2], [zero, zero, common, zero], [zero, -held, zero, common]]
-    bent = [zero, zero, 1 / common, zero]
-    yield [unit[1], bent, [zero, held, zero, zero + 1], [load * common, zero, zero, zero]], states
+    zero, rows, states = matrix[0][0] * 0, [], []
+    for i in range(0, len(matrix), BEAM):
+        law = list(matrix[i + BEAM - 1])
+        load, slope, tension, odd = law[i : i + BEAM]
+        change = tension.slope(COORDINATE) if _moves(tension) else zero
+        common = load.denominator()
+        law[i + 1] = law[i + 2] = zero
+        alone = all(x.is_zero for j, x in enumerate(law) if j % BEAM)
+        if load.is_zero or _moves(common) or not odd.is_zero or not (slope - change).is_zero or not alone:
+            return
+        held = [x * tension * common for x in unit[i + 1]]
+        force = [x * common for x in unit[i + 3]]
+        states += [*unit[i : i + 2], [x * common for x in unit[i + 2]], _less(force, held)]
+        bent, carried = [x / common for x in unit[i + 2]], _less(unit[i + 3], [-x for x in held])
+        rows += [unit[i + 1], bent, carried, [x * common for x in law]]
+    yield rows, states
+
+
+def _less(one: Sequence[Factored], other: Sequence[Factored]) -> list[Factored]:
+    return [x - y for x, y in zip(one, other, strict=True)]
 
 
 def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:

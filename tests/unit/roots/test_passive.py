@@ -658,6 +658,14 @@ TOGETHER = {
             "b'(l) = 0",
         ],
     ),
+    "beams": (SANDWICH, BOTH_PINNED),
+    "beams that are pulled, the second of them twice as stiff, and a layer that is lossy": (
+        [
+            "EI*u'''' - T*u'' + rhoA*s^2*u + (k/l + c*s)*(u - h) = 0",
+            "2*EI*h'''' + rhoA*s^2*h + (k/l + c*s)*(h - u) = 0",
+        ],
+        [x.replace("EI*u''(l) = F*l", "u''(l) = F*l/EI") for x in BOTH_PINNED],
+    ),
     "strings with a mass of both": (["T*u'' = 2*rhoA*s^2*u + rhoA*s^2*h", "T*h'' = rhoA*s^2*(u + h)"], LOOSE),
 }
 APART = {
@@ -669,6 +677,12 @@ APART = {
     "more mass of both than of each": (
         ["T*u'' = rhoA*s^2*u + 2*rhoA*s^2*h", "T*h'' = rhoA*s^2*h + 2*rhoA*s^2*u"],
         LOOSE,
+    ),
+    "beams and a layer without reaction": ([SANDWICH[0], SANDWICH[1].replace("h - u", "h")], BOTH_PINNED),
+    "beams and a layer that pushes": ([x.replace("k/l", "-k/l") for x in SANDWICH], BOTH_PINNED),
+    "beams of which one end pushes": (
+        SANDWICH,
+        [*BOTH_PINNED[:2], "EI*u''(l) = F*l", "EI*u'''(l) + k*u(l) = 0", *BOTH_PINNED[4:]],
     ),
     "columns": (
         [x.replace(" = 0", f" + 9*T*{u}'' = 0") for x, u in zip(SANDWICH, "uh", strict=True)],
