@@ -86,14 +86,9 @@ def find_specifications(
                     hint = "--allow-outside FOLDER lets a report read another folder"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
             if not inside:
-                raise UsageError(
-                    Diagnostic(
-                        "SF902",
-                        f"the folder '{path}' holds no specification",
-                        None,
-                        "a specification is a file whose name ends in .toml",
-                    )
-                )
+                message = f"the folder '{path}' holds no specification"
+                hint = "a specification is a file whose name ends in .toml"
+                raise UsageError(Diagnostic("SF902", message, None, hint))
             found += inside
         elif path.suffix.lower() in DATA_SUFFIXES:
             message = f"'{path}' is a file of measured data, not a specification"
