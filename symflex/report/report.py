@@ -255,8 +255,7 @@ def _in_processes(
                     # Processes in an operation that cannot be asked end with this one.
                     pool.shutdown(wait=False, cancel_futures=True)
                     for stem in waiting.values():
-                        reason = TIME_OVER.message
-                        code = BudgetError.exit_code
+                        reason, code = TIME_OVER.message, BudgetError.exit_code
                         done[stem] = failed_chapter(named[stem], stem, reason, code, allow_outside)
                     break
                 for future in wait(waiting, min(TICK, time.left or TICK), FIRST_COMPLETED).done:
