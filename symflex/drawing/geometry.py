@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
 Point = tuple[float, float]
 
@@ -144,27 +144,22 @@ class Placed:
 
     def scaled(self, by: float) -> Placed:
         """Return the part larger or smaller, with its strokes and type."""
-        return replace(
-            self,
-            strokes=tuple(
-                replace(s, points=tuple((by * x, by * y) for x, y in s.points), width=by * s.width)
-                for s in self.strokes
-            ),
-            texts=tuple(
-                Lettering(t.markup, *(by * v for v in (t.x, t.y, t.width, t.height, t.depth, t.size)))
-                for t in self.texts
-            ),
-        )
+        sizes = ((t, (t.x, t.y, t.width, t.height, t.depth, t.size)) for t in self.texts)
+        texts = (Lettering(t.markup, *(by * v for v in measures)) for t, measures in sizes)
+        return self._mapped(lambda x, y: (by * x, by * y), texts, by)
 
     def moved(self, dx: float, dy: float) -> Placed:
         """Return the part elsewhere."""
-        return replace(
-            self,
-            strokes=tuple(
-                replace(s, points=tuple((x + dx, y + dy) for x, y in s.points)) for s in self.strokes
-            ),
-            texts=tuple(t.moved(dx, dy) for t in self.texts),
+        return self._mapped(lambda x, y: (x + dx, y + dy), (t.moved(dx, dy) for t in self.texts))
+
+    def _mapped(
+        self, place: Callable[[float, float], Point], texts: Iterable[Lettering], by: float = 1.0
+    ) -> Placed:
+        """Return the part with every point of its strokes elsewhere, its lines thicker, and other texts."""
+        strokes = (
+            replace(s, points=tuple(place(*p) for p in s.points), width=by * s.width) for s in self.strokes
         )
+        return replace(self, strokes=tuple(strokes), texts=tuple(texts))
 
     @property
     def extents(self) -> tuple[Extent, ...]:
@@ -203,8 +198,7 @@ class Placed:
         for one in self.texts:
             (x, y), (to_x, to_y) = one.box.centre, turned(*one.box.centre)
             texts.append(one.moved(to_x - x, to_y - y))
-        strokes = (replace(s, points=tuple(turned(*p) for p in s.points)) for s in self.strokes)
-        return replace(self, strokes=tuple(strokes), texts=tuple(texts))
+        return self._mapped(turned, texts)
 
 
 MOST_CORNERS, LARGE = 6, 36.0

@@ -79,9 +79,8 @@ def draw(
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
             message = f"a figure of kind '{kind}' needs a loop"
-            raise UsageError(
-                Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
-            )
+            hint = "name its gain: --gain K, or gain in [figures]"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)

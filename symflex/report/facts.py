@@ -81,18 +81,19 @@ class TransferFacts:
     zeros: tuple[RootFact, ...]
     certified: bool  # all of them are proved, and their number
     is_infinite: bool  # there are more: the function is transcendental
-    counts: tuple[int, int] | None  # zeros and poles of a rational function, with multiplicity
+    counts: tuple[int, int] | None = None  # zeros and poles of a rational function, with multiplicity
     # rigid and undamped: the same with all compliances rigid, and with all dampers taken away; None where
     # there is no limit. Zeros are None where the rigid model has no response, as nothing moves.
-    rigid: tuple[int | None, int] | None
-    undamped: tuple[int, int] | None
-    colocated: bool | None  # the output is taken where the input acts; None where one of them has no place
+    rigid: tuple[int | None, int] | None = None
+    undamped: tuple[int, int] | None = None
+    # colocated: the output is taken where the input acts; None where one of them has no place.
+    colocated: bool | None = None
     # What its zeros are the poles of: a kind of :class:`~symflex.analysis.explanation.ZeroExplanation`.
-    explained: str
+    explained: str = "unknown"
     # condition and reason: when it is minimum phase; see
     # :class:`~symflex.report.minimum_phase.PhaseCondition`.
-    condition: str
-    reason: str
+    condition: str = "unknown"
+    reason: str = ""
     bracket: str = ""  # the expression that must not be negative, in the spec language; empty without one
     bracket_mathematics: Mathematics | None = None  # the same for print
     truncation: TruncationFacts | None = None  # of distributed systems
@@ -353,12 +354,7 @@ def _of_roots(model: Model, tf: AnyTransferFunction, found: PoleZeroMap, reason:
         zeros=tuple(map(_root_fact, found.zeros)),
         certified=found.certificate.certified,
         is_infinite=found.is_infinite,
-        counts=None,
-        rigid=None,
-        undamped=None,
         colocated=is_colocated(model, tf.output, tf.input),
-        explained="unknown",
-        condition="unknown",
         reason=reason,
         verdict=found.verdict,
     )

@@ -94,14 +94,9 @@ def find_specifications(
                     hint = "--allow-outside FOLDER lets a report read another folder"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
             if not inside:
-                raise UsageError(
-                    Diagnostic(
-                        "SF902",
-                        f"the folder '{path}' holds no specification",
-                        None,
-                        "a specification is a file whose name ends in .toml",
-                    )
-                )
+                message = f"the folder '{path}' holds no specification"
+                hint = "a specification is a file whose name ends in .toml"
+                raise UsageError(Diagnostic("SF902", message, None, hint))
             found += inside
         elif path.suffix.lower() in DATA_SUFFIXES:
             message = f"'{path}' is a file of measured data, not a specification"
@@ -268,8 +263,7 @@ def _in_processes(
                     # Processes in an operation that cannot be asked end with this one.
                     pool.shutdown(wait=False, cancel_futures=True)
                     for stem in waiting.values():
-                        reason = TIME_OVER.message
-                        code = BudgetError.exit_code
+                        reason, code = TIME_OVER.message, BudgetError.exit_code
                         done[stem] = failed_chapter(named[stem], stem, reason, code, allow_outside)
                     break
                 for future in wait(waiting, min(TICK, time.left or TICK), FIRST_COMPLETED).done:

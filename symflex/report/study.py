@@ -304,11 +304,8 @@ def attempt(compute: Callable[[], T]) -> T | SymflexError:
     except SymflexError as error:
         return error
     except MemoryError:
-        return BudgetError(
-            Diagnostic(
-                "SF504", "out of memory", None, "give parameters numbers in place of symbols, or --jobs 1"
-            )
-        )
+        hint = "give parameters numbers in place of symbols, or --jobs 1"
+        return BudgetError(Diagnostic("SF504", "out of memory", None, hint))
 
 
 def said(error: SymflexError) -> str:
