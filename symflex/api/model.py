@@ -15,7 +15,7 @@ from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
 from symflex.errors import BudgetError
-from symflex.model.spec import write
+from symflex.model.spec.write import write
 from symflex.options import (
     ColocationOptions,
     MeasureOptions,
