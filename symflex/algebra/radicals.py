@@ -22,7 +22,6 @@ from flint import fmpz
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.factored import PRIME, Factored, residue
-from symflex.algebra.normal_form import with_image
 from symflex.algebra.ring import by_powers, coefficients_of, degree_in
 from symflex.budget import spend
 
@@ -204,6 +203,8 @@ class Radicals:
         """Return a polynomial in normal form."""
         if not self._is_rooted(polynomial):
             return Factored.polynomial(self.ring, polynomial)
+        from symflex.algebra.normal_form import with_image  # few models have roots
+
         below = Factored.number(self.ring, 1)
         for i, image in self.images.items():
             polynomial, scale = with_image(self.ring, polynomial, i, image, 1)

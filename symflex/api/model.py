@@ -21,7 +21,7 @@ from symflex.api.transfer_function import (
     TransferFunction,
 )
 from symflex.errors import BudgetError
-from symflex.model.spec import write
+from symflex.model.spec.write import write
 from symflex.options import (
     ColocationOptions,
     MeasureOptions,

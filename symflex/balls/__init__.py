@@ -2,7 +2,6 @@
 
 from symflex.balls.covering import covered
 from symflex.balls.elimination import Eliminated, columns_of, eliminate, sign_of
-from symflex.balls.inertia import elimination_order, pivots
 from symflex.balls.interval_newton import narrowed, stays_inside
 from symflex.balls.precision import (
     UndecidedError,

@@ -14,8 +14,8 @@ import click
 
 BUDGET_EXCEEDED = 5
 """An exit code."""
-YOUNG_OBJECTS = 50_000
-"""Made between two looks for cycles among them, some 10 MB. Python's 700 are few: a start keeps all."""
+YOUNG_OBJECTS = 100_000
+"""Made between two looks for cycles among them, some 20 MB. Python's 700 are few: a start keeps all."""
 WATCHED = "watched"
 """What the context holds of a command line that was started as a program, not called from Python."""
 

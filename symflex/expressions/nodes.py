@@ -202,7 +202,7 @@ def number(value: Fraction | int) -> Expression:
     Negative(operand=Number(value=Fraction(2, 1)))
     """
     exact = Fraction(value)
-    return Number(exact) if exact >= 0 else Negative(Number(-exact))
+    return Number(exact) if exact.numerator >= 0 else Negative(Number(-exact))
 
 
 def sum_of(terms: Iterable[Expression]) -> Expression:
@@ -236,7 +236,7 @@ def product_of(factors: Iterable[Expression]) -> Expression:
     >>> product_of([Name("a"), number(-2), Name("b"), number(3)])
     Negative(operand=Product(factors=(Number(value=Fraction(6, 1)), Name(name='a'), Name(name='b'))))
     """
-    coefficient = Fraction(1)
+    coefficient: Fraction | int = 1
     flat: list[Expression] = []
     pending = list(factors)[::-1]
     while pending:
@@ -251,8 +251,8 @@ def product_of(factors: Iterable[Expression]) -> Expression:
             flat.append(factor)
     if not flat or coefficient == 0:
         return number(coefficient)
-    if abs(coefficient) != 1:
-        flat.insert(0, Number(abs(coefficient)))
+    if coefficient not in (1, -1):
+        flat.insert(0, Number(abs(Fraction(coefficient))))
     product = Product(tuple(flat)) if len(flat) > 1 else flat[0]
     return Negative(product) if coefficient < 0 else product
 
@@ -327,7 +327,7 @@ def _signed(expression: Expression) -> tuple[bool, Expression]:
     is_negative = False
     while isinstance(expression, Negative):
         is_negative, expression = not is_negative, expression.operand
-    if isinstance(expression, Number) and expression.value < 0:
+    if isinstance(expression, Number) and expression.value.numerator < 0:
         is_negative, expression = not is_negative, Number(-expression.value)
     return is_negative, expression
 

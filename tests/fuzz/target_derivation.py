@@ -13,7 +13,7 @@ from functools import cache
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SymflexError
-from symflex.model.spec import write
+from symflex.model.spec.write import write
 from symflex.print.roots import roots_text
 from symflex.roots import Budget
 from tests.house.repository import ROOT, specifications

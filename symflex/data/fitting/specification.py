@@ -23,7 +23,8 @@ import numpy as np
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, UsageError
 from symflex.model import load_with
 from symflex.model.scope import RESERVED
-from symflex.model.spec import read, write
+from symflex.model.spec import read
+from symflex.model.spec.write import write
 from symflex.transfer.of_model import assemble, check_solvable
 
 if TYPE_CHECKING:

@@ -13,4 +13,3 @@ from symflex.model.spec.positions import (
     Value,
 )
 from symflex.model.spec.read import read
-from symflex.model.spec.write import write

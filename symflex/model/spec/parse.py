@@ -20,9 +20,8 @@ from symflex.model.spec.scan import KEY, KEY_PART, Scan, Statement, scan
 if TYPE_CHECKING:
     from symflex.errors import Source
 
-_PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
-_HEADER_PATH = re.compile(rf"\[{{0,2}}[ \t]*+({KEY})")
-_KEY_PARTS = re.compile(KEY_PART)
+_PLACE = r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)"
+_HEADER_PATH = rf"\[{{0,2}}[ \t]*+({KEY})"
 
 
 def parse(source: Source) -> Spec:
@@ -118,11 +117,11 @@ class _Repair:
             self.edits[statement.equals + 1] = (statement.end, "0")
 
     def _path(self, statement: Statement) -> tuple[str, ...]:
-        match = _HEADER_PATH.match(self.scan.text, statement.start, statement.end)
+        match = re.compile(_HEADER_PATH).match(self.scan.text, statement.start, statement.end)
         if match is None or self.scan.text.startswith("[[", statement.start):
             return ()
         try:
-            return tuple(decode_key(part) for part in _KEY_PARTS.findall(match[1]))
+            return tuple(decode_key(part) for part in re.findall(KEY_PART, match[1]))
         except tomllib.TOMLDecodeError:
             return ()
 
@@ -181,7 +180,7 @@ class _Repair:
 
 
 def _place(error: tomllib.TOMLDecodeError, document: Document) -> tuple[str, int]:
-    match = _PLACE.fullmatch(str(error))
+    match = re.fullmatch(_PLACE, str(error), re.DOTALL)
     if match is None:
         return str(error), document.origin(len(document.text))
     offset = len(document.text)

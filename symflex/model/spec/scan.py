@@ -42,19 +42,16 @@ def _token(strings: str) -> re.Pattern[str]:
 
 
 _TOKEN = _token(_BLOCK_STRING + _LINE_STRING)
-# After triple quotes that never close, others are not looked for: each look would run to the end again.
-_TOKEN_ON_LINE = _token(_LINE_STRING)
-
 _BLANK = re.compile(r"(?:[ \t\r\n]++|\#[^\n]*+)*+")
-_KEY_LINE = re.compile(rf"[ \t]*+{KEY}[ \t]*+=")
+# Few texts need these three: they are compiled where they are used, so that the others do not wait.
+_KEY_LINE = rf"[ \t]*+{KEY}[ \t]*+="
 # A line that is a header and cannot be an array's item: its first key part is not a value.
-_HEADER_LINE = re.compile(
+_HEADER_LINE = (
     r"[ \t]*+\[\[?[ \t]*+(?!(?:true|false|inf|nan)[\s.\]])[A-Za-z_][^\[\]{},=\n]*+"
-    r"\]\]?[ \t\r]*+(?:\#[^\n]*+)?$",
-    re.MULTILINE,
+    r"\]\]?[ \t\r]*+(?:\#[^\n]*+)?$"
 )
 _HALF_HEADER = re.compile(rf"{KEY}[ \t]*+\]\]?[ \t\r]*+(?:\#[^\n]*+)?$", re.MULTILINE)
-_NEXT_STATEMENT = re.compile(rf"^(?={_KEY_LINE.pattern}|{_HEADER_LINE.pattern})", re.MULTILINE | re.VERBOSE)
+_NEXT_STATEMENT = rf"^(?={_KEY_LINE}|{_HEADER_LINE})"
 _NON_ASCII = re.compile(r"[^\x00-\x7f]")
 _SURROGATE = re.compile(r"[\ud800-\udfff]")
 _SHORTEST_BLOCK = len("'''" * 2)
@@ -153,17 +150,20 @@ class _Scanner:
     def goes_on(self, after: int, mark: str, previous: str) -> bool:
         """Say whether a statement goes on after line ends in brackets, or one was forgotten."""
         line = self.text.rfind("\n", 0, after) + 1
-        if _HEADER_LINE.match(self.text, line):
+        if re.compile(_HEADER_LINE, re.MULTILINE).match(self.text, line):
             return False
         if mark == "[":
-            return not _KEY_LINE.match(self.text, line)
+            return not re.compile(_KEY_LINE).match(self.text, line)
         return previous in {",", "{"} or self.text[after : after + 1] in {"}", ","}
 
     def skip_unclosed(self, offset: int, quote: str) -> int:
         if len(quote) == 1:
             return self.line_end(offset)
-        self.token = _TOKEN_ON_LINE
-        following = _NEXT_STATEMENT.search(self.text, offset + len(quote))
+        # Other triple quotes that never close are not looked for: each look would run to the end again.
+        self.token = _token(_LINE_STRING)
+        following = re.compile(_NEXT_STATEMENT, re.MULTILINE | re.VERBOSE).search(
+            self.text, offset + len(quote)
+        )
         return following.start() - 1 if following else len(self.text)
 
     def word(self, top: _Frame, word: str, offset: int) -> None:

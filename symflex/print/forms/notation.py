@@ -25,7 +25,6 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
-from symflex.print.forms.closed import closed_entries
 from symflex.print.forms.kept import KeptDefinitions
 
 if TYPE_CHECKING:
@@ -198,6 +197,8 @@ def entries_of_matrices(
                 if i != j and not row[j].is_zero:
                     entry = Call(f"{stem}_{i + 1}{apart}{j + 1}", first)
                     lines.append((entry.name, Equation(entry, printer.quotient(row[j]))))
+        from symflex.print.forms.closed import closed_entries  # few members have laws along x
+
         closed += closed_entries(tf, d, places, naming, printer)
     return Notation(symbols, (), tuple(lines), tuple(closed))
 

@@ -84,9 +84,16 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
         return form
     form = _with_plain_lines(form)
     signs = _Signs.of(model).with_decays(form.where)
+    made = _signed(form, signs, model)
+    if not _minus_signs(form):
+        return made
     # Differences turned by the declared values: as often as not that gives more minus signs.
-    tried = [_signed(form, each, model) for each in (signs, replace(signs, turns=True))]
-    return min(tried, key=lambda made: str((made.num, made.den, made.where)).count("Negative"))
+    return min(made, _signed(form, replace(signs, turns=True), model), key=_minus_signs)
+
+
+def _minus_signs(form: PrintedForm) -> int:
+    parts = (form.num, form.den, *(e for _, e in form.where))
+    return sum(isinstance(n, Negative) for e in parts for n in nodes(e))
 
 
 def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:

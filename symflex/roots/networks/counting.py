@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
-from symflex.balls import current_bits, elimination_order, pivots, precision, settled
+from symflex.balls import current_bits, precision, settled
+from symflex.balls.inertia import elimination_order, pivots
 from symflex.budget import spend
 from symflex.roots.networks.members import MemberBalls, Stiffness
 

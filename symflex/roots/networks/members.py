@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING
 from flint import arb, arb_mat
 
 from symflex.algebra.varying_growth import balanced
-from symflex.balls import UndecidedError, pivots
+from symflex.balls import UndecidedError
+from symflex.balls.inertia import pivots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

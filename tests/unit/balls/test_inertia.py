@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from flint import arb
 
-from symflex.balls import UndecidedError, elimination_order, pivots
+from symflex.balls import UndecidedError
+from symflex.balls.inertia import elimination_order, pivots
 
 
 def sparse(matrix, number=arb):

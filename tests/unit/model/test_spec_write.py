@@ -20,8 +20,8 @@ from symflex.model.spec import (
     TableValue,
     Value,
     parse,
-    write,
 )
+from symflex.model.spec.write import write
 
 
 def plain(value: Value) -> object:
