@@ -35,4 +35,4 @@ from symflex.expressions.nodes import (
     sum_of,
 )
 from symflex.expressions.parse import parse, parse_equation
-from symflex.expressions.slips import FUNCTIONS
+from symflex.expressions.slips import FUNCTIONS, RECIPROCALS

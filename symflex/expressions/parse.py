@@ -50,7 +50,7 @@ from symflex.expressions.nodes import (
     measured,
     nodes,
 )
-from symflex.expressions.slips import FUNCTIONS, Slip, character_slip, end_slip, token_slip
+from symflex.expressions.slips import FUNCTIONS, RECIPROCALS, Slip, character_slip, end_slip, token_slip
 from symflex.quantities import parse_quantity
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 
@@ -266,13 +266,18 @@ def _flat(pieces: Sequence[_Piece], kind: type[Expression]) -> tuple[tuple[Expre
 def _called(name: Token, order: int, argument: _Piece, right: Token, quantity: Token | None = None) -> _Piece:
     reading = argument.reading
     start, end = name.start, right.end
-    whole = str(name) if quantity is None else f"{name}.{quantity}"
+    written = str(name) if quantity is None else f"{name}.{quantity}"
+    whole = written if order else RECIPROCALS.get(written, written)
     if whole in FUNCTIONS and (lengths := measured(argument.node)):
         message = f"a number with a unit in the argument of {whole}"
         hint = "a number with a unit belongs in [parameters]; only a point along x may have one here"
         raise SpecError(Diagnostic("SF111", message, lengths[0].span, hint))
     node = Call(whole, argument.node, order, span=reading.text.at(start, end))
-    return _checked(_Piece(node, start, end, size_of_call(argument.size), reading))
+    called = _checked(_Piece(node, start, end, size_of_call(argument.size), reading))
+    if whole == written:
+        return called
+    one = _Piece(Number(Fraction(1), span=node.span), start, start, size_of_number(Fraction(1)), reading)
+    return _quotient(one, called)
 
 
 def _differentiated(

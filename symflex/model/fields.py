@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symflex.errors import Text, counted
-from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
+from symflex.expressions import FUNCTIONS, RECIPROCALS, Equation, Expression, parse_equation
 from symflex.model.brackets import open_brackets
 from symflex.model.declarations import read_label
 from symflex.model.model import FieldProblem
@@ -145,7 +145,7 @@ def name_problem(
         return "SF213", f"'{name[:80]}' is not a name for an unknown", hint
     if name in RESERVED:
         return "SF213", f"'{name}' is reserved and cannot name an unknown", RESERVED[name]
-    if name in FUNCTIONS:
+    if name in FUNCTIONS or name in RECIPROCALS:
         return "SF213", f"'{name}' is a function and cannot name an unknown", None
     if name in taken:
         message = f"'{name}' is an unknown and a parameter, definition or block"

@@ -112,6 +112,16 @@ def test_every_function_of_the_language_is_called_with_parentheses():
         assert tree(f"{function}(a)") == Call(function, a), function
 
 
+def test_one_over_a_function_may_have_a_name_of_its_own():
+    for written, meant in [
+        ("b/coth(a)^2", "b/(1/tanh(a))^2"),
+        ("cot(a)", "1/tan(a)"),
+        ("-sech(2*a)", "-(1/cosh(2*a))"),
+        ("csch(a)*b", "(1/sinh(a))*b"),
+    ]:
+        assert tree(written) == tree(meant), written
+
+
 def test_a_number_is_exactly_what_is_written():
     for written, expected in [
         ("0", "0"),
