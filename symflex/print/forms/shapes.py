@@ -98,7 +98,10 @@ def _minus_signs(form: PrintedForm) -> int:
 
 def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
-    num, den = _in_ratios(signs.oriented(form.num), signs.oriented(form.den))
+    num = signs.oriented(form.num)
+    # Below the bar a sum stands as above it.
+    above = {_texts(n.terms): n for n in nodes(num) if isinstance(n, Sum)}
+    num, den = _in_ratios(num, replace(signs, written={**above, **signs.written}).oriented(form.den))
     num, den = (num, den) if form.name in SCALED else _decimals(model, num, den)
     is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
     num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))
