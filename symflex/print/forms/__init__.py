@@ -90,6 +90,8 @@ READABLE = 10**20
 """A whole number beyond which a function without parameters is printed in decimals, as zpk."""
 CLOSED = 1.1
 """How many times shorter a lumped form has to read with its definitions closed."""
+LOOKED_UP = 1.2
+"""How many times as long functions read that have to be looked up, ``K_1`` for ``sinh(q)/gamma``."""
 FEW = 60
 """Terms up to which every form is arranged: that takes some hundredths of a second."""
 MORE = 1.25
@@ -282,6 +284,8 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
 def _length(form: PrintedForm) -> float:
     """Return the length of all but the model's definitions, which may stay closed."""
     parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
+    if form.name == "krylov":
+        return LOOKED_UP * length(*parts)
     return length(*parts) if form.name in KERNELS_ONLY else sum(map(reading, parts))
 
 

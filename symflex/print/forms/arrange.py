@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property, partial
-from itertools import accumulate
+from itertools import accumulate, islice, product
 from math import gcd, isqrt
 from operator import add, neg, sub
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ from symflex.algebra import (
     irreducible_factors,
     square_free_factors,
 )
+from symflex.algebra.normal_form import with_image
 from symflex.expressions import (
     Call,
     Expression,
@@ -44,7 +45,7 @@ from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -463,7 +464,7 @@ class ProductPrinter:
         """Return one square root of a product, with what is a square outside the sign of the root."""
         outside, inside = value**0, value**0
         if not value.ring.is_sparse:  # (h + g)^2 is a factor by itself
-            value = value.map_factors(value.ring, partial(_with_squares, value.ring))
+            value = value.map_factors(value.ring, partial(with_squares, value.ring))
         for factor, exponent in value.factors:
             half = int(exponent / 2)
             outside = outside * Factored(value.ring, Fraction(1), ((factor, half),) if half else ())
@@ -550,7 +551,8 @@ def length(*expressions: Expression) -> int:
     return sum(len(format_expression(e)) for e in expressions)
 
 
-def _with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
+def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
+    """Return a polynomial as a product of powers of square-free ones."""
     unit, factors = square_free_factors(polynomial)
     return Factored(ring, Fraction(unit), tuple(factors))
 
@@ -575,6 +577,32 @@ def _inside(factor: Expression) -> tuple[Expression, ...]:
     return names(factor) if isinstance(factor, Sum) else ()
 
 
+MOST_WAYS = 16
+"""Ways to write factors by the law of a wavenumber that are compared."""
+
+
+def _by_law(value: Factored, name: str, one: Factored) -> Iterator[Factored]:
+    """Yield a product with what the law of a wavenumber says in place of its powers, within sums, too.
+
+    ``E*A*gamma*cosh(q) + m*s^2*sinh(q)`` is ``rho*A*cosh(q) + m*gamma*sinh(q)`` times ``s^2/gamma`` so.
+    """
+    ring, i = value.ring, value.ring.index[name]
+    wave, generator = Factored.generator(ring, name), ring.context.gen(i)
+    degree = next(e for f, e in one.factors if f == generator)
+
+    def put(factor: fmpz_mpoly, more: int) -> Factored:
+        above, below = with_image(ring, factor * generator**more, i, wave**degree / one, degree)
+        return Factored.polynomial(ring, above) / below / wave**more
+
+    ways = [range(degree) if len(f) > 1 and degree_in(f, i) else range(1) for f, _ in value.factors]
+    for chosen in islice(product(*ways), MOST_WAYS):
+        found = Factored.number(ring, value.unit)
+        for (factor, exponent), more in zip(value.factors, chosen, strict=True):
+            found = found * put(factor, more) ** exponent
+        alone = next((e for f, e in found.factors if f == generator), 0)
+        yield found / one ** int(alone / degree)
+
+
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:
     """Return the sides of a product, powers of wavenumbers traded for s and parameters if that is shorter.
 
@@ -583,5 +611,5 @@ def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, 
     tried = [value]
     for name, one in laws.items():
         if value.depends_on(name):
-            tried = [v * one**t for v in tried for t in (0, -1, 1)]
+            tried = [v * one**t for v in tried for t in (0, -1, 1)] + [*_by_law(value, name, one)]
     return min((printer.sides(v) for v in tried), key=lambda sides: length(*sides))

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Kernel, KernelTable, Ring, composed
 from symflex.algebra.normal_form import NormalForm
+from symflex.print.forms.arrange import with_squares
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
 from symflex.print.forms.notation import angles_of
 
@@ -65,17 +66,18 @@ class _Sum:
 
 def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
     """Return a function with ``s/c`` for a wavenumber that is no root, except in arguments."""
-    images = {}
+    images, ring = {}, tf.ratio.ring
     for law in tf.kernels.dispersions:
         if law.kind == "wave":
-            square = NormalForm(tf.ratio.ring, tf.kernels).power_of(law)
+            square = NormalForm(ring, tf.kernels).power_of(law).map_factors(ring, partial(with_squares, ring))
             above, below = isqrt(abs(square.unit.numerator)), isqrt(square.unit.denominator)
             if square.unit == Fraction(above, below) ** 2 and not any(e % 2 for _, e in square.factors):
                 factors = tuple((f, e // 2) for f, e in square.factors)
                 images[law.wavenumbers[0]] = Factored(square.ring, Fraction(above, below), factors)
     if not any(tf.ratio.depends_on(wave) for wave in images):
         return tf
-    return replace(tf, reduced=composed(tf.ratio, images), parts=None)
+    plain = composed(tf.ratio, images).map_factors(ring, partial(with_squares, ring))
+    return replace(tf, reduced=plain, parts=None)
 
 
 def added(tf: TransferFunction) -> TransferFunction:

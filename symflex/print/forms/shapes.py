@@ -83,25 +83,26 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
     if sum(len(nodes(e)) for e in parts) > LARGEST:
         return form
     form = _with_plain_lines(form)
+    parts = (form.num, form.den, *(e for _, e in form.where))
     signs = _Signs.of(model).with_decays(form.where)
     made = _signed(form, signs, model)
-    if not _minus_signs(form):
+    if not _minus_signs(*parts):
         return made
     # Differences turned by the declared values: as often as not that gives more minus signs.
-    return min(made, _signed(form, replace(signs, turns=True), model), key=_minus_signs)
+    turned = _signed(form, replace(signs, turns=True), model)
+    return min(made, turned, key=lambda f: _minus_signs(f.num, f.den, *(e for _, e in f.where)))
 
 
-def _minus_signs(form: PrintedForm) -> int:
-    parts = (form.num, form.den, *(e for _, e in form.where))
+def _minus_signs(*parts: Expression) -> int:
     return sum(isinstance(n, Negative) for e in parts for n in nodes(e))
 
 
 def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
-    num = signs.oriented(form.num)
-    # Below the bar a sum stands as above it.
-    above = {_texts(n.terms): n for n in nodes(num) if isinstance(n, Sum)}
-    num, den = _in_ratios(num, replace(signs, written={**above, **signs.written}).oriented(form.den))
+    # A sum stands below the bar as above it, where that takes no more minus signs.
+    num, den = signs.oriented(form.num), signs.oriented(form.den)
+    ways = [(num, signs.like(num).oriented(form.den)), (signs.like(den).oriented(form.num), den), (num, den)]
+    num, den = _in_ratios(*min(ways, key=lambda sides: _minus_signs(*sides)))
     num, den = (num, den) if form.name in SCALED else _decimals(model, num, den)
     is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
     num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))
@@ -139,6 +140,11 @@ class _Signs:
                 (known[name],) = principal_values(line, 1, lambda name: [known[name]])
         decays = {name: acb(0) for name, _ in where if name in known and abs(known[name]) < 1 / FAR}
         return replace(self, known={**self.known, **decays})
+
+    def like(self, other: Expression) -> _Signs:
+        """Return these with the sums of another expression as they are written there."""
+        sums = {_texts(n.terms): n for n in nodes(other) if isinstance(n, Sum)}
+        return replace(self, written={**sums, **self.written})
 
     def oriented(self, expression: Expression) -> Expression:
         """Return an expression with every sum in it as a person would write it."""

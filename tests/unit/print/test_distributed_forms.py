@@ -168,6 +168,10 @@ SHOWN = {
     "trigonometric factors are found": (
         ("free_free", "A_near/F", "factored"), None, "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))",
     ),
+    # Rao, Vibration of Continuous Systems, chapter 9: the stiffness E A gamma beside the inertia m s^2.
+    "a rod with a mass has its stiffness in the characteristic equation": (
+        ("rod_tip_mass", "X_tip/F", None), "sinh(q)", "m*s^2*sinh(q) + E*A*gamma*cosh(q)",
+    ),
     "a twofold delay is one exponential": (
         ("delay and rod", "X_late/u", None), "K*exp(-2*T*s)*tanh(q)", None
     ),
@@ -485,10 +489,53 @@ outputs.P = "p(L)"
 """
 
 
+ROPE = """symflex = 1
+parameters = { T = "100 N", mu = "0.5 kg/m", l = "3 m", D_1 = "2 N*s/m", D_2 = "3 N*s/m" }
+[elements]
+rope = { type = "string", between = ["a", "b"], N = "T", rhoA = "mu", l = "l" }
+first = { type = "damper", between = ["a", "ground"], b = "D_1" }
+last = { type = "damper", between = ["b", "ground"], b = "D_2" }
+[inputs]
+F = { force = "b" }
+[outputs]
+V = "s*b"
+"""
+COFLOW = """symflex = 1
+parameters = { v = "0.5 m/s", h = "0.2 1/s", g = "0.1 1/s", l = "2 m" }
+[fields.pipes]
+unknowns = ["T", "W"]
+domain = ["0", "l"]
+equations = ["v*T' + s*T + h*(T - W) = 0", "v*W' + s*W + g*(W - T) = 0"]
+conditions = ["T(0) = T_0", "W(0) = 0"]
+[inputs]
+T_0 = { unit = "K" }
+[outputs]
+Y = "T(l)"
+"""
+
+
+def test_dashpots_of_a_rope_stand_beside_its_impedance():
+    (tf,) = pipeline.derive_all(pipeline.loads(ROPE))
+    # V (s mu + ...) by hand: with Z = T gamma/s, (Z c + D_1 s_)/(Z (D_1 + D_2) c + (Z^2 + D_1 D_2) s_).
+    assert shown(tf) == (
+        "D_1*s*sinh(q) + T*gamma*cosh(q)",
+        "s*(T*mu + D_1*D_2)*sinh(q) + T*gamma*(D_1 + D_2)*cosh(q)",
+    )
+
+
 @pytest.mark.parametrize(
     ("text", "expected", "lines"),
-    [(HEAVY_SPRING, ("tanh(q)", "k*q"), ["q = s*sqrt(M/k)"]), (PIPE, ("rho*c*tanh(q)", "1"), ["q = s*L/c"])],
-    ids=["a heavy spring", "an open pipe"],
+    [
+        (HEAVY_SPRING, ("tanh(q)", "k*q"), ["q = s*sqrt(M/k)"]),
+        (PIPE, ("rho*c*tanh(q)", "1"), ["q = s*L/c"]),
+        # The sum h W + g T only travels, and T - W decays at the rate h + g: exp(-s*l/v) (g + h D^2)/(h + g).
+        (
+            COFLOW,
+            ("(h*D^2 + g)*exp(-l*(2*s + h + g)/(2*v))", "D*(h + g)"),
+            ["D = exp(-l*(h + g)/(2*v))"],
+        ),
+    ],
+    ids=["a heavy spring", "an open pipe", "pipes that flow alike"],
 )
 def test_a_length_or_wavenumber_that_cancels_is_gone(text, expected, lines):
     (tf,) = pipeline.derive_all(pipeline.loads(text))
