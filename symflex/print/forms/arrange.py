@@ -22,7 +22,6 @@ from symflex.algebra import (
     irreducible_factors,
     square_free_factors,
 )
-from symflex.algebra.normal_form import with_image
 from symflex.expressions import (
     Call,
     Expression,
@@ -586,6 +585,8 @@ def _by_law(value: Factored, name: str, one: Factored) -> Iterator[Factored]:
 
     ``E*A*gamma*cosh(q) + m*s^2*sinh(q)`` is ``rho*A*cosh(q) + m*gamma*sinh(q)`` times ``s^2/gamma`` so.
     """
+    from symflex.algebra.normal_form import with_image  # only with waves
+
     ring, i = value.ring, value.ring.index[name]
     wave, generator = Factored.generator(ring, name), ring.context.gen(i)
     degree = next(e for f, e in one.factors if f == generator)
