@@ -26,8 +26,8 @@ class Block(Stateless):
     remark: ClassVar[str] = ""  # ends the summary
     parameters: ClassVar[tuple[ParameterPort, ...]]
     kernel_time: ClassVar[str] = ""
-    # What its unit is that of: parameters, each times a power of s. None of them is a pure number; ``None``
-    # fits any unit.
+    # Its unit is that of these parameters, each times a power of s; without any it is a pure number. With
+    # ``None`` any unit fits.
     gains: ClassVar[tuple[tuple[str, int], ...] | None] = ()
 
     @property

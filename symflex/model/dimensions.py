@@ -146,9 +146,7 @@ class DimensionSystem:
         quantities: Mapping[str, Quantity | None],  # what was declared; ``None`` when without unit
         definitions: Mapping[str, Expression],
         known: Mapping[Variable, Dimension],  # variables whose dimension their domain fixes
-        blocks: Mapping[
-            str, Measure | Expression
-        ],  # what transfer functions of blocks are measured in, or as
+        blocks: Mapping[str, Measure | Expression],  # how blocks are measured, or what is measured alike
         laplace: Dimension = PER_SECOND,
     ) -> None:
         self._scope = scope

@@ -387,8 +387,12 @@ def _bent(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
     All of it is multiplied by what it was divided by, so that a loss stays with its stiffness. Several beams
     may be joined along x, each b being a matrix.
     """
-    zero, rows, states = matrix[0][0] * 0, [], []
-    for i in range(0, len(matrix), BEAM):
+    n, zero, rows, states = len(matrix), matrix[0][0] * 0, [], []
+
+    def row(entries: Mapping[int, Factored]) -> list[Factored]:
+        return [entries.get(j, zero) for j in range(n)]
+
+    for i in range(0, n, BEAM):
         law = list(matrix[i + BEAM - 1])
         load, slope, tension, odd = law[i : i + BEAM]
         change = tension.slope(COORDINATE) if _moves(tension) else zero
@@ -397,16 +401,11 @@ def _bent(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
         alone = all(x.is_zero for j, x in enumerate(law) if j % BEAM)
         if load.is_zero or _moves(common) or not odd.is_zero or not (slope - change).is_zero or not alone:
             return
-        held = [x * tension * common for x in unit[i + 1]]
-        force = [x * common for x in unit[i + 3]]
-        states += [*unit[i : i + 2], [x * common for x in unit[i + 2]], _less(force, held)]
-        bent, carried = [x / common for x in unit[i + 2]], _less(unit[i + 3], [-x for x in held])
-        rows += [unit[i + 1], bent, carried, [x * common for x in law]]
+        held = tension * common
+        states += [*unit[i : i + 2], row({i + 2: common}), row({i + 1: -held, i + 3: common})]
+        rows += [unit[i + 1], row({i + 2: 1 / common}), row({i + 1: held, i + 3: zero + 1})]
+        rows.append([x * common for x in law])
     yield rows, states
-
-
-def _less(one: Sequence[Factored], other: Sequence[Factored]) -> list[Factored]:
-    return [x - y for x, y in zip(one, other, strict=True)]
 
 
 def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:

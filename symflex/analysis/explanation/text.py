@@ -88,7 +88,7 @@ class ZeroExplanation:
     parts : tuple of ConstrainedPart
         What the constrained system separates into.
     ends : tuple of EndChange
-        Of line elements and fields, where the constraint changes them.
+        How line elements and fields are held at their ends, where the constraint changes that.
     right_half_plane : int
         Zeros with a positive real part in the region shown, with multiplicity.
     real_zeros : tuple of RealZero

@@ -34,6 +34,8 @@ ROWS = 21
 """Rows of the table; all points are in the JSON and in files."""
 SHOWN_DIGITS = 17
 SHORT_DIGITS = 6
+NARROWEST = 99
+"""Digits behind the point to which a radius in the table goes: what lies within 1e-2913 does within 1e-99."""
 IMPULSES = ("an impulse", "the derivative of an impulse")
 
 
@@ -193,8 +195,8 @@ def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
 
 def _told(ball: arb, digits: int) -> tuple[str, str]:
     told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS)).told
-    # Within 1e-2913 is within 1e-99, which is short enough for a column.
-    return told.re, told.radius if len(told.radius.partition("e-")[2]) < len("100") else "1.0e-99"
+    exponent = int(told.radius.partition("e-")[2] or 0)
+    return told.re, told.radius if exponent <= NARROWEST else f"1.0e-{NARROWEST}"
 
 
 def _short(ball: arb) -> str:

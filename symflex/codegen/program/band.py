@@ -92,7 +92,7 @@ LUMPED_END = Fraction(10_000)
 
 
 FIRST_BITS, LAST_BITS, ENOUGH_BITS = 128, 4096, 64
-"""Of reference values: where work begins, where it is given up, and how many must be certain."""
+"""Bits of a reference value with which work begins and ends, and how many of them must be certain."""
 
 
 @dataclass(frozen=True, slots=True)

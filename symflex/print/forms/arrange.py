@@ -44,7 +44,7 @@ from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -577,11 +577,11 @@ def _inside(factor: Expression) -> tuple[Expression, ...]:
 
 
 MOST_WAYS = 16
-"""Ways to write factors by the law of a wavenumber that are compared."""
+"""Ways to write factors by the law of a wavenumber that are made, of which the two shortest are arranged."""
 
 
-def _by_law(value: Factored, name: str, one: Factored) -> Iterator[Factored]:
-    """Yield a product with what the law of a wavenumber says in place of its powers, within sums, too.
+def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:
+    """Return a product with what the law of a wavenumber says in place of its powers, within sums, too.
 
     ``E*A*gamma*cosh(q) + m*s^2*sinh(q)`` is ``rho*A*cosh(q) + m*gamma*sinh(q)`` times ``s^2/gamma`` so.
     """
@@ -596,12 +596,19 @@ def _by_law(value: Factored, name: str, one: Factored) -> Iterator[Factored]:
         return Factored.polynomial(ring, above) / below / wave**more
 
     ways = [range(degree) if len(f) > 1 and degree_in(f, i) else range(1) for f, _ in value.factors]
+    made = []
     for chosen in islice(product(*ways), MOST_WAYS):
         found = Factored.number(ring, value.unit)
         for (factor, exponent), more in zip(value.factors, chosen, strict=True):
             found = found * put(factor, more) ** exponent
         alone = next((e for f, e in found.factors if f == generator), 0)
-        yield found / one ** int(alone / degree)
+        made.append(found / one ** int(alone / degree))
+    return sorted(made, key=_symbols)[:2]
+
+
+def _symbols(value: Factored) -> int:
+    """Return how many symbols a product is written with, about."""
+    return sum(sum(map(bool, m)) for f, _ in value.factors for m in f.monoms())
 
 
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:
@@ -612,5 +619,5 @@ def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, 
     tried = [value]
     for name, one in laws.items():
         if value.depends_on(name):
-            tried = [v * one**t for v in tried for t in (0, -1, 1)] + [*_by_law(value, name, one)]
+            tried = [v * one**t for v in tried for t in (0, -1, 1)] + _by_law(value, name, one)
     return min((printer.sides(v) for v in tried), key=lambda sides: length(*sides))

@@ -79,30 +79,43 @@ S: Final = Name(LAPLACE)
 
 def shaped(model: Model, form: PrintedForm) -> PrintedForm:
     """Return a form in the shape a person would give it; one too long to be read as it is."""
-    parts = (form.num, form.den, *(e for _, e in form.where))
-    if sum(len(nodes(e)) for e in parts) > LARGEST:
+    if sum(len(nodes(e)) for e in _parts(form)) > LARGEST:
         return form
     form = _with_plain_lines(form)
-    parts = (form.num, form.den, *(e for _, e in form.where))
     signs = _Signs.of(model).with_decays(form.where)
     made = _signed(form, signs, model)
-    if not _minus_signs(*parts):
+    if not _minus_signs(*_parts(form)):
         return made
     # Differences turned by the declared values: as often as not that gives more minus signs.
     turned = _signed(form, replace(signs, turns=True), model)
-    return min(made, turned, key=lambda f: _minus_signs(f.num, f.den, *(e for _, e in f.where)))
+    return min(made, turned, key=lambda f: _minus_signs(*_parts(f)))
+
+
+def _parts(form: PrintedForm) -> tuple[Expression, ...]:
+    return (form.num, form.den, *(e for _, e in form.where))
 
 
 def _minus_signs(*parts: Expression) -> int:
     return sum(isinstance(n, Negative) for e in parts for n in nodes(e))
 
 
+def _differ_in_sign(num: Expression, den: Expression) -> bool:
+    """Tell whether a sum stands on one side and minus that sum on the other."""
+    if not _minus_signs(num, den):
+        return False
+    above = {_texts(n.terms) for n in nodes(num) if isinstance(n, Sum)}
+    below = (n for n in nodes(den) if isinstance(n, Sum))
+    return any(_texts([negative(t) for t in n.terms]) in above for n in below)
+
+
 def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
-    # A sum stands below the bar as above it, where that takes no more minus signs.
     num, den = signs.oriented(form.num), signs.oriented(form.den)
-    ways = [(num, signs.like(num).oriented(form.den)), (signs.like(den).oriented(form.num), den), (num, den)]
-    num, den = _in_ratios(*min(ways, key=lambda sides: _minus_signs(*sides)))
+    if _differ_in_sign(num, den):
+        # A sum stands below the bar as above it, where that takes no more minus signs.
+        alike = (num, signs.like(num).oriented(form.den)), (signs.like(den).oriented(form.num), den)
+        num, den = min(*alike, (num, den), key=lambda sides: _minus_signs(*sides))
+    num, den = _in_ratios(num, den)
     num, den = (num, den) if form.name in SCALED else _decimals(model, num, den)
     is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
     num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))

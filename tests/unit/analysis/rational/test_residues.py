@@ -328,7 +328,7 @@ def test_modes_with_a_node_at_the_output_have_next_to_no_residue():
     expected = []
     for wave in np.arange(1, 11) * np.pi / 10:
         for omega in (200 * wave**2, np.hypot(200 * wave**2, 2000**0.5)):
-            # Of mass m*l, with the moment at its slope; 1/(s^2 + omega^2) has the residue 1/(2 j omega).
+            # The modal mass is m*l, the moment acts on the slope, and 1/(s^2 + omega^2) leaves 1/(2 j omega).
             expected.append((omega, wave * abs(np.sin(3 * wave)) / (100 * 10) / (2 * omega)))
     assert sorted(found) == pytest.approx(sorted(omega for omega, _ in expected), rel=1e-12)
     for residue, (_, size) in zip([found[omega] for omega in sorted(found)], sorted(expected), strict=True):
