@@ -28,6 +28,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
@@ -279,36 +280,50 @@ def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> R
 def widened(problem: FitProblem, refined: Refined) -> Refined:
     """Return a minimum with errors that count what is not known of modes outside the band.
 
-    Zeros outside the band, or without a sharp trough, stand for such modes: they follow the term (s/w)^2 that
-    these add to ln G, w being the end of the band, with terms (s/w)^4 and (s/w)^6 of their own, which need
-    not be right. Errors are those of a fit in which either term is one more parameter, normally distributed
-    about 0 with half the first term as deviation; below the band powers are negative.
+    Zeros outside the band, or without a sharp trough, stand for such modes: they follow the terms (s/w)^2 and
+    s/w that inertia and damping of these add to ln G, w being the end of the band, with further terms of
+    their own, which need not be right. In a fit with more parameters, for terms (s/w)^4, (s/w)^6, (s/w)^3 and
+    (s/w)^5 that are normally distributed about 0 with half the first term as deviation, every parameter would
+    have another error, and another value: errors are these, and the way from this value to that one. Below
+    the band powers are negative.
     """
     found, size = refined.resonances, refined.resonances.size(problem.free)
-    normal, bent = np.zeros((size, size)), []
+    normal, gradient = np.zeros((size, size)), np.zeros(size)
+    crosses, squares, pulls = [], [], []
     for r, slopes in enumerate(_slopes(problem, found, "complex")):
         line, columns = problem.lines[r], found.columns(r, problem.free)
-        normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
-        place = np.abs(found.omega_z[r])
+        place, damping = np.abs(found.omega_z[r]), np.abs(found.zeta_z[r])
         low, high = line.omega[[0, -1]]
-        place = place[(place < low) | ((place > high) | (np.abs(found.zeta_z[r]) > FLAT)) & (place < np.inf)]
-        for end, power in ((low, -4), (high, 4), (low, -6), (high, 6)):
-            near = np.max(np.minimum(place / end, end / place), initial=0.0)
-            bend = (
-                NEXT_TERM * near**2 * problem.values(found, r) * (line.omega / end) ** power / _absolute(line)
-            )
-            cross = np.zeros(size)
-            cross[columns] = (np.conj(slopes).T @ bend).real
-            bent.append((cross, np.vdot(bend, bend).real))
+        outside = (place < low) | ((place > high) | (damping > FLAT)) & (place < np.inf)
+        place, damping = place[outside], damping[outside]
+        bends = []
+        for end, sign in ((low, -1), (high, 1)):
+            near = np.minimum(place / end, end / place)
+            even, odd = np.max(near**2, initial=0.0), 2j * np.max(damping * near, initial=0.0)
+            ratio = (line.omega / end) ** sign
+            bends += [even * ratio**4, even * ratio**6, odd * ratio**3, odd * ratio**5]
+        values, deviation = problem.values(found, r), _absolute(line)
+        bent = NEXT_TERM * np.column_stack(bends) * (values / deviation)[:, np.newaxis]
+        rest = (values - line.measured.values) / deviation
+        normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
+        gradient[columns] += (np.conj(slopes).T @ rest).real
+        cross = np.zeros((size, len(bends)))
+        cross[columns] = (np.conj(slopes).T @ bent).real
+        crosses.append(cross)
+        squares.append((np.conj(bent).T @ bent).real)
+        pulls.append((np.conj(bent).T @ rest).real)
     covariance = refined.covariance
     if covariance is None or not np.isfinite(normal).all():
         return refined
-    scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))
-    for cross, whole in bent:
-        moved = np.linalg.lstsq(normal / np.outer(scale, scale), cross / scale, rcond=SINGULAR)[0] / scale
-        told = max(whole - float(cross @ moved), 0.0) / max(refined.reduced, np.finfo(float).tiny)
-        covariance = covariance + np.outer(moved, moved) / (1 + told)
-    return replace(refined, covariance=covariance)
+    scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))[:, np.newaxis]
+    cross = np.hstack(crosses)
+    moved = np.linalg.lstsq(normal / (scale * scale.T), cross / scale, rcond=SINGULAR)[0] / scale
+    told, turned = np.linalg.eigh(block_diag(*squares) - cross.T @ moved)
+    noise = max(refined.reduced, np.finfo(float).tiny)
+    variance = 1 / (1 + np.maximum(told, 0.0) / noise)
+    moved, pull = moved @ turned, turned.T @ (np.concatenate(pulls) - moved.T @ gradient)
+    way = moved @ (variance * pull / noise)
+    return replace(refined, covariance=covariance + moved * variance @ moved.T + np.outer(way, way))
 
 
 class _Sums:

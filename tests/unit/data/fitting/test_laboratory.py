@@ -104,10 +104,12 @@ def test_real_poles_and_zeros_far_below_the_band_are_powers_of_s(number, slope):
 
 
 @pytest.mark.slow
-def test_errors_of_zeros_that_stand_for_a_mode_outside_the_band_count_what_is_not_known_of_it():
-    # Set 198 of the study: the mode is at 65 Hz and the band ends at 40. Without one more pair of poles,
-    # zeros at 37 Hz follow what it bends, and the data do not tell the difference.
-    case = wild(1, 198)
+@pytest.mark.parametrize(("seed", "number"), [(1, 198), (2, 0)])
+def test_errors_of_zeros_that_stand_for_a_mode_outside_the_band_count_what_is_not_known_of_it(seed, number):
+    # The mode of set 198 is at 65 Hz and the band ends at 40. Without one more pair of poles, zeros at 37 Hz
+    # follow what it bends, and the data do not tell the difference. In the other set a mode at 58 Hz and
+    # zeros at 32 move the damping of zeros at 19.5 Hz by a quarter, the band ends at 24.5.
+    case = wild(seed, number)
     off, _ = judged(case, fit_resonances([MeasuredResponse("y/u", case.frequency_hz, case.values)]))
     assert off.max() < limit_for(off.size)
 
