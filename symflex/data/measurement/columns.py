@@ -207,7 +207,7 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     if not unit and (match := re.match(r"deg(?=[:(])", text, re.I)):
         unit, text = match[0], text[match.end() :]
     low = re.sub(r"in[-_]phase", "inphase", text.lower())
-    words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f\b", " ", low))  # F in X/F is a force
+    words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", low))  # F in X/F is a force
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
     if not kind and unit:
         kind = (

@@ -652,7 +652,7 @@ def files_of_simulators_and_names():
     parts = [f"{z.real:.9e}-%i*{-z.imag:.9e}" for z in H]
     yield Saved("scilab.csv", ("f,H\n" + rows(F, parts)).encode())
     for i, (names, columns) in enumerate((
-        ("f,X/F,phase_deg", (F, SIZE, DEG)), ("f,X/F (dB),phase_deg", (F, DB, DEG)),
+        ("f,X/F,phase_deg", (F, SIZE, DEG)), ("f [Hz],X1/F1 [m/N],phase X1/F1 [°]", (F, SIZE, DEG)), ("f,X/F (dB),phase_deg", (F, DB, DEG)),
         ("Frequency (hertz),Gain (decibels),Phase (degrees)", (F, DB, DEG)),
         ("f,Z',Z''", (F, RE, IM)), ("f,Z',-Z''", (F, RE, -IM)), ("Freq/Hz, Z'/ohm, Z\"/ohm", (F, RE, IM)),
         ("f,Hreal,Himag", (F, RE, IM)), ("f,ReH,ImH", (F, RE, IM)), ("Freq,I,Q", (F, RE, IM)),
