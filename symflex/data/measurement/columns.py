@@ -379,7 +379,7 @@ def assembled(
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
             shares = None if coherence is None else _shares(coherence, guesses)
             kept = tuple(c for c in (frequency, *group.values()))
-            used |= {id(c) for c in kept}
+            used |= {id(c) for c in kept} if np.any(values) else set()
             same = [m for m in made if m.label != label and m.values.shape == values.shape]
             with np.errstate(all="ignore"):
                 inverse = next((m for m in same if np.allclose(values * m.values, 1, rtol=1e-3)), None)
@@ -389,6 +389,7 @@ def assembled(
                 made.append(Assembled(label, lines, values, shares, unit, kept))
     if not made:
         raise DataError(*_missing(columns, file, header))
+    made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)

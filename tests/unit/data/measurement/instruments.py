@@ -649,6 +649,8 @@ def files_of_simulators_and_names():
     y = 1 / H
     both = "freq/Hz\tRe(Z)/Ohm\t-Im(Z)/Ohm\tRe(Y)/Ohm-1\tIm(Y)/Ohm-1\n"
     yield Saved("both.mpt", (both + rows(F, RE, -IM, y.real, y.imag, sep="\t")).encode())
+    traces = "Frequency(Hz),|Z|(ohm)-data,|Z|(ohm)-mem,θz(deg)-data,θz(deg)-mem\n"
+    yield Saved("empty_memory.csv", (traces + rows(F, SIZE, 0 * F, DEG, 0 * F)).encode())
     parts = [f"{z.real:.9e}-%i*{-z.imag:.9e}" for z in H]
     yield Saved("scilab.csv", ("f,H\n" + rows(F, parts)).encode())
     for i, (names, columns) in enumerate((
