@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
+from symflex.data.measurement.text_table import bare
 from symflex.errors import DataError, Diagnostic, Span, UsageError, nearest
 
 Choice = TypeVar("Choice", str, float)
@@ -40,7 +41,7 @@ _WORDS: Final = {
     "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
     "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン 利得",
     "omega": "omega w ω angular",
-    "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
+    "frequency": "frequency freq frequencies freqs frq acfrequency f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
 }  # fmt: skip
 """Words by which a column is known, the first kind that has one of them."""
@@ -54,20 +55,22 @@ _FREQUENCY_UNITS: Final = {
     **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
 }  # fmt: skip
 _DEGREES: Final = (
-    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "graden", "graus", "град", "度", "degs",
-    "°", "º", "ø", "*", "\ufffd",
+    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "graden", "grader", "graus", "град",
+    "度", "degs", "°", "º", "ø", "*", "\ufffd",
 )  # fmt: skip
 _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
     ("rad", "radian", "radians", "rads"), 1.0
 )
-_LEVELS: Final = ("db", "дб")
+_LEVELS: Final = ("db", "дб", "decibel")
 UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, *_LEVELS, *_OHMS))
-_SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()", re.I)
+_SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()|^(r|i)(?= \S+\.[vi]$)", re.I)
 _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
-"""Functions by which circuit simulators name columns: VDB(out), P(V(out))."""
+"""Functions by which circuit simulators name columns: VDB(out), P(V(out)), r out.v."""
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
-_JOINED = re.compile(r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)")
-"""Where words are joined: FrequencyHz, magdB."""
+_JOINED = re.compile(
+    r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)|(?<=^[GHYZ])(?=(?:re|im)(?:al|ag)?\b)|(?<=^Re|^Im)(?=[A-Z]\d*$)"
+)
+"""Where words are joined: FrequencyHz, magdB, Hreal, ImH."""
 _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
 _OTHER_SIZE = re.compile(
@@ -79,6 +82,7 @@ _RATIO: Final = "ratio"
 CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 _LETTERS: Final = {
     ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
+    ("i", "q"): ("real", "imaginary"),
     ("r", "x"): ("real", "imaginary"),  # of impedances
     ("rs", "xs"): ("real", "imaginary"),
     ("g", "b"): ("real", "imaginary"),  # of admittances
@@ -172,14 +176,14 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     """
     if len(name) > LONGEST_NAME:
         return ColumnMeaning()
-    written = name.strip(" \"'#*%!;:").replace("µ", "u")
+    written = re.sub(r"(?<=z)\"(?=\W)", "''", bare(name).strip(" #*%!;:"), flags=re.I).replace("µ", "u")
     unit = unit_below.strip("[]<> ").replace("µ", "u")
     unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
     text = re.sub(
         r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
     )
     text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
-    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3]).lower()], text)
+    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
     sign = -1.0 if _NEGATIVE.match(text) else 1.0
     text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
     if text.strip().lower() in _PHASE_UNITS:
@@ -202,8 +206,8 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         unit, text = match[1] or match[2], text[: match.start()]
     if not unit and (match := re.match(r"deg(?=[:(])", text, re.I)):
         unit, text = match[0], text[match.end() :]
-    low = text.lower().replace("in-phase", "inphase")
-    words = re.findall(_PARTS, low)
+    low = re.sub(r"in[-_]phase", "inphase", text.lower())
+    words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", low))  # F in X/F is a force
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
     if not kind and unit:
         kind = (
@@ -375,11 +379,17 @@ def assembled(
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
             shares = None if coherence is None else _shares(coherence, guesses)
             kept = tuple(c for c in (frequency, *group.values()))
-            used |= {id(c) for c in kept}
-            if not any(m.label != label and np.array_equal(values, m.values, equal_nan=True) for m in made):
+            used |= {id(c) for c in kept} if np.any(values) else set()
+            same = [m for m in made if m.label != label and m.values.shape == values.shape]
+            with np.errstate(all="ignore"):
+                inverse = next((m for m in same if np.allclose(values * m.values, 1, rtol=1e-3)), None)
+            if inverse:  # poles of the one are zeros of the other
+                guesses.append(f"'{label[:30]}' is one over '{inverse.label[:30]}', and is left out")
+            elif not any(np.array_equal(values, m.values, equal_nan=True) for m in same):
                 made.append(Assembled(label, lines, values, shares, unit, kept))
     if not made:
         raise DataError(*_missing(columns, file, header))
+    made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)

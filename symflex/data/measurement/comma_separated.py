@@ -52,6 +52,8 @@ from symflex.errors import DataError, Diagnostic, Source, Span
 
 _COMMENT_FIELD = re.compile(r"\W*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
 _AXIS_UNIT = re.compile(r"(?:axis|freq|x)[\w .]*unit\w*\W+(hz|khz|mhz|rad/s)\b", re.I)
+_LISTED = re.compile(r"[#%!*;][\s#%!*;]*(?:REM\s+)?(?:name|col(?:umn)?)?[ _]?\d+\s*[:=]\s*(.+)", re.I)
+"""A name of a column in a line of its own: ``# NAME0 = Frequency [Hz]``, ``# column 2: phase (deg)``."""
 _IMPLIED: Final = {
     ".frd": ("f,mag_db,phase_deg", "Hz, dB, degrees"),
     ".zma": ("f,mag,phase_deg", "Hz, Ohm, degrees"),
@@ -74,7 +76,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
     table = TextTable.of(name, data)
-    turned = _turned(table) or _listed(table) or _stepped(table) or _citi(table)
+    turned = _turned(table) or _listed(table) or _qucs(table) or _stepped(table) or _citi(table)
     if turned is not None:
         text, origin, said = turned
         try:
@@ -134,6 +136,18 @@ def _listed(table: TextTable) -> _Rewritten | None:
         return None
     rows = [names, *(cells[i + 1 : i + width] for i in range(0, len(cells), width))]
     return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()
+
+
+def _qucs(table: TextTable) -> _Rewritten | None:
+    """Return a dataset of Qucs with its variables side by side, those of as many values as the first one."""
+    if not table.source.text.startswith("<Qucs Dataset"):
+        return None
+    lists = re.findall(r"^<(?:in)?dep (\S+)[^>\n]*>\n([^<]+)<", table.source.text, re.M)
+    columns = [[name, *body.split()] for name, body in lists]
+    columns = [column for column in columns if len(column) == len(columns[0])]
+    if not columns[1:]:
+        return None
+    return "".join("\t".join(row) + "\n" for row in zip(*columns, strict=True)).encode(), lambda _: None, ()
 
 
 def _stepped(table: TextTable) -> _Rewritten | None:
@@ -286,6 +300,9 @@ def _columns(
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":
             meanings[i] = ColumnMeaning("complex", label=cells[i])
+        elif [*cells, ""][i + 1] == cells[i] and re.fullmatch(r"[vi]\(.+\)", cells[i], re.I):  # ngspice
+            meanings[i : i + 2] = [ColumnMeaning(part, label=cells[i]) for part in ("real", "imaginary")]
+            guesses.append(f"'{cells[i][:30]}' twice is read as real and imaginary part")
     header = None if line is None else table.line(line)
     above = [i for i in block.above if table.lines[i].strip()]
     is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i not in (line, under))
@@ -341,7 +358,10 @@ def _header(
             if known >= 2 and is_better:  # noqa: PLR2004
                 best = score, line, cells[:width]
     if best is None:
-        return None, [""] * width, None, [""] * width
+        listed = [(i, m[1]) for i in block.above if (m := _LISTED.fullmatch(table.lines[i].strip()))]
+        if len(listed) != width:
+            return None, [""] * width, None, [""] * width
+        best = 0, listed[0][0], [bare(name) for _, name in listed]
     _, line, cells = best
     following = next((i for i in block.above if i > line and table.lines[i].strip()), None)
     units = [] if following is None else _units(table, following, width)

@@ -147,6 +147,8 @@ FEWEST_LINES = 3
 MOST_AVERAGES = 1e9
 """Of a number of averages, beyond which it is a mistake."""
 SHOWN_NAMES = 8
+SLOWEST, FASTEST = 1e-18, 1e18
+"""Of a frequency [Hz]: the fourth power of a ratio of two, and its square, have to be numbers."""
 SMALLEST, LARGEST = 1e-100, 1e100
 """Of a magnitude: its square, and the square of that over another, have to be numbers too."""
 
@@ -181,8 +183,8 @@ def checked_response(
     def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
         note("SF603", wrong, "value", say, hint)
 
-    wrong = ~np.isfinite(frequency) | (frequency < 0)
-    hint = "frequencies must be positive [Hz]"
+    wrong = ~((frequency >= SLOWEST) & (frequency <= FASTEST))
+    hint = f"frequencies lie between {SLOWEST:g} and {FASTEST:g} Hz"
     note("SF603", wrong, "frequency", lambda i: f"frequency {frequency[i]:g} Hz", hint)
     is_finite = np.isfinite(values)
     note_value(~is_finite, lambda i: "the value is not a finite number", "leave the line out")

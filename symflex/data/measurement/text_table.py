@@ -30,7 +30,7 @@ SIGNS: Final = "#%!/*; \t"
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
 _CARTESIAN = re.compile(
-    rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:[ij]m?)?\)?", re.I
+    rf"\(?({_NUMBER})\s*([-+])\s*(?:%?[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:%?[ij]m?)?\)?", re.I
 )
 _IMAGINARY = re.compile(rf"({_NUMBER})[ij]m?", re.I)
 _PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")

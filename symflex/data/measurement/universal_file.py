@@ -117,14 +117,14 @@ def _datasets(name: str, data: bytes) -> tuple[list[DatasetPlace], dict[int, int
     """
     found: list[DatasetPlace] = []
     kinds: dict[int, int] = {}
-    number, place = -1, 0
+    number, place, lines = -1, 0, 0
     while True:
         start = _next_mark(data, place)
         if start < 0:
             return found, kinds
         number += 1
         end = _next_mark(data, start + len(MARK))
-        line = data.count(b"\n", 0, start) + 2
+        line = lines + data.count(b"\n", place, start) + 2
         if end < 0:
             message = f"{name}:{line - 1}:1: this dataset has no end"
             raise DataError(Diagnostic("SF601", message, None, "a line with -1 in columns 5 and 6 ends it"))
@@ -136,6 +136,7 @@ def _datasets(name: str, data: bytes) -> tuple[list[DatasetPlace], dict[int, int
         if kind[:2] == b"58" and kind[2:3] in (b"", b"b", b" ", b"B"):
             _check_header(name, line, block[1:])
             found.append(DatasetPlace(line, number))
+        lines += data.count(b"\n", place, end)
         place = end + len(MARK)
 
 

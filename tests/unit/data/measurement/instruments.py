@@ -631,6 +631,38 @@ def simulated_files():
     yield Saved("bare_rows.csv", parts.encode(), columns="f,re,im")
 
 
+def files_of_simulators_and_names():
+    """Return files whose columns are named twice, elsewhere, by letters, or with a force below the bar."""
+    yield Saved("qucs.csv", ('"acfrequency";"r out.v";"i out.v"\n' + rows(F, RE, IM, sep=";")).encode())
+    body = "".join(f"  {z.real:+.11e}-j{-z.imag:.11e}\n" for z in H)
+    axis = "".join(f"  {f:+.11e}\n" for f in F)
+    qucs = f"<Qucs Dataset 0.0.19>\n<indep acfrequency 99>\n{axis}</indep>\n<dep out.v acfrequency>\n{body}</dep>\n"
+    yield Saved("qucs.dat", qucs.encode())
+    names = " frequency       v(out)          v(out)\n"
+    yield Saved("wrdata.data", (names + rows(F, RE, IM, sep="  ")).encode())
+    gcs = (
+        "# REM E-712\n# DIM = 3\n# NAME0 = Frequency [Hz]\n# NAME1 = Magnitude [dB]\n# NAME2 = Phase [deg]\n"
+    )
+    yield Saved("gcs.dat", (gcs + "# END_HEADER\n" + rows(F, DB, DEG, sep=" ")).encode())
+    listed = "# column 1: frequency (Hz)\n# column 2: Re\n# column 3: Im\n"
+    yield Saved("listed.txt", (listed + rows(F, RE, IM, sep=" ")).encode())
+    y = 1 / H
+    both = "freq/Hz\tRe(Z)/Ohm\t-Im(Z)/Ohm\tRe(Y)/Ohm-1\tIm(Y)/Ohm-1\n"
+    yield Saved("both.mpt", (both + rows(F, RE, -IM, y.real, y.imag, sep="\t")).encode())
+    traces = "Frequency(Hz),|Z|(ohm)-data,|Z|(ohm)-mem,θz(deg)-data,θz(deg)-mem\n"
+    yield Saved("empty_memory.csv", (traces + rows(F, SIZE, 0 * F, DEG, 0 * F)).encode())
+    parts = [f"{z.real:.9e}-%i*{-z.imag:.9e}" for z in H]
+    yield Saved("scilab.csv", ("f,H\n" + rows(F, parts)).encode())
+    for i, (names, columns) in enumerate((
+        ("f,X/F,phase_deg", (F, SIZE, DEG)), ("f [Hz],X1/F1 [m/N],phase X1/F1 [°]", (F, SIZE, DEG)), ("f,X/F (dB),phase_deg", (F, DB, DEG)),
+        ("Frequency (hertz),Gain (decibels),Phase (degrees)", (F, DB, DEG)),
+        ("f,Z',Z''", (F, RE, IM)), ("f,Z',-Z''", (F, RE, -IM)), ("Freq/Hz, Z'/ohm, Z\"/ohm", (F, RE, IM)),
+        ("f,Hreal,Himag", (F, RE, IM)), ("f,ReH,ImH", (F, RE, IM)), ("Freq,I,Q", (F, RE, IM)),
+        ("f,in_phase,quadrature", (F, RE, IM)),
+    )):  # fmt: skip
+        yield Saved(f"names_{i}.csv", (names + "\n" + rows(*columns)).encode())
+
+
 def universal(f, h):
     """Return a universal file of one dataset 58 with single precision, blanks behind its marks."""
     ends = f"{4:5d}{1:10d}{1:5d}{0:10d} {'NONE':<10}{1:10d}{3:4d} {'NONE':<10}{2:10d}{3:4d}"
@@ -716,6 +748,7 @@ def all_files():
         *wild_files(),
         *files_of_tables(),
         *simulated_files(),
+        *files_of_simulators_and_names(),
         *network_files(),
         *array_files(),
     ]

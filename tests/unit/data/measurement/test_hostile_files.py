@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import time
 import tracemalloc
 import zipfile
 
@@ -14,6 +15,7 @@ import scipy.io
 from symflex.data.measurement.array_files import read_archive, read_netcdf, read_variables
 from symflex.data.measurement.arrays import read_arrays
 from symflex.data.measurement.comma_separated import read_columns
+from symflex.data.measurement.universal_file import read_universal_file
 from symflex.errors import DataError
 
 ARRAYS = {"f": np.arange(1.0, 5), "H": np.array([1, 1j, -1, 2 + 1j]), "tf": "X/F"}
@@ -192,3 +194,10 @@ def test_a_text_of_very_many_cells_is_refused_early(monkeypatch):
     read_columns("wide.csv", ("f,a,b,c,d,e\n" + rows[: rows.index("800,")]).encode(), "wide", "f,re,im")
     with pytest.raises(DataError, match=r"wide.csv:835:1: error\[SF607\]: .* more than 5000 numbers"):
         read_columns("wide.csv", ("f,a,b,c,d,e\n" + rows).encode(), "wide", "f,re,im")
+
+
+def test_very_many_marks_of_datasets_take_no_time_and_lines_are_counted_on():
+    begun = time.process_time()
+    with pytest.raises(DataError, match=r"a.uff:80001:1: this dataset has no end"):
+        read_universal_file("a.uff", b"    -1\n" * 80001, "a")
+    assert time.process_time() - begun < 2

@@ -71,6 +71,9 @@ GUESSES = {
     "volts.csv": "the magnitude is 'CH2 Amplitude (V)' over 'CH1 Amplitude (V)'",
     "spectra.csv": "the response is 'Accel' over 'Force'",
     "without_x.lvm": "the frequencies are those that the header gives",
+    "empty_memory.csv": "columns '|Z|(ohm)-mem', 'θz(deg)-mem' not used",
+    "both.mpt": "'(Y)/Ohm-1' is one over 'Z', and is left out",
+    "wrdata.data": "'v(out)' twice is read as real and imaginary part",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 

@@ -119,6 +119,8 @@ MISTAKES = {
     "decimal comma and point": ("f;re;im\n1;2,5;3\n2;2.5;3\n3;2,5;1\n", "SF603", "a.csv:3:3"),
     "nan": (PLAIN.replace("2,3,4", "2,nan,4"), "SF603", "a.csv:3:3"),
     "infinite frequency": (PLAIN.replace("3,4,5", "inf,4,5"), "SF603", "a.csv:4:1"),
+    "too fast": (PLAIN.replace("3,4,5", "1e300,4,5"), "SF603", "a.csv:4:1"),
+    "too slow": (PLAIN.replace("1,2,3", "1e-300,2,3"), "SF603", "a.csv:2:1"),
     "negative frequency": (PLAIN.replace("1,2,3", "-1,2,3"), "SF603", "a.csv:2:1"),
     "zero value": (PLAIN.replace("2,3,4", "2,0,0"), "SF603", "a.csv:3:3"),
     "negative magnitude": ("f,mag (m/N),phase_deg\n1,-2,3\n2,3,4\n3,4,5\n", "SF603", "a.csv:2:3"),
