@@ -284,7 +284,7 @@ class _File:
     """The file, and the names of everything in it."""
 
     def __init__(self, contents: Contents) -> None:
-        self.model, self.members, self.digits = contents.model, contents.members, contents.digits
+        self.model, self.members = contents.model, contents.members
         self.stem = contents.stem
         self.main = main_name(self.stem or self.model.title)
         wanted = {m.key: m.wanted for m in self.members}
@@ -367,7 +367,7 @@ class _File:
             lines += [first, "", *self._examples(), "", *wrapped(EXPANSION, ROOM), "", "Functions"]
         for m in self.members:
             lines += wrapped(f"{self.fields[m.key]}: {_disarmed(m.headline)}", ROOM, "  ", "      ")
-            lines += wrapped(_text(m.verification.text(self.digits)), ROOM, "      ")
+            lines += wrapped(_text(m.verification.text()), ROOM, "      ")
         lines += ["", "Parameters"] if self.model.parameters else []
         for p in self.model.parameters:
             name, value = self.parameters[p.name], default_value(p) or "no value"
@@ -431,7 +431,7 @@ class _File:
         help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
         if origin := origin_lines(member.tf.model, ROOM):
             help_text += [*(_disarmed(line) for line in origin), ""]
-        help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
+        help_text += wrapped(_text(member.verification.text()), ROOM)
         first = f"{name.upper()}  {_disarmed(member.headline)}"
         return [f"function value = {name}({variable}, varargin)", *_helped(first, help_text)]
 

@@ -94,7 +94,6 @@ class _Files:
     def __init__(self, contents: Contents, name: str | None) -> None:
         self.model = contents.model
         self.name = name
-        self.digits = contents.digits
         self.prefix = prefix_of(name)
         self.structure = f"{self.prefix}_parameters"
         self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
@@ -210,10 +209,10 @@ class _Files:
         member = self.of_s[key]
         lines = [member.headline, ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
-        said = member.verification.text(self.digits)
+        said = member.verification.text()
         sentences = [f"At s = j omega, {said}."]
         if key in self.on_axis:
-            real = self.on_axis[key].verification.text(self.digits)
+            real = self.on_axis[key].verification.text()
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
         lines.append("")
         for sentence in sentences:

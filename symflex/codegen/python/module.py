@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Contents, Member
     from symflex.codegen.program.verify import Verification
     from symflex.codegen.python.pieces import PrivateText
-    from symflex.model import Model
+    from symflex.model import Model, ModelParameter
 
 
 COPIED = (
@@ -222,8 +222,12 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         public = (responses if member.is_response else functions)[member.tf.name]
         made = TracedText if dialect.is_traced else BlockText
         owner = public if member.program.is_real else functions[member.tf.name]
-        private = made(member.program, owner, names, values, dialect)
-        function = _Function(member, public, private, member.verification.text(contents.digits))
+        private: PrivateText = (
+            TracedText(in_pieces(member.program), owner, names, values, dialect)
+            if dialect.is_traced
+            else BlockText(member.program, owner, names, values, dialect)
+        )
+        function = _Function(member, public, private, member.verification.text())
         # A response in complex arithmetic calls what the function of s calls.
         own = "\n".join(private.functions() if owner == public else [])
         blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
@@ -239,7 +243,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     is_piecewise = not all(member.program.is_lumped for member in members)
     if is_piecewise:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
-    text = header(dialect.first, model, contents.verified[: len(functions)], contents.digits, dialect.remark)
+    text = header(dialect.first, model, contents.verified[: len(functions)], dialect.remark)
     lints = LINTS["traced" if dialect.is_traced else "numpy in pieces" if is_piecewise else "numpy"]
     start = f"{text}# ruff: noqa: {lints}  (names and texts are the model's)\n\n"
     imports = f"from __future__ import annotations\n\n{dialect.imports}\n"
@@ -298,9 +302,7 @@ class _Function:
         lines += ["", "    Parameters", "    ----------", f"    {self.variable} : {array} of {kind}"]
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in self.member.parameters:
-            name = names[parameter.name]
-            lines.append(f"    {name} : {array}{'' if parameter.value is None else ', optional'}")
-            lines += wrapped(described(parameter, name), WIDTH, "        ")
+            lines += parameter_entry(parameter, names[parameter.name], array)
         if dialect.is_argument:
             lines.append(f"    {dialect.space} : module, optional")
             lines.append("        Library of arrays; by default that of the arguments.")
@@ -315,14 +317,14 @@ class _Function:
         return docstring(lines, "    ")
 
 
-def header(first: str, model: Model, verified: Sequence[Verification], digits: int, remark: str = "") -> str:
+def header(first: str, model: Model, verified: Sequence[Verification], remark: str = "") -> str:
     """Return a module's docstring: a first line, origin, the verified error of every function, a remark."""
     lines = [first, "", *origin(model, "")]
     lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
-        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+        lines += wrapped(inert(f"{verification.name}: {verification.text()}"), WIDTH, "", "    ")
     text = docstring(lines, "")
     return text.rstrip().removesuffix('"""') + f'\n{remark}"""\n' if remark else text
 
@@ -348,6 +350,20 @@ def public_names(
     on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.is_response}
     return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
+def parameter_entry(parameter: ModelParameter, name: str, kind: str) -> list[str]:
+    """Return what a docstring says of a parameter."""
+    first = f"    {name} : {kind}{'' if parameter.value is None else ', optional'}"
+    return [first, *wrapped(described(parameter, name), WIDTH, "        ")]
+
+
+def row_of_table(opening: str, entries: Sequence[str]) -> list[str]:
+    """Return a dictionary within a table, on one line where it fits."""
+    one_line = f"    {opening}{{{', '.join(entries)}}},"
+    if len(one_line) <= WIDTH and "\n" not in one_line:
+        return [one_line]
+    return [f"    {opening}{{", *(f"        {entry}," for entry in entries), "    },"]
+
+
 
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:
     """Return the dictionary of all parameters: value, unit and description."""
@@ -358,12 +374,7 @@ def parameter_table(model: Model, names: Mapping[str, str]) -> str:
             f'"unit": {literal(parameter.unit)}',
             f'"doc": {literal(parameter.doc)}',
         ]
-        one_line = f'    "{names[parameter.name]}": {{{", ".join(entries)}}},'
-        if len(one_line) <= WIDTH and "\n" not in one_line:
-            lines.append(one_line)
-        else:
-            inside = [f"        {entry}," for entry in entries]
-            lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
+        lines += row_of_table(f'"{names[parameter.name]}": ', entries)
     return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
 
 
