@@ -63,7 +63,7 @@ class Site:
         self.ring = self.tf.ratio.ring
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
         self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "exp"}
-        self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
+        self._generators = _KernelGenerators(self)
         self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
 
     # ------------------------------------------------------------------------------- rational functions
@@ -170,7 +170,7 @@ class Site:
         forge, family = self.forge, self.families[i]
         factor = forge.constant(1) if factor is None else factor
         if family.wavenumber:
-            wavenumber = self._generators.generator(family.wavenumber)
+            wavenumber, _ = self._generators.generator(family.wavenumber)
             return forge.multiply([factor, self.length(family.lengths[j]), wavenumber])
         exponent = self.exponent(family, j)
         return forge.multiply([factor, forge.negate(exponent) if self.grows.get(i) else exponent])
@@ -250,7 +250,7 @@ class Site:
     ) -> int:
         """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
         forge, x = self.forge, self.length(length)
-        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
+        wavenumber, _ = self._generators.generator(dispersion.wavenumbers[1])
         argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
         return self._series(basis, argument, x, k, size)
 
@@ -421,20 +421,16 @@ def _common_step(values: set[Fraction]) -> Fraction:
     return Fraction(gcd(*(int(v * below) for v in present)), below)
 
 
-@dataclass
 class _KernelGenerators(Generators):
     """Generators with wavenumbers and decays among them."""
 
-    site: Site | None = None
-
-    def generator(self, name: str) -> int:
-        """Return the expression of a generator."""
-        return self._generator(name)[0]
+    def __init__(self, site: Site) -> None:
+        super().__init__(site.forge, site.tf, is_far=False)
+        self.site = site
 
     def _make(self, name: str) -> tuple[int, int]:
-        site = self.site
-        if site is not None and name in site.waves:
-            return site.wavenumber(name), 1
-        if site is not None and name in site.kernels:
-            return site.decay(site.kernels[name]), 1
+        if name in self.site.waves:
+            return self.site.wavenumber(name), 1
+        if name in self.site.kernels:
+            return self.site.decay(self.site.kernels[name]), 1
         return super()._make(name)
