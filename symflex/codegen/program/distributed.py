@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
+from symflex.balls import value_at
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT
 from symflex.codegen.program.exponents import (
@@ -687,7 +688,7 @@ class _PieceMaker:
                 code.append(self._piece(near, is_complex=True))
                 continue
             signs = dict(zip(signed, negative, strict=True))
-            made = self._real_piece(axis.where(signs), turn, is_near=all(near))
+            made = self._real_piece(replace(axis, signs=signs), turn, is_near=all(near))
             if made is None:
                 return None
             piece, turn = made
@@ -760,13 +761,8 @@ def declared_length(tf: TransferFunction, length: Factored) -> float:
     for name in length.ring.names:
         value = known.get(name)
         point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
-    result = float(length.unit)
-    for factor, exponent in length.factors:
-        total = 0.0
-        for monomial, number in factor.terms():
-            total += int(number) * prod(x ** int(e) for x, e in zip(point, monomial, strict=True))
-        result *= total**exponent
-    return result
+    factors = (value_at(f, point.__getitem__, float) ** e for f, e in length.factors)
+    return prod(factors, start=float(length.unit))
 
 
 def _longer_and_shorter(
