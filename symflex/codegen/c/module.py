@@ -90,6 +90,30 @@ def _harmless(line: str) -> str:
     return f"{text}." if text.endswith("\\") else text
 
 
+def source_and_header(
+    name: str | None, introduction: Sequence[str], included: Sequence[str], inside: Sequence[str], source: str
+) -> Export:
+    """Return the source file and its header, which declares what is ``inside``; without a name, one file."""
+    guard = f"{prefix_of(name).upper()}_H"
+    opening = [*comment(introduction), f"#ifndef {guard}", f"#define {guard}", "", *included]
+    opening += ["#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
+    closing = ["#ifdef __cplusplus", "}", "#endif", "", "#endif"]
+    header = "\n".join([*opening, *inside, *closing]) + "\n"
+    if name is None:
+        return Export(f"{header}\n{source}")
+    (first,) = comment([f"{name}.c: the functions that {name}.h declares."])
+    return Export(f'{first}\n\n#include "{name}.h"\n\n{source}', companions={".h": header})
+
+
+INCLUDED = (
+    "#include <stddef.h>",
+    "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
+    "#include <complex.h>",
+    "#endif",
+    "",
+)
+
+
 class _Files:
     def __init__(self, contents: Contents, name: str | None) -> None:
         self.model = contents.model
@@ -108,48 +132,20 @@ class _Files:
         return Functions(name, self.prefix, self.structure, self.members, self.of_s[key].program, axis)
 
     def made(self) -> Export:
-        header, body = self._header(), self._source()
-        if self.name is None:
-            return Export(f"{header}\n{body}")
-        first = "\n".join(comment([f"{self.name}.c: the functions that {self.name}.h declares."]))
-        return Export(f'{first}\n\n#include "{self.name}.h"\n\n{body}', companions={".h": header})
-
-    # ---------------------------------------------------------------------------------------- the header
-
-    def _header(self) -> str:
-        guard = f"{self.prefix.upper()}_H"
-        opening = [
-            *comment(self._introduction()),
-            f"#ifndef {guard}",
-            f"#define {guard}",
-            "",
-            "#include <stddef.h>",
-            "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
-            "#include <complex.h>",
-            "#endif",
-            "",
-            "#ifdef __cplusplus",
-            'extern "C" {',
-            "#endif",
-            "",
-        ]
         declared = []
         for key, functions in self.functions.items():
             declared += [*comment(self._described(key)), f"{functions.freq_prototype};", ""]
-        complex_ones = [f"{f.value_prototype};" for f in self.functions.values()]
-        closing = [
+        with_complex = [
             "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
             *comment(["Values at any complex s [rad/s]."]),
-            *complex_ones,
+            *(f"{functions.value_prototype};" for functions in self.functions.values()),
             "#endif",
             "",
-            "#ifdef __cplusplus",
-            "}",
-            "#endif",
-            "",
-            "#endif",
         ]
-        return "\n".join([*opening, *self._parameters(), *declared, *closing]) + "\n"
+        inside = [*self._parameters(), *declared, *with_complex]
+        return source_and_header(self.name, self._introduction(), INCLUDED, inside, self._source())
+
+    # ---------------------------------------------------------------------------------------- the header
 
     def _introduction(self) -> list[str]:
         files = f"{self.name}.h" if self.name else "C99"
