@@ -171,15 +171,17 @@ class LocalFunctions(PrivateFunctions):
 
     def _lumped(self, program: Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
-        early = (*near.constants, *near.assignments)
         if far is None:
-            printer, (s, value) = self.scope(early, "s", "value")
-            lines = [*self.assigned(early, printer), *self.statement(value, printer.print(near.values[0]))]
+            printer, (s, value) = self.scope(near.every, "s", "value")
+            lines = [
+                *self.assigned(near.every, printer),
+                *self.statement(value, printer.print(near.values[0])),
+            ]
             return self._function(value, "value", s, lines)
         words = ("s", "value", "limit", "is_far", "far_value", "inverse")
-        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*early, *late), *words)
+        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*near.every, *late), *words)
         lines = [
-            *self.assigned(early, printer),
+            *self.assigned(near.every, printer),
             *self.statement(value, printer.print(near.values[0])),
             *self.statement(limit, repr(program.limit)),
             *self.statement(is_far, f"abs({s}) > {limit}"),
@@ -194,16 +196,15 @@ class LocalFunctions(PrivateFunctions):
 
     def _choice(self, program: Piecewise) -> str:
         """Return the function that tells which piece serves."""
-        assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (s, number) = self.scope(assignments, "s", "number")
+        printer, (s, number) = self.scope(program.tests.every, "s", "number")
         lines = [
-            *self.assigned(assignments, printer),
+            *self.assigned(program.tests.every, printer),
             *self.statement(number, printer.piece_number(program) or "0"),
         ]
         return self._function(number, "number", s, lines)
 
     def _piece(self, number: int, piece: CodePiece) -> list[str]:
-        assignments = (*piece.code.constants, *piece.code.assignments)
+        assignments = piece.code.every
         if piece.circle:
             printer, (s, *results) = self.scope(assignments, "s", "num", "den", "growth", "radius")
             lines = self.assigned(assignments, printer)

@@ -358,16 +358,18 @@ class Straight:
     assignments: tuple[Assignment, ...]
     values: tuple[CodeNode, ...]
 
+    @property
+    def every(self) -> tuple[Assignment, ...]:
+        """All assignments, in order."""
+        return (*self.constants, *self.assignments)
+
     def nodes(self) -> Iterator[CodeNode]:
         """Yield all expressions, parts included, in no particular order."""
-        for root in (*self.values, *(a.value for a in (*self.constants, *self.assignments))):
+        for root in (*self.values, *(a.value for a in self.every)):
             yield from root.walk()
 
-    def needed(self, values: Sequence[CodeNode], made_elsewhere: tuple[type[CodeNode], ...] = ()) -> Straight:
-        """Return the assignments that some values need, and these values.
-
-        Operands of nodes that are made elsewhere are not needed.
-        """
+    def needed(self, values: Sequence[CodeNode]) -> Straight:
+        """Return the assignments that some values need, and these values."""
         names = {n.name for value in values for n in value.walk() if isinstance(n, Assigned)}
         kept: list[list[Assignment]] = []
         for group in (self.assignments, self.constants):
@@ -375,8 +377,6 @@ class Straight:
             for assignment in reversed(group):
                 if assignment.name in names:
                     own.insert(0, assignment)
-                    if isinstance(assignment.value, made_elsewhere):
-                        continue
                     names |= {n.name for n in assignment.value.walk() if isinstance(n, Assigned)}
             kept.append(own)
         return Straight(tuple(kept[1]), tuple(kept[0]), tuple(values))

@@ -28,7 +28,7 @@ from symflex.codegen.module_text import (
 )
 from symflex.codegen.program import evaluate
 from symflex.codegen.program.verify import double_of
-from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, statement
+from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, in_pieces, statement
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -220,7 +220,6 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     blocks, code, solving = [parameter_table(model, names)], "", None
     for member in members:
         public = (responses if member.is_response else functions)[member.tf.name]
-        made = TracedText if dialect.is_traced else BlockText
         owner = public if member.program.is_real else functions[member.tf.name]
         private: PrivateText = (
             TracedText(in_pieces(member.program), owner, names, values, dialect)
@@ -232,8 +231,8 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         own = "\n".join(private.functions() if owner == public else [])
         blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
         code += "\n".join([*function.body(), own, ""])
-        if isinstance(private, BlockText) and private.given.network is not None:
-            solving = private.network(private.given.network)
+        if isinstance(private, BlockText) and private.program.network is not None:
+            solving = private.network(private.program.network)
     if solving is not None:
         # Functions of one model solve the same network.
         blocks.append("\n".join([*solving, ""]))
@@ -350,6 +349,7 @@ def public_names(
     on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.is_response}
     return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
+
 def parameter_entry(parameter: ModelParameter, name: str, kind: str) -> list[str]:
     """Return what a docstring says of a parameter."""
     first = f"    {name} : {kind}{'' if parameter.value is None else ', optional'}"
@@ -362,7 +362,6 @@ def row_of_table(opening: str, entries: Sequence[str]) -> list[str]:
     if len(one_line) <= WIDTH and "\n" not in one_line:
         return [one_line]
     return [f"    {opening}{{", *(f"        {entry}," for entry in entries), "    },"]
-
 
 
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:
