@@ -108,7 +108,7 @@ class Verification:
     samples: int  # number of frequencies
     reason: str = ""  # why it was not measured; empty when it was
 
-    def text(self, digits: int = 2) -> str:
+    def text(self) -> str:
         """Return the sentence that stands in the docstring.
 
         Examples
@@ -118,15 +118,15 @@ class Verification:
         """
         if self.error is None:
             return f"not verified: {self.reason}"
-        error = _error_text(self.error, digits)
+        error = _error_text(self.error)
         low, high = (frequency_text(f) for f in self.band)
         if self.error == inf:
             return f"not accurate: some values overflow over {low} ... {high}"
         return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
 
 
-def _error_text(error: float, digits: int) -> str:
-    return "0" if error == 0 else f"{error:.{digits - 1}e}"
+def _error_text(error: float) -> str:
+    return "0" if error == 0 else f"{error:.1e}"
 
 
 def frequency_text(hertz: Fraction) -> str:
@@ -201,7 +201,7 @@ def choose_band(
     verified = Verification(tf.name, "band", error, band, len(references.s), reason)
     off = [form.end * complex(x, y) for x in (-ASIDE_OF_AXIS, ASIDE_OF_AXIS) for y in HEIGHTS]
     worst = References(values, np.array(off)).worst_error(program)
-    return program, verified, (*form.sentences(), form.beside(ASIDE_OF_AXIS, _error_text(worst, 2)))
+    return program, verified, (*form.sentences(), form.beside(ASIDE_OF_AXIS, _error_text(worst)))
 
 
 def measure_values(
