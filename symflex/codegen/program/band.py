@@ -24,7 +24,7 @@ is driven. Up to 3 rad/s, with the poles at ``j pi/2`` and, beyond, at ``3 j pi/
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from math import inf, log2, prod, sqrt, tau
@@ -39,7 +39,7 @@ from symflex.codegen.program.nodes import Laplace, RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
-from symflex.roots.root import groups
+from symflex.roots.root import groups, modes_of
 from symflex.transfer import BoundNested, NestedTransferFunction
 from symflex.transfer.nested_form import EnclosedNested
 
@@ -318,15 +318,7 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
         return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to
     modes = analysis.modes or DEFAULT_MODES
     found = locate(bound, Modes(modes + BEYOND), DIGITS)
-    poles, zeros = (
-        [
-            root.frequency_hz()
-            for root in x
-            if not root.im < 0 and not root.is_zero
-            for _ in range(root.multiplicity)
-        ]
-        for x in (found.poles, found.zeros)
-    )
+    poles, zeros = ([root.frequency_hz() for root in modes_of(x)] for x in (found.poles, found.zeros))
     # Where no wave is reflected there may be few poles, and zeros without end.
     told = poles if len(poles) > modes else zeros
     if len(told) <= modes:
@@ -367,8 +359,8 @@ def _two_doubles(x: arb) -> tuple[float, float]:
 def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandForm | None:
     """Return the band form with given roots, None where what they leave is not smooth."""
     (below, poles), (above, zeros) = _split(found.poles), _split(found.zeros)
-    name, reason = values.bound.name, found.certificate.reason or ""
-    made = BandForm(name, end, 1.0, above - below, zeros, poles, (), (), reason)
+    reason = found.certificate.reason or ""
+    made = BandForm(values.bound.name, end, 1.0, above - below, zeros, poles, (), (), reason)
     count = FIRST_NODES
     while count <= MOST_NODES:
         fit = _fit(values, made, count)
@@ -377,7 +369,7 @@ def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandFo
         gain, even, odd = fit
         kept = [_trimmed(part) for part in (even, odd)]
         if all(len(part) <= count - SPARE for part in kept):
-            return BandForm(name, end, gain, above - below, zeros, poles, kept[0], kept[1], reason)
+            return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
     return None
 

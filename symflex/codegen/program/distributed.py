@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
-from math import gcd, pi, prod
+from math import gcd, prod
 from operator import mul
 from typing import TYPE_CHECKING, TypeVar
 
@@ -442,7 +442,9 @@ class _PieceMaker:
             if g.dispersion is dispersion
         ]
         scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
-        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
+        # At least half the square of the smaller wavenumber in size.
+        quotient = forge.divide(site.coefficient(dispersion), site.coefficient(dispersion, 2))
+        return quotient, (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self,
@@ -515,8 +517,8 @@ class _PieceMaker:
         """Return the expression of a half, and the factor that was taken out of it."""
         forge = site.forge
         if not near:
-            total = site.exponential_sum(half.far, scales)
-            return total, half.waves * half.unit
+            leaves = {key: site.polynomial(p) for key, p in half.far.items()}
+            return site.exponential_sum(leaves, scales), half.waves * half.unit
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
         if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
@@ -525,15 +527,13 @@ class _PieceMaker:
         solution = cache(partial(self._solution, site))
         for orders, rest in parts.items():
             leaves = {key: site.value(v / taken) for key, v in rest.items()}
-            inner = site.sum_of_leaves(leaves, scales)
+            inner = site.exponential_sum(leaves, scales)
             summands.append(forge.multiply([inner, *map(solution, near, orders)]))
         return forge.add(summands), taken
 
     def _solution(self, site: Site, group: _Group, k: int) -> int:
-        if isinstance(group, _Lone):
-            reach = LONE * self.reach
-            return site.local_of_smaller(group.basis, group.dispersion, group.length, k, reach)
-        return site.local(group.basis, group.dispersion, group.length, k, self.reach)
+        reach = LONE * self.reach if isinstance(group, _Lone) else self.reach
+        return site.local(group.basis, group.dispersion, group.length, k, reach)
 
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
         """Return the power of s that all values share."""
@@ -756,11 +756,8 @@ class _PieceMaker:
 
 def declared_length(tf: TransferFunction, length: Factored) -> float:
     """Return the declared value of a length; without values, of a model with every parameter 1."""
-    known = {p.name: p.value for p in tf.parameters}
-    point = []
-    for name in length.ring.names:
-        value = known.get(name)
-        point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
+    known = {p.name: float(p.value.nearly) for p in tf.parameters if p.value is not None}
+    point = [known.get(name, 1.0) for name in length.ring.names]
     factors = (value_at(f, point.__getitem__, float) ** e for f, e in length.factors)
     return prod(factors, start=float(length.unit))
 

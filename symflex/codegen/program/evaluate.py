@@ -140,14 +140,11 @@ def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     >>> number_of(tree.ParameterValue("m"), {}) is None
     True
     """
-    pending = [node]
-    while pending:
-        part = pending.pop()
+    for part in node.walk():
         if isinstance(part, (tree.ParameterValue, tree.Laplace, tree.InverseLaplace)):
             return None
         if isinstance(part, tree.Assigned) and part.name not in known:
             return None
-        pending += part.children
     run = _ProgramRun(None, {}, tree.Straight((), (), ()))
     run.assigned.update(known)
     return run.value(node)
@@ -233,8 +230,7 @@ class _ProgramRun:
                 return network_value([self.value(e) for e in entries], network, output, source)
             case tree.Item(values, position):
                 return self.value(values)[position]
-        message = f"no value for {type(node).__name__}"
-        raise TypeError(message)
+        raise TypeError(type(node).__name__)
 
 
 Values = Any

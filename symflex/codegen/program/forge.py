@@ -227,12 +227,10 @@ class _Schedule:
         roots = [x for x in (self.near, self.far) if x is not None]
         late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
         constants, at_near, at_far = self.sections(roots, late)
-        near = tree.Straight(constants, at_near, (self.nodes[self.near],))
-        if self.far is None:
-            return tree.lumped(parameters, near)
-        return tree.lumped(
-            parameters, near, tree.Straight(constants, at_near + at_far, (self.nodes[self.far],)), limit
-        )
+        near, far = tree.Straight(constants, at_near, (self.nodes[self.near],)), None
+        if self.far is not None:
+            far = tree.Straight(constants, at_near + at_far, (self.nodes[self.far],))
+        return tree.lumped(parameters, near, far, limit)
 
     def sections(
         self, roots: list[int], late: set[int], *, shared: bool = False

@@ -305,11 +305,6 @@ class FundamentalMinors(CodeNode):
     tip: Tip | None = None  # where a stiffness vanishes at the start
 
     @property
-    def size(self) -> int:
-        """The number of states; so many logarithms of scales follow the minors."""
-        return 1 + max(max(place[:2]) for place in self.places)
-
-    @property
     def beginning(self) -> tuple[object, ...]:
         """What run-time functions take of the tip, empty without one."""
         return astuple(self.tip) if self.tip else ()

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion, Factored, Kernel
     from symflex.codegen.program.exponents import (
         Family,
-        KernelSum,
         Key,
         RealAxis,
         RealKey,
@@ -64,7 +63,6 @@ class Site:
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
         self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "exp"}
         self._generators = _KernelGenerators(self)
-        self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
 
     # ------------------------------------------------------------------------------- rational functions
 
@@ -221,42 +219,32 @@ class Site:
         exponent = [self.length(kernel.length), self.value(kernel.dispersion.shift)]
         return self.forge.apply("complex_exp", self.forge.negate(self.forge.multiply(exponent)))
 
-    def quotient(self, dispersion: Dispersion) -> int:
-        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
-        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
-
     # ------------------------------------------------------------------------------------ local solutions
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
-        """Return solution k of an equation at a length, for exponents up to a size."""
+        """Return solution k of an equation at a length, for exponents up to a size.
+
+        On the basis of a wave, a pair stands for its smaller wavenumber.
+        """
         forge, x = self.forge, self.length(length)
-        if basis.step > 1:
+        if basis.step == 1:
+            e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
+            coefficients = []
+            for i, polynomial in enumerate(basis.coefficients):
+                terms = [
+                    forge.multiply([forge.constant(number), forge.power(e, p), forge.power(f, q)])
+                    for (p, q), number in sorted(polynomial.items())
+                ]
+                coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
+            solution = forge.solutions(coefficients, series_length(size))[k]
+            return forge.multiply([forge.power(x, k), solution])
+        if dispersion.kind == "pair":
+            wavenumber, _ = self._generators.generator(dispersion.wavenumbers[1])
+            argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
+        else:
             argument = self._argument(dispersion, length)
-            if dispersion.kind == "wave":
-                argument = forge.negate(argument)
-            return self._series(basis, argument, x, k, size)
-        e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
-        coefficients = []
-        for i, polynomial in enumerate(basis.coefficients):
-            terms = [
-                forge.multiply([forge.constant(number), forge.power(e, p), forge.power(f, q)])
-                for (p, q), number in sorted(polynomial.items())
-            ]
-            coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
-        return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
-
-    def local_of_smaller(
-        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
-    ) -> int:
-        """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
-        forge, x = self.forge, self.length(length)
-        wavenumber, _ = self._generators.generator(dispersion.wavenumbers[1])
-        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
-        return self._series(basis, argument, x, k, size)
-
-    def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
-        forge = self.forge
-        self.forge.label(argument, "z")
+            argument = forge.negate(argument) if dispersion.kind == "wave" else argument
+        forge.label(argument, "z")
         series = basis.series(k, size)
         total = forge.constant(series[-1])
         for number in reversed(series[:-1]):
@@ -265,12 +253,11 @@ class Site:
 
     # ---------------------------------------------------------------------------------- sums of exponentials
 
-    def exponential_sum(self, terms: KernelSum, scales: Scales) -> int:
-        """Return a sum over its largest exponential; of circular terms that oscillate, half is given."""
-        return self.sum_of_leaves({key: self.polynomial(p) for key, p in terms.items()}, scales)
+    def exponential_sum(self, leaves: Mapping[Key, int], scales: Scales) -> int:
+        """Return a sum over its largest exponential, from the expressions of its coefficients.
 
-    def sum_of_leaves(self, leaves: Mapping[Key, int], scales: Scales) -> int:
-        """Return a sum as :meth:`exponential_sum` does, from the expressions of its coefficients."""
+        Of circular terms that oscillate, half is given.
+        """
         used = sorted({i for i, _ in scales})
         images = [(lambda t, i=i: self._term(i, t, scales)) for i in used]
         return self._sum({tuple(k[i] for i in used): v for k, v in leaves.items()}, images)
