@@ -337,7 +337,6 @@ class _StepCode:
         if sampling.prewarp is not None:
             how += f", exact at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
         lines = ["Difference equations, one step per sample.", "", *origin_lines(self.model, width)]
-        lines += [""] if lines[-1] else []
         lines += wrapped(
             f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width
         )

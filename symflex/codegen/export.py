@@ -20,7 +20,7 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import formula_of, headline, identifiers, inert
+from symflex.codegen.module_text import formula_of, identifiers, inert
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
 from symflex.model.loss_factors import check_causal
@@ -98,8 +98,10 @@ class Member:
     @property
     def headline(self) -> str:
         """What it computes, in one inert line."""
-        at = ", in real arithmetic" if self.program.is_real else ""
-        return headline(self.tf, f" at s = j omega{at}" if self.is_response else "")
+        tf, how = self.tf, ", in real arithmetic" if self.program.is_real else ""
+        at = f" at s = j omega{how}" if self.is_response else ""
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
 
     @property
     def parameters(self) -> tuple[ModelParameter, ...]:

@@ -137,8 +137,7 @@ class InfixPrinter(ABC):
                 return self.call("series_solutions", [self.list_of(coefficients), str(terms)])
             case tree.Item(values, position):
                 return self.item.format(self.within(values, LEAF), self.first + position)
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
+        raise TypeError(type(node).__name__)
 
     def operation(self, node: tree.Add | tree.Multiply | tree.Divide | tree.Negate) -> tuple[str, int]:
         """Return the text of a sum, product, quotient or negative number, and how tightly it binds."""

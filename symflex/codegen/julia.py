@@ -181,8 +181,7 @@ def _character(c: str) -> str:
 
 def _header(model: Model, members: Sequence[Member]) -> list[str]:
     lines = ["Transfer functions of a linear system.", ""]
-    if origin := origin_lines(model, WIDTH):
-        lines += [*(_disarmed(line) for line in origin), ""]
+    lines += [_disarmed(line) for line in origin_lines(model, WIDTH)]
     lines += wrapped(
         "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
         "with a dot, as in OUT_over_IN.(s), it takes arrays.",

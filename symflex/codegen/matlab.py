@@ -430,8 +430,7 @@ class _File:
         """Return the first line of a function behind a handle, and its help text."""
         name = self.public[member.key]
         help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
-        if origin := origin_lines(member.tf.model, ROOM):
-            help_text += [*(_disarmed(line) for line in origin), ""]
+        help_text += [_disarmed(line) for line in origin_lines(member.tf.model, ROOM)]
         help_text += wrapped(_text(member.verification.text()), ROOM)
         first = f"{name.upper()}  {_disarmed(member.headline)}"
         return [f"function value = {name}({variable}, varargin)", *_helped(first, help_text)]

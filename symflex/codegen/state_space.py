@@ -17,8 +17,8 @@ from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
-from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.verify import DEFAULT_BAND, Verification, measure_values
+from symflex.codegen.program.evaluate import evaluate
+from symflex.codegen.program.verify import DEFAULT_BAND, Verification, double_of, measure_values
 from symflex.codegen.python.module import (
     NUMPY_DIALECT,
     docstring,
@@ -193,7 +193,7 @@ def state_space_module(
         raise BudgetError(
             Diagnostic("SF503", message, None, "give the parameters numbers first, with bind()")
         )
-    module = _Module(system, StateEquations(system))
+    module = _Module(system)
     verified = tuple(module.measured(tf, samples) for tf in tfs)
     return Export(module.text(verified), shortfalls(verified), verified=verified)
 
@@ -201,9 +201,9 @@ def state_space_module(
 class _Module:
     """Prints one realisation."""
 
-    def __init__(self, system: StateSpace, equations: StateEquations) -> None:
+    def __init__(self, system: StateSpace) -> None:
         self._system = system
-        self._equations = equations
+        self._equations = equations = StateEquations(system)
         self._entries = {
             letter: {
                 (i, j): _node(equations.entry(value))
@@ -239,11 +239,7 @@ class _Module:
 
     def _arrays(self) -> Arrays:
         """Return the matrices that the generated code makes of the declared values."""
-        given = {
-            p.name: nearest_double(p.value.rational, p.value.pi_power)
-            for p in self._parameters
-            if p.value is not None
-        }
+        given = {p.name: double_of(p.value) for p in self._parameters if p.value is not None}
         arrays = []
         for letter, _, shape in self._system.matrices:
             array = np.zeros(shape)

@@ -453,8 +453,7 @@ class Body:
                 return _roots(self.term(point), node)
             case tree.RootFactor():
                 return self.whole(node.spelled)
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
+        raise TypeError(type(node).__name__)
 
     def quotient(self, x: Term, y: Term) -> Term:
         """Return the quotient of two numbers, in lanes without branches."""
@@ -481,9 +480,7 @@ class Body:
             return _call("cx_sqrt", Kind.COMPLEX, complex_term(x))
         if function == "complex_exp" and x.kind is not Kind.REAL:
             return _call("cx_cis" if x.kind is Kind.IMAGINARY else "cx_exp", Kind.COMPLEX, x)
-        if x.kind is not Kind.REAL:
-            message = f"no text for {function} of a complex number"
-            raise TypeError(message)
+        assert x.kind is Kind.REAL
         name = REAL_FUNCTIONS[function]
         if self.in_lanes and x.varies and name in LANE_FUNCTIONS:
             return _call(f"lane_{name}", Kind.REAL, x)

@@ -164,9 +164,8 @@ class _Files:
             "Errors named below were measured with these operations in IEEE double precision; the library's "
             "own errors in exp, sin and similar functions come in addition.",
         ]
-        origin = origin_lines(self.model, WIDTH - 3)
-        gap = [""] if origin else []
-        lines = [f"{files}: transfer functions of a linear system.", "", *origin, *gap]
+        lines = [f"{files}: transfer functions of a linear system.", ""]
+        lines += origin_lines(self.model, WIDTH - 3)
         for paragraph in paragraphs:
             lines += [*wrapped(paragraph, WIDTH - 3), ""]
         return lines[:-1]

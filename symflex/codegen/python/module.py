@@ -163,16 +163,11 @@ Accuracy holds in double precision. Switch it on in jax before anything else:
 
 @cache
 def private_copy(function: Callable[..., object]) -> str:
-    """Return the text of a run-time function of this package as a private one, without annotations.
-
-    Raises ValueError: When its text has no signature with a result.
-    """
+    """Return the text of a run-time function of this package as a private one, without annotations."""
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
     found = signature.match(text)
-    if found is None:
-        message = f"{function} has no signature"
-        raise ValueError(message)
+    assert found is not None
     names = re.findall(r"(\w+): ", found.group(2))
     body = re.sub(r"(\w): Any = ", r"\1 = ", text[found.end() :])
     body = re.sub(rf"(?<!\.)\b({_OWN})\(", r"_\1(", body)
@@ -330,8 +325,7 @@ def header(first: str, model: Model, verified: Sequence[Verification], remark: s
 
 def origin(model: Model, indent: str) -> list[str]:
     """Return lines that tell title and source of a model, and an empty one if there are any."""
-    lines = [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
-    return [*lines, ""] if lines else []
+    return [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
 
 
 def docstring(lines: Sequence[str], indent: str) -> str:
