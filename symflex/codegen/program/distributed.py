@@ -228,10 +228,6 @@ class _PieceMaker:
         waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
         num, den = (v.filter(lambda f: not self._holds(f, self.waves)) for v in rest)
         plain = num / den * self.tf.num.unit / self.tf.den.unit
-        for side, product_of_waves in enumerate(waves):
-            symmetric, remaining = self._symmetric(product_of_waves)
-            waves[side] = remaining
-            plain = plain * symmetric ** (-1 if side else 1)
         found = [expand(self.ring, k.expand(), self.families) for k in kernels]
         sums = self._in_segments([terms for terms, _ in found])
         halves = []
@@ -241,26 +237,6 @@ class _PieceMaker:
             plain = plain * free ** (-1 if side else 1)
             halves.append(self._half(terms, own * (common / free)))
         return plain, (halves[0], halves[1])
-
-    def _symmetric(self, value: Factored) -> tuple[Factored, Factored]:
-        """Split off the factors whose product has no wavenumbers once their relations are used.
-
-        Such factors may cancel within themselves: ``rho*s^2 - E*lambda^2`` does at high frequencies.
-        """
-        splits = [
-            f
-            for d in self.table.dispersions
-            if d.kind == "pair"
-            for f, _ in (
-                Factored.generator(self.ring, d.wavenumbers[0]) ** 2
-                - Factored.generator(self.ring, d.wavenumbers[1]) ** 2
-            ).factors
-        ]
-        sums = value.filter(lambda f: len(f) > 1 and f not in splits).numerator()
-        reduced = self.normal.reduce(sums.expand())
-        if sums.is_one or any(self._holds(f, self.waves) for f, _ in reduced.factors):
-            return Factored.number(self.ring, 1), value
-        return reduced, value / sums
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
         """Return the sums in base lengths in each of which the denominator's largest term is largest.
