@@ -294,13 +294,7 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
     if len(line) <= WIDTH:
         return [line]
     # Only between operators: an identifier longer than a line stays whole.
-    wrapper = TextWrapper(
-        width=WIDTH,
-        initial_indent=indent,
-        subsequent_indent=indent + STEP,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    wrapper = TextWrapper(WIDTH, indent, indent + STEP, break_long_words=False, break_on_hyphens=False)
     return wrapper.wrap(f"{opening} {value};")
 
 
