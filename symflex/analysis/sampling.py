@@ -227,7 +227,7 @@ def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) 
     """Return the function whose step response is that of the given one at samples."""
     del bound
     poles = _mapped(given.poles, lambda p: (p * sampling.seconds).exp())
-    below = _product(poles)
+    below = monic(poles)
     n = given.order
     parts: list[tuple[int, list[arb]]] = []
     for term in given.terms:
@@ -271,7 +271,7 @@ def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling
     for root, sign in [*((r, 1) for r in given.zeros), *((r, -1) for r in given.poles)]:
         gain = gain * (k - root.enclosure()) ** (sign * root.multiplicity)
     zeros = (*zeros, *(acb(-1) for _ in range(len(poles) - len(zeros))))
-    return [c * gain.real for c in _product(zeros)], _product(poles), poles, zeros, late
+    return [c * gain.real for c in monic(zeros)], monic(poles), poles, zeros, late
 
 
 def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
@@ -292,8 +292,8 @@ def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Samplin
     more = max(surplus - 1, 0)
     zeros = (*zeros, *(acb(-1) for _ in range(more)))
     gain = gain / 2**more
-    above = [c * gain.real for c in _product(zeros)]
-    return [arb(0)] * (len(poles) + 1 - len(above)) + above, _product(poles), poles, zeros, late
+    above = [c * gain.real for c in monic(zeros)]
+    return [arb(0)] * (len(poles) + 1 - len(above)) + above, monic(poles), poles, zeros, late
 
 
 MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found | None]] = {
@@ -345,7 +345,7 @@ def _mapped(roots: Sequence[Root], move: Callable[[acb], acb]) -> tuple[acb, ...
     return tuple(found)
 
 
-def _product(roots: Sequence[acb]) -> list[arb]:
+def monic(roots: Sequence[acb]) -> list[arb]:
     """Return the monic polynomial with conjugate or real roots, in descending powers."""
     found = prod((acb_poly([-root, acb(1)]) for root in roots), start=acb_poly([1]))
     return [c.real for c in found.coeffs()[::-1]]

@@ -326,10 +326,6 @@ class Sensitivity:
         return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
 
 
-def _short(number: mpmath.mpf) -> str:
-    return f"{float(number):.6g}"
-
-
 class SensitivityTable(tuple[Sensitivity, ...]):
     """How roots move with parameters; in a notebook, a table of relative changes."""
 

@@ -28,7 +28,7 @@ Arithmetic = Any
 """A ball or a power series, real or complex. Their arithmetic is one."""
 
 
-Numeral = TypeVar("Numeral", Fraction, arb)
+Numeral = TypeVar("Numeral", Fraction, arb, float)
 
 
 def _loaded(centre: tuple[int, int], radius: tuple[int, int]) -> arb:

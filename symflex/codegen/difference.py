@@ -15,7 +15,7 @@ which coefficients of high degree lose. In direct form there is one section of a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from math import isfinite, pi
 from random import Random
@@ -24,11 +24,11 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.sampling import SampledTransferFunction, sampled_transfer_function
+from symflex.analysis.sampling import SampledTransferFunction, monic, sampled_transfer_function
 from symflex.balls import precision
 from symflex.budget import spend
 from symflex.codegen.c.body import KEYWORDS, RESERVED
-from symflex.codegen.c.module import comment, prefix_of
+from symflex.codegen.c.module import comment, prefix_of, source_and_header
 from symflex.codegen.export import Export
 from symflex.codegen.module_text import (
     default_value,
@@ -193,7 +193,7 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
         sections = []
         for poles, zeros in _paired(sampled.poles, sampled.zeros or ()):
             below = _below(poles, sampled.tf)
-            scaled = [c * gain for c in _expanded(zeros)]
+            scaled = [c * gain for c in monic(zeros)]
             gain = arb(1)
             scaled = [arb(0)] * (len(below) + 1 - len(scaled)) + scaled
             sections.append(FilterSection(tuple(_double(c, sampled.tf) for c in scaled), below))
@@ -202,19 +202,11 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
 
 def _below(poles: Sequence[acb], name: str) -> tuple[float, ...]:
     """Return the coefficients after the first; a pole at 1 stays there, as the integrator it is."""
-    coefficients = [_double(c, name) for c in _expanded(poles)[1:]]
+    coefficients = [_double(c, name) for c in monic(poles)[1:]]
     if len(coefficients) == PAIR and any(p == 1 for p in poles):
         # 1 + a_1 + a_2 = 0 exactly: the difference of two doubles this close is a double.
         coefficients[1] = -1.0 - coefficients[0]
     return tuple(coefficients)
-
-
-def _expanded(roots: Sequence[acb]) -> list[arb]:
-    """Return the monic polynomial of real roots or pairs, in descending powers."""
-    found = [acb(1)]
-    for root in roots:
-        found = [a - root * b for a, b in zip([*found, acb(0)], [acb(0), *found], strict=True)]
-    return [c.real for c in found]
 
 
 def _paired(poles: Sequence[acb], zeros: Sequence[acb]) -> list[tuple[list[acb], list[acb]]]:
@@ -294,17 +286,13 @@ class DifferenceExporter:
     sampling: Sampling
     is_direct: bool = False  # one section for all poles
 
+    summary = "difference equations, one step per sample"
     solves = False
 
     @property
     def suffix(self) -> str:
         """Of the file's name."""
         return ".c" if self.language == "c" else ".py"
-
-    @property
-    def summary(self) -> str:
-        """What is made, in a line."""
-        return "difference equations, one step per sample"
 
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
@@ -325,8 +313,7 @@ class DifferenceExporter:
         text = _StepCode(model, made, self.sampling)
         if self.language == "numpy":
             return Export(text.python(), tuple(warnings))
-        source, header = text.c(None if is_alone else stem)
-        return Export(source, tuple(warnings), {} if is_alone else {".h": header})
+        return replace(text.c(None if is_alone else stem), warnings=tuple(warnings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -350,7 +337,6 @@ class _StepCode:
         if sampling.prewarp is not None:
             how += f", exact at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
         lines = ["Difference equations, one step per sample.", "", *origin_lines(self.model, width)]
-        lines += [""] if lines[-1] else []
         lines += wrapped(
             f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width
         )
@@ -384,7 +370,7 @@ class _StepCode:
             "input of this sample, returns the output and advances the states. u may be an array of inputs.",
             WIDTH,
         )
-        blocks = [f"SAMPLE_TIME = {self.dt!r}  # [s]\n"]
+        blocks = [f"SAMPLE_TIME = {float(self.sampling.sample)!r}  # [s]\n"]
         for i, name in enumerate(names):
             _, equation, _ = self.made[i]
             late, order = equation.sampled.late, equation.order
@@ -413,11 +399,7 @@ class _StepCode:
         head = f"{docstring(lines, '')}\nfrom __future__ import annotations\n\nfrom typing import Any\n\n"
         return head + "\n\n".join(blocks)
 
-    @property
-    def dt(self) -> float:
-        return float(self.sampling.sample)
-
-    def c(self, stem: str | None) -> tuple[str, str]:
+    def c(self, stem: str | None) -> Export:
         """Return source and header; all in the source where there is no name."""
         prefix = prefix_of(stem)
         names = [f"{prefix}_{name}" for name in self.names(sorted({*KEYWORDS, *RESERVED}))]
@@ -453,16 +435,8 @@ class _StepCode:
             body += [f"{line};" for line in _body(equation)]
             defined += [f"double {name}_step({name}_state *state, double u)", "{"]
             defined += [*(f"    {line}" for line in body), "    return x;", "}", ""]
-        guard = f"{prefix.upper()}_H"
-        opening = [*comment(lines), f"#ifndef {guard}", f"#define {guard}", ""]
-        opening += ["#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
-        closing = ["#ifdef __cplusplus", "}", "#endif", "", "#endif"]
-        header = "\n".join([*opening, *declared, *closing]) + "\n"
         source = "\n".join(defined).rstrip("\n") + "\n"
-        if stem is None:
-            return f"{header}\n{source}", header
-        first = "\n".join(comment([f"{stem}.c: the functions that {stem}.h declares."]))
-        return f'{first}\n\n#include "{stem}.h"\n\n{source}', header
+        return source_and_header(stem, lines, (), declared, source)
 
 
 def _body(equation: DifferenceEquation) -> list[str]:

@@ -20,7 +20,7 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import formula_of, headline, identifiers, inert
+from symflex.codegen.module_text import formula_of, identifiers, inert
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
 from symflex.model.loss_factors import check_causal
@@ -98,8 +98,10 @@ class Member:
     @property
     def headline(self) -> str:
         """What it computes, in one inert line."""
-        at = ", in real arithmetic" if self.program.is_real else ""
-        return headline(self.tf, f" at s = j omega{at}" if self.is_response else "")
+        tf, how = self.tf, ", in real arithmetic" if self.program.is_real else ""
+        at = f" at s = j omega{how}" if self.is_response else ""
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
 
     @property
     def parameters(self) -> tuple[ModelParameter, ...]:
@@ -121,7 +123,6 @@ class Contents:
     members: tuple[Member, ...]
     stem: str  # the file's name without suffix; empty where that is not known
     is_alone: bool  # there can be no other files beside it
-    digits: int  # significant digits of printed errors
 
     def names(self, reserved: Collection[str]) -> tuple[Mapping[str, str], Mapping[str, str]]:
         """Return identifiers of members by their keys, and of parameters by their names."""
@@ -164,17 +165,14 @@ class Language:
         stem: str = "",
         *,
         is_alone: bool = True,
-        band_hz: tuple[Fraction, Fraction] | None = None,
         samples: int = SAMPLES,
-        digits: int = 2,
     ) -> Export:
         """Return the file, the same on every run; accuracy that was not reached is a warning.
 
         Arguments are those of :class:`Exporter`; a transfer function given twice is written once. The error
-        is measured in ``band_hz`` [Hz], by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz, at
-        so many ``samples`` besides those around poles and zeros, and printed with so many ``digits``. Names
-        that cannot be the language's are altered; text of the model stands in it only as inert strings and
-        comments.
+        is measured in the model's ``[analysis]`` band, else from 0.1 Hz to 10 kHz, at so many ``samples``
+        besides those around poles and zeros. Names that cannot be the language's are altered; text of the
+        model stands in it only as inert strings and comments.
 
         Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
         does not fit in double precision, SF229 and SF910 when a function without a short formula has no band
@@ -198,24 +196,21 @@ class Language:
         """
         if not self.is_complex or self.form:
             check_causal(model, "band form" if self.form else "code in this language")
-        members = self._members(tfs, band_hz, samples)
-        contents = Contents(model, members, stem, is_alone, digits)
+        members = self._members(tfs, samples)
+        contents = Contents(model, members, stem, is_alone)
         made = self.print(contents)
         warnings = (*shortfalls(contents.verified), *made.warnings)
         return replace(made, warnings=warnings, verified=contents.verified)
 
-    def _members(
-        self, tfs: Sequence[AnyTransferFunction], band_hz: tuple[Fraction, Fraction] | None, samples: int
-    ) -> tuple[Member, ...]:
+    def _members(self, tfs: Sequence[AnyTransferFunction], samples: int) -> tuple[Member, ...]:
         found: list[Member] = []
         for tf in {tf.name: tf for tf in tfs}.values():
             wanted = f"{tf.output.name}_over_{tf.input.name}"
             if self.form == BAND or not (self.is_open or is_closed(tf)):
-                program, verification, formula = choose_band(tf, band_hz, self.up_to, samples)
+                program, verification, formula = choose_band(tf, self.up_to, samples)
                 found.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
                 continue
-            band = band_hz or tf.model.analysis.band
-            own, response = choose_programs(tf, band, samples, has_real=self.has_real)
+            own, response = choose_programs(tf, samples, has_real=self.has_real)
             formula = formula_of(tf)
             found.append(Member(tf, own[0], wanted, own[1], formula))
             if response is not None:

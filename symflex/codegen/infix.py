@@ -137,8 +137,7 @@ class InfixPrinter(ABC):
                 return self.call("series_solutions", [self.list_of(coefficients), str(terms)])
             case tree.Item(values, position):
                 return self.item.format(self.within(values, LEAF), self.first + position)
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
+        raise TypeError(type(node).__name__)
 
     def operation(self, node: tree.Add | tree.Multiply | tree.Divide | tree.Negate) -> tuple[str, int]:
         """Return the text of a sum, product, quotient or negative number, and how tightly it binds."""
@@ -263,9 +262,8 @@ class NumberFunctions(PrivateFunctions):
 
     def _lumped(self, program: tree.Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
-        early = (*near.constants, *near.assignments)
-        printer, (s, inverse) = self.scope((*early, *late), "s", "inverse")
-        lines = self.assigned(early, printer)
+        printer, (s, inverse) = self.scope((*near.every, *late), "s", "inverse")
+        lines = self.assigned(near.every, printer)
         if far is not None:
             one = printer.quotient(tree.ONE, tree.Laplace())
             body = [
@@ -278,9 +276,8 @@ class NumberFunctions(PrivateFunctions):
 
     def _choice(self, program: tree.Piecewise) -> str:
         """Return the function that finds the piece that serves."""
-        assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (s, number) = self.scope(assignments, "s", "number")
-        lines = self.assigned(assignments, printer)
+        printer, (s, number) = self.scope(program.tests.every, "s", "number")
+        lines = self.assigned(program.tests.every, printer)
         if program.conditions:
             lines += self.statement(number, printer.piece_number(program))
         served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
@@ -291,9 +288,8 @@ class NumberFunctions(PrivateFunctions):
         return self._function("value", s, [*lines, *self.statement("return", self._call(f"piece_{last}", s))])
 
     def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
-        assignments = (*piece.code.constants, *piece.code.assignments)
-        printer, (s,) = self.scope(assignments, "s")
-        lines = self.assigned(assignments, printer)
+        printer, (s,) = self.scope(piece.code.every, "s")
+        lines = self.assigned(piece.code.every, printer)
         if piece.circle:
             values = ", ".join(printer.print(v) for v in piece.code.values).join(self.brackets)
             parts = self._function(f"parts_{number}", s, [*lines, *self.statement("return", values)])

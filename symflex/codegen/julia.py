@@ -119,7 +119,7 @@ def julia_module(contents: Contents) -> Export:
 
     Its name is made from the file's, or from the model's title.
     """
-    model, members, digits = contents.model, contents.members, contents.digits
+    model, members = contents.model, contents.members
     main = module_name(contents.stem or model.title)
     public, parameters = contents.names(RESERVED | {main})
     taken = {*RESERVED, main, *public.values()}
@@ -128,12 +128,12 @@ def julia_module(contents: Contents) -> Export:
         functions = JuliaFunctions(m.program, public[m.key], parameters, taken - {"s"})
         of_s = public[f"of {m.tf.name}"]
         private = [] if m.is_response else functions.blocks()
-        blocks += [_public(m, functions, digits, of_s), *private]
+        blocks += [_public(m, functions, of_s), *private]
         code += "\n".join(private)
     blocks += called_parts(code, parts_of("julia.jl"))
     for table, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         blocks.append(_function_table(table, [m for m in members if m.is_response == is_response], public))
-    header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
+    header = [*_docstring(_header(model, members)), f"module {main}", ""]
     if public:
         first, *others = in_lines(", ".join(public.values()), WIDTH - len("export "))
         header += [f"export {first}", *(f"    {line}" for line in others), ""]
@@ -179,17 +179,16 @@ def _character(c: str) -> str:
     return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
 
 
-def _header(model: Model, members: Sequence[Member], digits: int) -> list[str]:
+def _header(model: Model, members: Sequence[Member]) -> list[str]:
     lines = ["Transfer functions of a linear system.", ""]
-    if origin := origin_lines(model, WIDTH):
-        lines += [*(_disarmed(line) for line in origin), ""]
+    lines += [_disarmed(line) for line in origin_lines(model, WIDTH)]
     lines += wrapped(
         "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
         "with a dot, as in OUT_over_IN.(s), it takes arrays.",
         WIDTH,
     )
     for m in (m for m in members if not m.is_response):
-        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text(digits)}"))
+        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text()}"))
         lines += ["", *wrapped(text, WIDTH)]
     return lines
 
@@ -212,7 +211,7 @@ def _function_table(table: str, members: Sequence[Member], public: Mapping[str, 
     return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
 
 
-def _public(member: Member, functions: JuliaFunctions, digits: int, of_s: str) -> str:
+def _public(member: Member, functions: JuliaFunctions, of_s: str) -> str:
     """Return the function that a user calls; a frequency response calls the function of s."""
     parameters = [(p, functions.parameters[p.name]) for p in member.parameters]
     variable, kind = ("omega", "Real") if member.is_response else ("s", "Number")
@@ -232,7 +231,7 @@ def _public(member: Member, functions: JuliaFunctions, digits: int, of_s: str) -
         value = default_value(p)
         text = f"- {name}{f' = {value}' if value else ''}: {_disarmed(described(p, name))}"
         lines += wrapped(text, WIDTH, "", "  ")
-    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
+    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text()}.")), WIDTH)]
     lines.append("Not finite at poles.")
     whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
     first = [f"function {whole}"]

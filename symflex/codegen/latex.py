@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from symflex.budget import spend
 from symflex.codegen.export import Export
 from symflex.errors import ModelError, SymflexError
-from symflex.model.loss_factors import check_causal
 from symflex.model.model import Figure as Asked
 from symflex.print.forms import print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
@@ -123,17 +122,11 @@ class LatexExporter:
 
     def _drawn(self, asked: Asked, of: Sequence[AnyBoundFunction]) -> Figure:
         from symflex.figures import LOOP_FIGURES, draw, draw_loop
-        from symflex.loops import AnyLoop, characteristic_loop, pick_gain
-        from symflex.loops.of_model import characteristic_loop as loop_of_model
+        from symflex.loops.of_model import characteristic_loop
 
         kind, band = asked.kind, asked.band
         if asked.gain and kind in LOOP_FIGURES:
-            source = of[0].source
-            check_causal(source.model, "a loop gain")
-            if isinstance(source, NestedTransferFunction):
-                loop: AnyLoop = loop_of_model(source.model, asked.gain)
-            else:
-                loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
+            loop = characteristic_loop(of[0].source.model, asked.gain)
             return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
         return draw(kind, of, band_hz=band, width_mm=self.width_mm, font="latex")
 

@@ -171,15 +171,17 @@ class LocalFunctions(PrivateFunctions):
 
     def _lumped(self, program: Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
-        early = (*near.constants, *near.assignments)
         if far is None:
-            printer, (s, value) = self.scope(early, "s", "value")
-            lines = [*self.assigned(early, printer), *self.statement(value, printer.print(near.values[0]))]
+            printer, (s, value) = self.scope(near.every, "s", "value")
+            lines = [
+                *self.assigned(near.every, printer),
+                *self.statement(value, printer.print(near.values[0])),
+            ]
             return self._function(value, "value", s, lines)
         words = ("s", "value", "limit", "is_far", "far_value", "inverse")
-        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*early, *late), *words)
+        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*near.every, *late), *words)
         lines = [
-            *self.assigned(early, printer),
+            *self.assigned(near.every, printer),
             *self.statement(value, printer.print(near.values[0])),
             *self.statement(limit, repr(program.limit)),
             *self.statement(is_far, f"abs({s}) > {limit}"),
@@ -194,16 +196,15 @@ class LocalFunctions(PrivateFunctions):
 
     def _choice(self, program: Piecewise) -> str:
         """Return the function that tells which piece serves."""
-        assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (s, number) = self.scope(assignments, "s", "number")
+        printer, (s, number) = self.scope(program.tests.every, "s", "number")
         lines = [
-            *self.assigned(assignments, printer),
+            *self.assigned(program.tests.every, printer),
             *self.statement(number, printer.piece_number(program) or "0"),
         ]
         return self._function(number, "number", s, lines)
 
     def _piece(self, number: int, piece: CodePiece) -> list[str]:
-        assignments = (*piece.code.constants, *piece.code.assignments)
+        assignments = piece.code.every
         if piece.circle:
             printer, (s, *results) = self.scope(assignments, "s", "num", "den", "growth", "radius")
             lines = self.assigned(assignments, printer)
@@ -284,7 +285,7 @@ class _File:
     """The file, and the names of everything in it."""
 
     def __init__(self, contents: Contents) -> None:
-        self.model, self.members, self.digits = contents.model, contents.members, contents.digits
+        self.model, self.members = contents.model, contents.members
         self.stem = contents.stem
         self.main = main_name(self.stem or self.model.title)
         wanted = {m.key: m.wanted for m in self.members}
@@ -367,7 +368,7 @@ class _File:
             lines += [first, "", *self._examples(), "", *wrapped(EXPANSION, ROOM), "", "Functions"]
         for m in self.members:
             lines += wrapped(f"{self.fields[m.key]}: {_disarmed(m.headline)}", ROOM, "  ", "      ")
-            lines += wrapped(_text(m.verification.text(self.digits)), ROOM, "      ")
+            lines += wrapped(_text(m.verification.text()), ROOM, "      ")
         lines += ["", "Parameters"] if self.model.parameters else []
         for p in self.model.parameters:
             name, value = self.parameters[p.name], default_value(p) or "no value"
@@ -429,9 +430,8 @@ class _File:
         """Return the first line of a function behind a handle, and its help text."""
         name = self.public[member.key]
         help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
-        if origin := origin_lines(member.tf.model, ROOM):
-            help_text += [*(_disarmed(line) for line in origin), ""]
-        help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
+        help_text += [_disarmed(line) for line in origin_lines(member.tf.model, ROOM)]
+        help_text += wrapped(_text(member.verification.text()), ROOM)
         first = f"{name.upper()}  {_disarmed(member.headline)}"
         return [f"function value = {name}({variable}, varargin)", *_helped(first, help_text)]
 

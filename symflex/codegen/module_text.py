@@ -95,18 +95,12 @@ def formula_lines(formula: Sequence[str], width: int) -> list[str]:
 
 
 def origin_lines(model: Model, width: int) -> list[str]:
-    """Return title and source of a model in lines of inert text, none for what is not given."""
+    """Return title and source of a model in lines of inert text, and an empty one if there are any."""
     lines: list[str] = []
     for word, text in (("Model", model.title), ("Source", model.source)):
         if text.strip():
             lines += wrapped(f"{word}: {inert(text)}", width)
-    return lines
-
-
-def headline(tf: AnyTransferFunction, at: str = "") -> str:
-    """Return what a function computes, and where, in one inert line."""
-    unit = f" [{tf.unit}]" if tf.unit else ""
-    return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
+    return [*lines, ""] if lines else []
 
 
 def described(parameter: ModelParameter, name: str) -> str:

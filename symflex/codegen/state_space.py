@@ -15,11 +15,19 @@ import numpy as np
 
 from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
-from symflex.codegen.module_text import default_value, described, identifiers, inert, wrapped
+from symflex.codegen.module_text import default_value, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
-from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.verify import Verification, measure_values
-from symflex.codegen.python.module import NUMPY_DIALECT, docstring, literal, origin, parameter_table
+from symflex.codegen.program.evaluate import evaluate
+from symflex.codegen.program.verify import DEFAULT_BAND, Verification, double_of, measure_values
+from symflex.codegen.python.module import (
+    NUMPY_DIALECT,
+    docstring,
+    literal,
+    origin,
+    parameter_entry,
+    parameter_table,
+    row_of_table,
+)
 from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
@@ -170,19 +178,14 @@ LETTERS = ("A", "B", "C", "D")
 
 
 def state_space_module(
-    system: StateSpace,
-    tfs: Sequence[AnyTransferFunction],
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    *,
-    samples: int = 400,
-    digits: int = 2,
+    system: StateSpace, tfs: Sequence[AnyTransferFunction], *, samples: int = 400
 ) -> Export:
     """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
 
     ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns. The system
-    has symbols; its functions are measured at some ``samples`` in ``band_hz`` [Hz], by default the model's
-    ``[analysis]`` band, else 0.1 Hz to 10 kHz. SF503 when the text would be too long, SF233 when a number
-    does not fit in double precision.
+    has symbols; its functions are measured at some ``samples`` in the model's ``[analysis]`` band, else from
+    0.1 Hz to 10 kHz. SF503 when the text would be too long, SF233 when a number does not fit in double
+    precision.
     """
     size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
     if size > TERM_LIMIT:
@@ -190,17 +193,17 @@ def state_space_module(
         raise BudgetError(
             Diagnostic("SF503", message, None, "give the parameters numbers first, with bind()")
         )
-    module = _Module(system, StateEquations(system))
-    verified = tuple(module.measured(tf, band_hz, samples) for tf in tfs)
-    return Export(module.text(verified, digits), shortfalls(verified), verified=verified)
+    module = _Module(system)
+    verified = tuple(module.measured(tf, samples) for tf in tfs)
+    return Export(module.text(verified), shortfalls(verified), verified=verified)
 
 
 class _Module:
     """Prints one realisation."""
 
-    def __init__(self, system: StateSpace, equations: StateEquations) -> None:
+    def __init__(self, system: StateSpace) -> None:
         self._system = system
-        self._equations = equations
+        self._equations = equations = StateEquations(system)
         self._entries = {
             letter: {
                 (i, j): _node(equations.entry(value))
@@ -218,16 +221,13 @@ class _Module:
 
     # ------------------------------------------------------------------------------------ numbers
 
-    def measured(
-        self, tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
-    ) -> Verification:
+    def measured(self, tf: AnyTransferFunction, samples: int) -> Verification:
         """Return how well the matrices of the declared values agree with a transfer function."""
         missing = [p.name for p in self._parameters if p.value is None]
-        band = band_hz or tf.model.analysis.band
         if missing and not [p for p in tf.parameters if p.value is None]:
-            nothing = measure_values(tf, lambda s: [0j] * len(s), "state-space", band, 1)
+            band = tf.model.analysis.band or DEFAULT_BAND
             reason = "no values for " + ", ".join(missing)
-            return Verification(tf.name, "state-space", None, nothing.band, 0, reason)
+            return Verification(tf.name, "state-space", None, band, 0, reason)
         row = [x.name for x in self._system.outputs].index(tf.output.name)
         column = [x.name for x in self._system.inputs].index(tf.input.name)
 
@@ -235,15 +235,11 @@ class _Module:
             return [value[row][column] for value in response(self._arrays(), s.tolist())]
 
         count = min(samples, max(FEWEST, WORK // max(1, self._system.order) ** 3))
-        return measure_values(tf, values, "state-space", band, count)
+        return measure_values(tf, values, "state-space", count)
 
     def _arrays(self) -> Arrays:
         """Return the matrices that the generated code makes of the declared values."""
-        given = {
-            p.name: nearest_double(p.value.rational, p.value.pi_power)
-            for p in self._parameters
-            if p.value is not None
-        }
+        given = {p.name: double_of(p.value) for p in self._parameters if p.value is not None}
         arrays = []
         for letter, _, shape in self._system.matrices:
             array = np.zeros(shape)
@@ -255,7 +251,7 @@ class _Module:
 
     # --------------------------------------------------------------------------------------- text
 
-    def text(self, verified: Sequence[Verification], digits: int) -> str:
+    def text(self, verified: Sequence[Verification]) -> str:
         """Return the module."""
         system = self._system
         inputs = [(x.name, x.unit, "") for x in system.inputs]
@@ -268,10 +264,10 @@ class _Module:
             _table("OUTPUTS", outputs),
             self._function(),
         ]
-        header = docstring(self._header(verified, digits), "")
+        header = docstring(self._header(verified), "")
         return f"{header}{IMPORTS.format(lints=LINTS)}\n" + "\n\n".join(blocks)
 
-    def _header(self, verified: Sequence[Verification], digits: int) -> list[str]:
+    def _header(self, verified: Sequence[Verification]) -> list[str]:
         lines = ["State equations of a linear system as a function of its parameters.", ""]
         lines += origin(self._system.model, "")
         lines.append("Written by symflex. With w the states, u the inputs and y the outputs,")
@@ -288,7 +284,7 @@ class _Module:
         )
         lines += [*wrapped(proof, WIDTH), ""]
         for verification in verified:
-            lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+            lines += wrapped(inert(f"{verification.name}: {verification.text()}"), WIDTH, "", "    ")
         return lines
 
     def _function(self) -> str:
@@ -324,9 +320,7 @@ class _Module:
         if self._parameters:
             lines += ["", "    Parameters", "    ----------"]
         for parameter in self._parameters:
-            name = self._names[parameter.name]
-            lines.append(f"    {name} : float{'' if parameter.value is None else ', optional'}")
-            lines += wrapped(described(parameter, name), WIDTH, "        ")
+            lines += parameter_entry(parameter, self._names[parameter.name], "float")
         n, m, p = len(system.states), len(system.inputs), len(system.outputs)
         lines += ["", "    Returns", "    -------"]
         shapes = zip(LETTERS, ((n, n), (n, m), (p, n), (p, m)), strict=True)
@@ -344,11 +338,7 @@ def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
     for label, unit, meaning in rows:
         entries = [f'"name": {literal(label)}', f'"unit": {literal(unit)}']
         entries += [f'"meaning": {literal(meaning)}'] if meaning else []
-        one_line = f"    {{{', '.join(entries)}}},"
-        if len(one_line) <= WIDTH and "\n" not in one_line:
-            lines.append(one_line)
-        else:
-            lines += ["    {", *(f"        {entry}," for entry in entries), "    },"]
+        lines += row_of_table("", entries)
     return "\n".join([f"{name}: tuple[dict[str, str], ...] = (", *lines, ")"]) + "\n"
 
 
@@ -406,7 +396,7 @@ class StateSpaceExporter:
         system = minimal(system) if self.is_minimal else system
         if self.sampling is not None:
             return Export(sampled_module(system, self.sampling, delay), ())
-        return state_space_module(system, tfs, model.analysis.band)
+        return state_space_module(system, tfs)
 
 
 def _without_delays(

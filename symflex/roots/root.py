@@ -195,6 +195,11 @@ def count_roots(roots: Iterable[Root]) -> int:
     return sum(root.multiplicity for root in roots)
 
 
+def modes_of(roots: Sequence[Root]) -> list[Root]:
+    """Return the roots other than 0 that count: one of each pair, a multiple one as often as it is one."""
+    return [root for root in roots if not root.is_zero and not root.im < 0 for _ in range(root.multiplicity)]
+
+
 def groups(roots: Sequence[Root]) -> list[list[Root]]:
     """Return the roots other than 0, those together that mirror each other in the axes.
 

@@ -6,6 +6,7 @@ The equations are written down here from equilibrium of a slice; nothing of the 
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from itertools import pairwise
@@ -202,7 +203,8 @@ def bound_of(text):
 
 def exported(tf):
     """Return the function of a module in numpy; its own verification, not wanted here, is kept short."""
-    made = EXPORTERS["numpy"].export(tf.model, [tf], band_hz=(Fraction(1), Fraction(2)), samples=2)
+    model = replace(tf.model, analysis=replace(tf.model.analysis, band=(Fraction(1), Fraction(2))))
+    made = EXPORTERS["numpy"].export(model, [replace(tf, model=model)], samples=2)
     return imported(made.text, "exported").y_over_F
 
 

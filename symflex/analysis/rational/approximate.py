@@ -31,7 +31,7 @@ from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate, lumped
 from symflex.roots.pole_zero_map import is_right
-from symflex.roots.root import count_roots
+from symflex.roots.root import count_roots, modes_of
 from symflex.transfer import BoundNested
 from symflex.transfer.bind import EnclosedTransferFunction
 
@@ -91,12 +91,7 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
         zeros = _no_more_than(zeros, count_roots(poles))
     excess = max(count_roots(zeros) - count_roots(poles), 0) if is_exact else 0
     known = replace(found, zeros=above)
-    return KeptRoots(len(_modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
-
-
-def _modes_of(roots: Sequence[Root]) -> list[Root]:
-    """Return the roots that count: one of each pair, a multiple one as often as it is one."""
-    return [root for root in roots if not root.is_zero and not root.im < 0 for _ in range(root.multiplicity)]
+    return KeptRoots(len(modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
 
 
 def _lowest(found: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
@@ -202,7 +197,7 @@ def approximate(
 
 def _default_modes(bound: AnyBoundFunction, band: tuple[float, float] | None) -> int:
     if band is not None:
-        return len(_modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
+        return len(modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
     return bound.source.model.analysis.modes or DEFAULT_MODES
 
 

@@ -73,108 +73,6 @@ class Term:
         return self.text if self.binding >= tightest else f"({self.text})"
 
 
-@dataclass(frozen=True)
-class CPrinter:
-    """Prints expressions as C, evaluated in the order of the tree."""
-
-    parameter: Callable[[str], str]  # returns the identifier of a parameter
-    known: Mapping[str, Term]  # intermediate values; of lists, the identifier of the array
-    s: Term  # what the leaf :class:`Laplace` stands for
-    # Declares an array with the values of a list, and returns its identifier.
-    array: Callable[[tree.CodeNode], Term]
-    hold: Callable[[Term], Term]  # makes a variable with a value
-    in_lanes: bool = False  # true to call functions without branches where there are such
-
-    def print(self, node: tree.CodeNode) -> Term:
-        """Return an expression as C; calls nested deeply become variables."""
-        return self._short(self.whole(node))
-
-    def whole(self, node: tree.CodeNode) -> Term:
-        """Return an expression that gets a variable anyway."""
-        match node:
-            case tree.RealNumber(value, pi_power):
-                return Term(repr(nearest_double(value, pi_power)), Kind.REAL)
-            case tree.ComplexNumber(real, imaginary):
-                return _complex(nearest_double(real), nearest_double(imaginary))
-            case tree.ToComplex(operand) | tree.LargerRoot(operand):
-                return self.whole(operand)
-            case tree.ParameterValue(name):
-                return Term(self.parameter(name), Kind.REAL)
-            case tree.Assigned(name):
-                return self.known[name]
-            case tree.Laplace():
-                return self.s
-            case tree.InverseLaplace():
-                return self.quotient(Term("1.0", Kind.REAL), self.s)
-            case tree.Add(terms):
-                return self._sum(terms)
-            case tree.Multiply(factors):
-                result = self.print(factors[0])
-                for factor in factors[1:]:
-                    result = product(self._short(result), self.print(factor))
-                return result
-            case tree.Divide(numerator, denominator):
-                return self.quotient(self.print(numerator), self.print(denominator))
-            case tree.IntegerPower(base, exponent):
-                return _power(self.print(base), exponent)
-            case tree.Negate(operand):
-                return negative(self.print(operand))
-            case tree.Apply(function, argument):
-                return self._apply(function, self.print(argument))
-        return self._special(node)
-
-    def _special(self, node: tree.CodeNode) -> Term:
-        match node:
-            case tree.Item(values, position):
-                held = self.listed(values)
-                return Term(f"{held.text}[{position}]", held.kind, held.varies)
-            case tree.Within(point, end):
-                return _cut_off(self.print(point), end)
-            case tree.RootFactor(point) if node.is_pair or node.is_mirrored:
-                return _roots(self.print(point), node)
-            case tree.RootFactor():
-                return self.whole(node.spelled)
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
-
-    def quotient(self, x: Term, y: Term) -> Term:
-        """Return the quotient of two numbers, in lanes without branches."""
-        if self.in_lanes and y.kind is Kind.COMPLEX and (x.varies or y.varies):
-            return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
-        return quotient(x, y)
-
-    def listed(self, node: tree.CodeNode) -> Term:
-        """Return the array that holds a list; it is declared where there is none yet."""
-        return self.known[node.name] if isinstance(node, tree.Assigned) else self.array(node)
-
-    def _sum(self, terms: Sequence[tree.CodeNode]) -> Term:
-        result = self.print(terms[0])
-        for term in terms[1:]:
-            if isinstance(term, tree.Negate):
-                result = difference(self._short(result), self.print(term.operand))
-            else:
-                result = total(self._short(result), self.print(term))
-        return result
-
-    def _short(self, term: Term) -> Term:
-        return self.hold(term) if term.depth > DEEPEST else term
-
-    def _apply(self, function: str, x: Term) -> Term:
-        if function == "abs":
-            return _call("cx_abs" if x.kind is Kind.COMPLEX else "fabs", Kind.REAL, x)
-        if function == "complex_sqrt":
-            return _call("cx_sqrt", Kind.COMPLEX, complex_term(x))
-        if function == "complex_exp" and x.kind is not Kind.REAL:
-            return _call("cx_cis" if x.kind is Kind.IMAGINARY else "cx_exp", Kind.COMPLEX, x)
-        if x.kind is not Kind.REAL:
-            message = f"no text for {function} of a complex number"
-            raise TypeError(message)
-        name = REAL_FUNCTIONS[function]
-        if self.in_lanes and x.varies and name in LANE_FUNCTIONS:
-            return _call(f"lane_{name}", Kind.REAL, x)
-        return _call(name, Kind.REAL, x)
-
-
 def _complex(real: float, imaginary: float) -> Term:
     if not real:
         return Term(repr(imaginary), Kind.IMAGINARY, binding=_SIGN if imaginary < 0 else _LEAF)
@@ -396,26 +294,21 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
     if len(line) <= WIDTH:
         return [line]
     # Only between operators: an identifier longer than a line stays whole.
-    wrapper = TextWrapper(
-        width=WIDTH,
-        initial_indent=indent,
-        subsequent_indent=indent + STEP,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    wrapper = TextWrapper(WIDTH, indent, indent + STEP, break_long_words=False, break_on_hyphens=False)
     return wrapper.wrap(f"{opening} {value};")
 
 
 @dataclass
 class Body:
-    """The variables of one C function, and the statements that make them."""
+    """The variables of one C function, the statements that make them, and expressions of them."""
 
     # Identifiers of the variables that hold parameters, by the names in the model.
     parameters: Mapping[str, str]
     s: Term  # what s is
     depth: int = 1  # how far statements are indented
     lines: list[str] = field(default_factory=list)  # the statements so far
-    known: dict[str, Term] = field(default_factory=dict)  # assigned values by their names in the program
+    # Assigned values by their names in the program; of lists, the identifier of the array.
+    known: dict[str, Term] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)  # names of the parameters in use
     _taken: set[str] = field(default_factory=set)
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
@@ -444,18 +337,9 @@ class Body:
         return found
 
     @property
-    def printer(self) -> CPrinter:
-        """Prints expressions of these variables."""
-        in_lanes = self.s in (LANE, AXIS_LANE)
-
-        def held(term: Term) -> Term:
-            return self.hold("t_1" if term.varies else "c_1", term)
-
-        return CPrinter(self._parameter, self.known, self.s, self._array, held, in_lanes)
-
-    def term(self, node: tree.CodeNode) -> Term:
-        """Return an expression of these variables."""
-        return self.printer.print(node)
+    def in_lanes(self) -> bool:
+        """True to call functions without branches where there are such."""
+        return self.s in (LANE, AXIS_LANE)
 
     def say(self, opening: str, value: str) -> None:
         """Add a statement."""
@@ -475,7 +359,7 @@ class Body:
             if isinstance(assignment.value, tree.Solutions):
                 self.known[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
-            term = self.printer.whole(assignment.value)
+            term = self.whole(assignment.value)
             key = (term.text, term.kind)
             if term.varies:
                 self.known[assignment.name] = self.hold(assignment.name, term)
@@ -503,21 +387,98 @@ class Body:
         self.used.add(name)
         return self.parameters[name]
 
-    def _array(self, node: tree.CodeNode, wanted: str = "solutions") -> Term:
-        if not isinstance(node, tree.Solutions):
-            message = f"no text for {type(node).__name__}"
-            raise TypeError(message)
-        given, varies = self._given(node.coefficients)
-        order, found = len(node.coefficients), self.name(wanted)
+    def _array(self, node: tree.Solutions, wanted: str) -> Term:
+        """Declare an array with the values of a list."""
+        terms = [complex_term(self.term(c)) for c in node.coefficients]
+        given, order = self.name("coefficients"), len(terms)
+        self.say(f"const cx {given}[{order}] =", f"{{{', '.join(t.text for t in terms)}}}")
+        found = self.name(wanted)
         self.add(f"cx {found}[{order}];", f"cx_series({given}, {order}, {node.terms}, {found});")
-        return Term(found, Kind.COMPLEX, varies)
+        return Term(found, Kind.COMPLEX, any(t.varies for t in terms))
 
-    def _given(self, nodes: Sequence[tree.CodeNode]) -> tuple[str, bool]:
-        """Declare an array of coefficients; return its name and whether it depends on s."""
-        terms = [complex_term(self.term(c)) for c in nodes]
-        given = self.name("coefficients")
-        self.say(f"const cx {given}[{len(terms)}] =", f"{{{', '.join(t.text for t in terms)}}}")
-        return given, any(t.varies for t in terms)
+    # ---------------------------------------------------------------------------------------- expressions
+
+    def term(self, node: tree.CodeNode) -> Term:
+        """Return an expression, evaluated in the order of the tree; calls nested deeply become variables."""
+        return self._short(self.whole(node))
+
+    def whole(self, node: tree.CodeNode) -> Term:
+        """Return an expression that gets a variable anyway."""
+        match node:
+            case tree.RealNumber(value, pi_power):
+                return Term(repr(nearest_double(value, pi_power)), Kind.REAL)
+            case tree.ComplexNumber(real, imaginary):
+                return _complex(nearest_double(real), nearest_double(imaginary))
+            case tree.ToComplex(operand) | tree.LargerRoot(operand):
+                return self.whole(operand)
+            case tree.ParameterValue(name):
+                return Term(self._parameter(name), Kind.REAL)
+            case tree.Assigned(name):
+                return self.known[name]
+            case tree.Laplace():
+                return self.s
+            case tree.InverseLaplace():
+                return self.quotient(Term("1.0", Kind.REAL), self.s)
+            case tree.Add(terms):
+                return self._sum(terms)
+            case tree.Multiply(factors):
+                result = self.term(factors[0])
+                for factor in factors[1:]:
+                    result = product(self._short(result), self.term(factor))
+                return result
+            case tree.Divide(numerator, denominator):
+                return self.quotient(self.term(numerator), self.term(denominator))
+            case tree.IntegerPower(base, exponent):
+                return _power(self.term(base), exponent)
+            case tree.Negate(operand):
+                return negative(self.term(operand))
+            case tree.Apply(function, argument):
+                return self._apply(function, self.term(argument))
+        return self._special(node)
+
+    def _special(self, node: tree.CodeNode) -> Term:
+        match node:
+            case tree.Item(tree.Assigned(name), position):
+                held = self.known[name]
+                return Term(f"{held.text}[{position}]", held.kind, held.varies)
+            case tree.Within(point, end):
+                return _cut_off(self.term(point), end)
+            case tree.RootFactor(point) if node.is_pair or node.is_mirrored:
+                return _roots(self.term(point), node)
+            case tree.RootFactor():
+                return self.whole(node.spelled)
+        raise TypeError(type(node).__name__)
+
+    def quotient(self, x: Term, y: Term) -> Term:
+        """Return the quotient of two numbers, in lanes without branches."""
+        if self.in_lanes and y.kind is Kind.COMPLEX and (x.varies or y.varies):
+            return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
+        return quotient(x, y)
+
+    def _sum(self, terms: Sequence[tree.CodeNode]) -> Term:
+        result = self.term(terms[0])
+        for term in terms[1:]:
+            if isinstance(term, tree.Negate):
+                result = difference(self._short(result), self.term(term.operand))
+            else:
+                result = total(self._short(result), self.term(term))
+        return result
+
+    def _short(self, term: Term) -> Term:
+        return self.hold("t_1" if term.varies else "c_1", term) if term.depth > DEEPEST else term
+
+    def _apply(self, function: str, x: Term) -> Term:
+        if function == "abs":
+            return _call("cx_abs" if x.kind is Kind.COMPLEX else "fabs", Kind.REAL, x)
+        if function == "complex_sqrt":
+            return _call("cx_sqrt", Kind.COMPLEX, complex_term(x))
+        if function == "complex_exp" and x.kind is not Kind.REAL:
+            return _call("cx_cis" if x.kind is Kind.IMAGINARY else "cx_exp", Kind.COMPLEX, x)
+        assert x.kind is Kind.REAL
+        name = REAL_FUNCTIONS[function]
+        if self.in_lanes and x.varies and name in LANE_FUNCTIONS:
+            return _call(f"lane_{name}", Kind.REAL, x)
+        return _call(name, Kind.REAL, x)
 
 
 def conditions_of(program: tree.Piecewise, scope: Body) -> list[str]:
@@ -526,7 +487,7 @@ def conditions_of(program: tree.Piecewise, scope: Body) -> list[str]:
     scope.assign(fixed.constants)
     limits = [limit_text(c, scope) for c in program.conditions]
     varied = program.tests.needed([c.quantity for c in program.conditions])
-    scope.assign((*varied.constants, *varied.assignments))
+    scope.assign(varied.every)
     conditions = []
     for condition, limit in zip(program.conditions, limits, strict=True):
         quantity = scope.term(condition.quantity)

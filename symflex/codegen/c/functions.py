@@ -8,6 +8,7 @@ compilers make it work on several values at once: in lanes.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -90,15 +91,15 @@ class Functions:
     def _head(self, name: str) -> list[str]:
         return [f"static cx {name}(cx s, const {self.structure} *p)", "{"]
 
-    def _ends(self, scope: Body, head: list[str], variable: str = "s") -> list[str]:
-        is_used = any(_mentions(line, variable) for line in scope.lines)
-        unused = [] if is_used else [f"{STEP}(void){variable};"]
+    def _ends(self, scope: Body, head: list[str]) -> list[str]:
+        is_used = any(re.search(r"\bs\b", line) for line in scope.lines)
+        unused = [] if is_used else [f"{STEP}(void)s;"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
     def _lumped_value(self, program: tree.Piecewise) -> list[str]:
         scope = Body.of(self.members, S)
         near, far = program.near, program.far
-        scope.assign((*near.constants, *near.assignments))
+        scope.assign(near.every)
         if far is not None:
             block = scope.within()
             block.assign(program.late)
@@ -132,7 +133,7 @@ class Functions:
     def _piece(self, name: str, piece: tree.CodePiece) -> list[list[str]]:
         scope = Body.of(self.members, S)
         code = piece.code.needed(piece.code.values)
-        scope.assign((*code.constants, *code.assignments))
+        scope.assign(code.every)
         values = [scope.term(v) for v in piece.code.values]
         if not piece.circle:
             num, den = values
@@ -151,7 +152,7 @@ class Functions:
         program = self.program
         if self.axis is not None:
             body = lanes(self.axis, self.members)
-        elif program.is_lumped and not has_losses(program) and is_rational_in_lanes(program):
+        elif is_rational_in_lanes(program):
             body = rational_lanes(program, self.members)
         else:
             body = [
@@ -170,17 +171,6 @@ def _parts(scope: Body, value: Term) -> tuple[str, str]:
         scope.say("const cx g =", value.text)
         return "g.re", "g.im"
     return (value.text, "0.0") if value.kind is Kind.REAL else ("0.0", value.text)
-
-
-def _mentions(line: str, name: str) -> bool:
-    """Tell whether a line of code has an identifier."""
-    at = line.find(name)
-    while at >= 0:
-        before, after = line[at - 1 : at], line[at + len(name) : at + len(name) + 1]
-        if not (before.isalnum() or before == "_" or after.isalnum() or after == "_"):
-            return True
-        at = line.find(name, at + 1)
-    return False
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"
@@ -217,22 +207,21 @@ def fits_lanes(program: tree.Piecewise) -> bool:
     )
 
 
-def has_losses(program: tree.Piecewise) -> bool:
-    """Tell whether a program is a product over roots that the imaginary axis does not mirror."""
-    roots = (n for n in program.near.nodes() if isinstance(n, tree.RootFactor))
-    return program.is_lumped and not all(n.is_real_on_axis for n in roots)
-
-
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:
-    """Tell whether a program varies, has one branch, and calls no function of s but an exponential."""
+    """Tell whether a program varies, has one branch, and calls no function of s but an exponential.
+
+    Of a product over roots the imaginary axis has to mirror all.
+    """
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
-    nodes = [n for value in values for n in value.walk()]
     calls = any(
-        isinstance(n, tree.Solutions) or (isinstance(n, tree.Apply) and n.function != "complex_exp")
-        for n in nodes
+        isinstance(n, tree.Solutions)
+        or (isinstance(n, tree.Apply) and n.function != "complex_exp")
+        or (isinstance(n, tree.RootFactor) and not n.is_real_on_axis)
+        for value in values
+        for n in value.walk()
     )
-    return program.varies and program.far is None and not calls
+    return program.is_lumped and program.varies and program.far is None and not calls
 
 
 def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
@@ -333,7 +322,7 @@ def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
             if assignment.name not in arrays:
                 inner.assign([assignment])
                 continue
-            term = inner.printer.whole(assignment.value)
+            term = inner.whole(assignment.value)
             place = f"{arrays[assignment.name]}[j]"
             inner.say(f"{place} =", term.text)
             inner.known[assignment.name] = Term(place, term.kind, varies=True)

@@ -90,11 +90,34 @@ def _harmless(line: str) -> str:
     return f"{text}." if text.endswith("\\") else text
 
 
+def source_and_header(
+    name: str | None, introduction: Sequence[str], included: Sequence[str], inside: Sequence[str], source: str
+) -> Export:
+    """Return the source file and its header, which declares what is ``inside``; without a name, one file."""
+    guard = f"{prefix_of(name).upper()}_H"
+    opening = [*comment(introduction), f"#ifndef {guard}", f"#define {guard}", "", *included]
+    opening += ["#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
+    closing = ["#ifdef __cplusplus", "}", "#endif", "", "#endif"]
+    header = "\n".join([*opening, *inside, *closing]) + "\n"
+    if name is None:
+        return Export(f"{header}\n{source}")
+    (first,) = comment([f"{name}.c: the functions that {name}.h declares."])
+    return Export(f'{first}\n\n#include "{name}.h"\n\n{source}', companions={".h": header})
+
+
+INCLUDED = (
+    "#include <stddef.h>",
+    "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
+    "#include <complex.h>",
+    "#endif",
+    "",
+)
+
+
 class _Files:
     def __init__(self, contents: Contents, name: str | None) -> None:
         self.model = contents.model
         self.name = name
-        self.digits = contents.digits
         self.prefix = prefix_of(name)
         self.structure = f"{self.prefix}_parameters"
         self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
@@ -109,48 +132,20 @@ class _Files:
         return Functions(name, self.prefix, self.structure, self.members, self.of_s[key].program, axis)
 
     def made(self) -> Export:
-        header, body = self._header(), self._source()
-        if self.name is None:
-            return Export(f"{header}\n{body}")
-        first = "\n".join(comment([f"{self.name}.c: the functions that {self.name}.h declares."]))
-        return Export(f'{first}\n\n#include "{self.name}.h"\n\n{body}', companions={".h": header})
-
-    # ---------------------------------------------------------------------------------------- the header
-
-    def _header(self) -> str:
-        guard = f"{self.prefix.upper()}_H"
-        opening = [
-            *comment(self._introduction()),
-            f"#ifndef {guard}",
-            f"#define {guard}",
-            "",
-            "#include <stddef.h>",
-            "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
-            "#include <complex.h>",
-            "#endif",
-            "",
-            "#ifdef __cplusplus",
-            'extern "C" {',
-            "#endif",
-            "",
-        ]
         declared = []
         for key, functions in self.functions.items():
             declared += [*comment(self._described(key)), f"{functions.freq_prototype};", ""]
-        complex_ones = [f"{f.value_prototype};" for f in self.functions.values()]
-        closing = [
+        with_complex = [
             "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
             *comment(["Values at any complex s [rad/s]."]),
-            *complex_ones,
+            *(f"{functions.value_prototype};" for functions in self.functions.values()),
             "#endif",
             "",
-            "#ifdef __cplusplus",
-            "}",
-            "#endif",
-            "",
-            "#endif",
         ]
-        return "\n".join([*opening, *self._parameters(), *declared, *closing]) + "\n"
+        inside = [*self._parameters(), *declared, *with_complex]
+        return source_and_header(self.name, self._introduction(), INCLUDED, inside, self._source())
+
+    # ---------------------------------------------------------------------------------------- the header
 
     def _introduction(self) -> list[str]:
         files = f"{self.name}.h" if self.name else "C99"
@@ -169,9 +164,8 @@ class _Files:
             "Errors named below were measured with these operations in IEEE double precision; the library's "
             "own errors in exp, sin and similar functions come in addition.",
         ]
-        origin = origin_lines(self.model, WIDTH - 3)
-        gap = [""] if origin else []
-        lines = [f"{files}: transfer functions of a linear system.", "", *origin, *gap]
+        lines = [f"{files}: transfer functions of a linear system.", ""]
+        lines += origin_lines(self.model, WIDTH - 3)
         for paragraph in paragraphs:
             lines += [*wrapped(paragraph, WIDTH - 3), ""]
         return lines[:-1]
@@ -210,10 +204,10 @@ class _Files:
         member = self.of_s[key]
         lines = [member.headline, ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
-        said = member.verification.text(self.digits)
+        said = member.verification.text()
         sentences = [f"At s = j omega, {said}."]
         if key in self.on_axis:
-            real = self.on_axis[key].verification.text(self.digits)
+            real = self.on_axis[key].verification.text()
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
         lines.append("")
         for sentence in sentences:

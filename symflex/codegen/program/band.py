@@ -24,8 +24,9 @@ is driven. Up to 3 rad/s, with the poles at ``j pi/2`` and, beyond, at ``3 j pi/
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from math import inf, log2, prod, sqrt, tau
 from typing import TYPE_CHECKING
 
@@ -34,16 +35,16 @@ from flint import acb, arb, fmpq
 from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
-from symflex.codegen.program.nodes import RootFactor, Within
+from symflex.codegen.program.nodes import Laplace, RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
-from symflex.roots.root import groups
+from symflex.roots.root import groups, modes_of
 from symflex.transfer import BoundNested, NestedTransferFunction
 from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.codegen.program.nodes import Piecewise
     from symflex.roots import PoleZeroMap, Root
@@ -110,7 +111,7 @@ class EnclosedValues:
     def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
         self.bound = bound
         self._first_bits = FIRST_BITS
-        self._known: dict[int, Enclosed | EnclosedNested] = {}
+        self._function: Callable[[int], Enclosed | EnclosedNested] = cache(bound.enclosed)
 
     def at(self, s: complex) -> EnclosedValue | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
@@ -128,29 +129,16 @@ class EnclosedValues:
                 return EnclosedValue(value, slope, bits)
         return None
 
-    def _function(self, bits: int) -> Enclosed | EnclosedNested:
-        if bits not in self._known:
-            self._known[bits] = self.bound.enclosed(bits)
-        return self._known[bits]
 
-
-@dataclass(frozen=True, slots=True)
-class SplitRoot:
+class SplitRoot(RootFactor):
     """A root, with its conjugate where it is not real, as sums of two doubles a part."""
 
-    re: tuple[float, float]
-    im: tuple[float, float]  # positive, or zero for a real root
-    is_mirrored: bool = False  # true where minus the root is one as well; re is positive then
-
-    @property
-    def is_real(self) -> bool:
-        """True for one real root, false for a pair."""
-        return self.im == (0.0, 0.0)
+    __slots__ = ()
 
     @property
     def count(self) -> int:
         """How many roots these are."""
-        return (1 if self.is_real else 2) * (2 if self.is_mirrored else 1)
+        return (2 if self.is_pair else 1) * (2 if self.is_mirrored else 1)
 
     @property
     def scale(self) -> Fraction:
@@ -162,11 +150,11 @@ class SplitRoot:
         """The roots that these are."""
         re, im = (arb(x[0]) + arb(x[1]) for x in (self.re, self.im))
         upper = (acb(re, im), acb(-re, im)) if self.is_mirrored else (acb(re, im),)
-        return upper if self.is_real else (*upper, *(z.conjugate() for z in upper))
+        return (*upper, *(z.conjugate() for z in upper)) if self.is_pair else upper
 
     def factor(self, s: acb) -> acb:
-        """Return the value of a :class:`symflex.codegen.program.nodes.RootFactor`, over the scale."""
-        sign = -1 if self.is_real and (self.is_mirrored or self.re[0] < 0) else 1
+        """Return the value over the scale."""
+        sign = -1 if not self.is_pair and (self.is_mirrored or self.re[0] < 0) else 1
         value = acb(sign) / arb(fmpq(self.scale.numerator, self.scale.denominator))
         for z in self.every:
             value = value * (z - s)
@@ -254,8 +242,7 @@ class BandForm:
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
             above, below = (
-                forge.multiply([forge.make(RootFactor, s, r.re, r.im, r.is_mirrored) for r in x])
-                for x in (zeros, poles)
+                forge.multiply([forge.make(r.with_children, [s]) for r in x]) for x in (zeros, poles)
             )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
@@ -331,15 +318,7 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
         return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to
     modes = analysis.modes or DEFAULT_MODES
     found = locate(bound, Modes(modes + BEYOND), DIGITS)
-    poles, zeros = (
-        [
-            root.frequency_hz()
-            for root in x
-            if not root.im < 0 and not root.is_zero
-            for _ in range(root.multiplicity)
-        ]
-        for x in (found.poles, found.zeros)
-    )
+    poles, zeros = ([root.frequency_hz() for root in modes_of(x)] for x in (found.poles, found.zeros))
     # Where no wave is reflected there may be few poles, and zeros without end.
     told = poles if len(poles) > modes else zeros
     if len(told) <= modes:
@@ -365,7 +344,7 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
         for root in right if is_mirrored else upper:
             re = (0.0, 0.0) if root.on_imaginary_axis else _two_doubles(root.re)
             im = (0.0, 0.0) if root.is_real else _two_doubles(root.im)
-            found += [SplitRoot(re, im, is_mirrored)] * root.multiplicity
+            found += [SplitRoot(Laplace(), re, im, is_mirrored)] * root.multiplicity
     return sum(root.multiplicity for root in at_zero), tuple(found)
 
 
@@ -380,8 +359,8 @@ def _two_doubles(x: arb) -> tuple[float, float]:
 def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandForm | None:
     """Return the band form with given roots, None where what they leave is not smooth."""
     (below, poles), (above, zeros) = _split(found.poles), _split(found.zeros)
-    name, reason = values.bound.name, found.certificate.reason or ""
-    made = BandForm(name, end, 1.0, above - below, zeros, poles, (), (), reason)
+    reason = found.certificate.reason or ""
+    made = BandForm(values.bound.name, end, 1.0, above - below, zeros, poles, (), (), reason)
     count = FIRST_NODES
     while count <= MOST_NODES:
         fit = _fit(values, made, count)
@@ -390,7 +369,7 @@ def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandFo
         gain, even, odd = fit
         kept = [_trimmed(part) for part in (even, odd)]
         if all(len(part) <= count - SPARE for part in kept):
-            return BandForm(name, end, gain, above - below, zeros, poles, kept[0], kept[1], reason)
+            return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
     return None
 

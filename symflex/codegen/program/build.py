@@ -29,7 +29,7 @@ from symflex.codegen.program.polynomials import (
     plan_recurrences,
 )
 from symflex.errors import BudgetError, Diagnostic
-from symflex.expressions import Expression, fold
+from symflex.expressions import Expression, Name, fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
 from symflex.print.forms.nested import step_names
@@ -116,7 +116,7 @@ class Generators:
         """Return what stands for a ring's generators, for those in use."""
         spend()
         used = ring.used_in(polynomials)
-        pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
+        pairs = [self.generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
         return RingValues(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
 
     def product(self, value: Factored) -> tuple[int, int]:
@@ -142,7 +142,8 @@ class Generators:
                 self.forge.label(size, label + suffix)
         return self.forge.divide(num, den)
 
-    def _generator(self, name: str) -> tuple[int, int]:
+    def generator(self, name: str) -> tuple[int, int]:
+        """Return the expression of a generator, and its degree in s."""
         if name not in self._known:
             self._known[name] = self._make(name)
         return self._known[name]
@@ -151,33 +152,20 @@ class Generators:
         forge, tf = self.forge, self.tf
         if name == LAPLACE:
             return (forge.inverse if self.is_far else forge.s), 1
-        if name == PI:
-            return forge.constant(1, 1), 0
-        if any(p.name == name for p in tf.model.parameters):
-            return forge.parameter(name), 0
-        for definition, value in tf.definitions:
-            if definition == name:
-                return self._definition(name, value)
-        for constant in tf.constants:
-            if constant.generator == name:
-                return constant_of(self.forge, self.tf.model, constant.expression), 0
-        if tf.closed is not None:
-            for label, polynomial in tf.closed.closure.sums:
-                if label == name:
-                    total, degree = self.polynomial(tf.closed.closure.base, polynomial)
-                    return self._labelled(total, label), degree
-        if name == COORDINATE:
-            # Coefficients along x are functions of that alone.
-            return forge.s, 0
-        raise KeyError(name)
+        if name in (definitions := dict(tf.definitions)):
+            value, degree = self.quotient(definitions[name])
+            return self._labelled(value, name), degree
+        if tf.closed is not None and name in (sums := dict(tf.closed.closure.sums)):
+            total, degree = self.polynomial(tf.closed.closure.base, sums[name])
+            return self._labelled(total, name), degree
+        constants = {c.generator: c.expression for c in tf.constants}
+        return constant_of(forge, tf.model, constants.get(name, Name(name))), 0
 
-    def _definition(self, name: str, value: Factored) -> tuple[int, int]:
-        above, degree = self.product(value.numerator())
-        below, _ = self.product(value.denominator())
-        unit = self.forge.divide(
-            self.forge.constant(value.unit.numerator), self.forge.constant(value.unit.denominator)
-        )
-        return self._labelled(self.forge.divide(self.forge.multiply([unit, above]), below), name), degree
+    def quotient(self, value: Factored) -> tuple[int, int]:
+        """Return a rational function, and the degree of its numerator in s."""
+        forge = self.forge
+        (above, degree), (below, _) = (self.product(v) for v in (value.numerator(), value.denominator()))
+        return forge.divide(forge.multiply([forge.ratio(value.unit), above]), below), degree
 
     def _labelled(self, value: int, name: str) -> int:
         suffix = "_far" if self.is_far and self.forge.depends[value] else ""
@@ -277,7 +265,7 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     made = program.values(
         program.operations(tf.steps),
         name=lambda position: named(program.names[position]),
-        number=lambda x: forge.divide(forge.constant(x.numerator), forge.constant(x.denominator)),
+        number=forge.ratio,
         negative=forge.negate,
         total=forge.add,
         product=forge.multiply,
@@ -292,15 +280,10 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
 
 def _generators(forge: Forge, model: Model, constants: Iterable[ConstantFunction]) -> Callable[[str], int]:
     """Return what makes s, pi, parameters and functions of constants of their names."""
-    parameters = {p.name for p in model.parameters}
     known = {c.generator: c.expression for c in constants}
 
     def named(name: str) -> int:
-        if name == LAPLACE:
-            return forge.s
-        if name == PI:
-            return forge.constant(1, 1)
-        return forge.parameter(name) if name in parameters else constant_of(forge, model, known[name])
+        return forge.s if name == LAPLACE else constant_of(forge, model, known.get(name, Name(name)))
 
     return named
 

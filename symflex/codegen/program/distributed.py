@@ -12,12 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
-from math import gcd, pi, prod
+from math import gcd, prod
 from operator import mul
 from typing import TYPE_CHECKING, TypeVar
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
+from symflex.balls import value_at
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT
 from symflex.codegen.program.exponents import (
@@ -227,10 +228,6 @@ class _PieceMaker:
         waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
         num, den = (v.filter(lambda f: not self._holds(f, self.waves)) for v in rest)
         plain = num / den * self.tf.num.unit / self.tf.den.unit
-        for side, product_of_waves in enumerate(waves):
-            symmetric, remaining = self._symmetric(product_of_waves)
-            waves[side] = remaining
-            plain = plain * symmetric ** (-1 if side else 1)
         found = [expand(self.ring, k.expand(), self.families) for k in kernels]
         sums = self._in_segments([terms for terms, _ in found])
         halves = []
@@ -240,26 +237,6 @@ class _PieceMaker:
             plain = plain * free ** (-1 if side else 1)
             halves.append(self._half(terms, own * (common / free)))
         return plain, (halves[0], halves[1])
-
-    def _symmetric(self, value: Factored) -> tuple[Factored, Factored]:
-        """Split off the factors whose product has no wavenumbers once their relations are used.
-
-        Such factors may cancel within themselves: ``rho*s^2 - E*lambda^2`` does at high frequencies.
-        """
-        splits = [
-            f
-            for d in self.table.dispersions
-            if d.kind == "pair"
-            for f, _ in (
-                Factored.generator(self.ring, d.wavenumbers[0]) ** 2
-                - Factored.generator(self.ring, d.wavenumbers[1]) ** 2
-            ).factors
-        ]
-        sums = value.filter(lambda f: len(f) > 1 and f not in splits).numerator()
-        reduced = self.normal.reduce(sums.expand())
-        if sums.is_one or any(self._holds(f, self.waves) for f, _ in reduced.factors):
-            return Factored.number(self.ring, 1), value
-        return reduced, value / sums
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
         """Return the sums in base lengths in each of which the denominator's largest term is largest.
@@ -441,7 +418,9 @@ class _PieceMaker:
             if g.dispersion is dispersion
         ]
         scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
-        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
+        # At least half the square of the smaller wavenumber in size.
+        quotient = forge.divide(site.coefficient(dispersion), site.coefficient(dispersion, 2))
+        return quotient, (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self,
@@ -514,8 +493,8 @@ class _PieceMaker:
         """Return the expression of a half, and the factor that was taken out of it."""
         forge = site.forge
         if not near:
-            total = site.exponential_sum(half.far, scales)
-            return total, half.waves * half.unit
+            leaves = {key: site.polynomial(p) for key, p in half.far.items()}
+            return site.exponential_sum(leaves, scales), half.waves * half.unit
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
         if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
@@ -524,15 +503,13 @@ class _PieceMaker:
         solution = cache(partial(self._solution, site))
         for orders, rest in parts.items():
             leaves = {key: site.value(v / taken) for key, v in rest.items()}
-            inner = site.sum_of_leaves(leaves, scales)
+            inner = site.exponential_sum(leaves, scales)
             summands.append(forge.multiply([inner, *map(solution, near, orders)]))
         return forge.add(summands), taken
 
     def _solution(self, site: Site, group: _Group, k: int) -> int:
-        if isinstance(group, _Lone):
-            reach = LONE * self.reach
-            return site.local_of_smaller(group.basis, group.dispersion, group.length, k, reach)
-        return site.local(group.basis, group.dispersion, group.length, k, self.reach)
+        reach = LONE * self.reach if isinstance(group, _Lone) else self.reach
+        return site.local(group.basis, group.dispersion, group.length, k, reach)
 
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
         """Return the power of s that all values share."""
@@ -687,7 +664,7 @@ class _PieceMaker:
                 code.append(self._piece(near, is_complex=True))
                 continue
             signs = dict(zip(signed, negative, strict=True))
-            made = self._real_piece(axis.where(signs), turn, is_near=all(near))
+            made = self._real_piece(replace(axis, signs=signs), turn, is_near=all(near))
             if made is None:
                 return None
             piece, turn = made
@@ -755,18 +732,10 @@ class _PieceMaker:
 
 def declared_length(tf: TransferFunction, length: Factored) -> float:
     """Return the declared value of a length; without values, of a model with every parameter 1."""
-    known = {p.name: p.value for p in tf.parameters}
-    point = []
-    for name in length.ring.names:
-        value = known.get(name)
-        point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
-    result = float(length.unit)
-    for factor, exponent in length.factors:
-        total = 0.0
-        for monomial, number in factor.terms():
-            total += int(number) * prod(x ** int(e) for x, e in zip(point, monomial, strict=True))
-        result *= total**exponent
-    return result
+    known = {p.name: float(p.value.nearly) for p in tf.parameters if p.value is not None}
+    point = [known.get(name, 1.0) for name in length.ring.names]
+    factors = (value_at(f, point.__getitem__, float) ** e for f, e in length.factors)
+    return prod(factors, start=float(length.unit))
 
 
 def _longer_and_shorter(

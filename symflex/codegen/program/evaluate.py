@@ -7,7 +7,7 @@ numpy and each other, and nothing else.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from math import isfinite
 from operator import mul
 from sys import float_info
@@ -23,7 +23,7 @@ from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -107,9 +107,7 @@ def numbers_of_pieces(
 
     It and the parameters, given by name, are numbers or arrays that broadcast.
     """
-    run = _ProgramRun(point, given)
-    run.assign(program.tests.constants)
-    run.assign(program.tests.assignments)
+    run = _ProgramRun(point, given, program.tests)
     number = np.zeros(np.shape(point), dtype=int)
     for i, condition in enumerate(program.conditions):
         tested = run.value(condition.quantity)
@@ -123,13 +121,7 @@ def numbers_of_pieces(
 
 def value_of_piece(piece: tree.CodePiece, point: Values, given: Mapping[str, Values]) -> Values:
     """Return the value that a piece computes, wherever its argument lies."""
-
-    def parts(s: Values) -> tuple[Values, ...]:
-        run = _ProgramRun(s, given)
-        run.assign(piece.code.constants)
-        run.assign(piece.code.assignments)
-        return tuple(run.value(node) for node in piece.code.values)
-
+    parts = partial(_values_of, piece.code, given)
     if piece.circle:
         return mean_over_circle(parts, point, piece.circle)
     num, *den = parts(point)
@@ -148,15 +140,12 @@ def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     >>> number_of(tree.ParameterValue("m"), {}) is None
     True
     """
-    pending = [node]
-    while pending:
-        part = pending.pop()
+    for part in node.walk():
         if isinstance(part, (tree.ParameterValue, tree.Laplace, tree.InverseLaplace)):
             return None
         if isinstance(part, tree.Assigned) and part.name not in known:
             return None
-        pending += part.children
-    run = _ProgramRun(None, {})
+    run = _ProgramRun(None, {}, tree.Straight((), (), ()))
     run.assigned.update(known)
     return run.value(node)
 
@@ -166,16 +155,19 @@ def _number(value: ArrayLike) -> Values:
     return array.astype(complex if array.dtype.kind == "c" else float)[()]
 
 
+def _values_of(code: tree.Straight, parameters: Mapping[str, Values], s: Values) -> list[Values]:
+    run = _ProgramRun(s, parameters, code)
+    return [run.value(node) for node in code.values]
+
+
 class _ProgramRun:
     """The values computed so far."""
 
-    def __init__(self, s: Values, parameters: Mapping[str, Values]) -> None:
+    def __init__(self, s: Values, parameters: Mapping[str, Values], code: tree.Straight) -> None:
         self._s = s
         self._parameters = parameters
         self.assigned: dict[str, Values] = {}
-
-    def assign(self, assignments: tuple[tree.Assignment, ...]) -> None:
-        for assignment in assignments:
+        for assignment in code.every:
             self.assigned[assignment.name] = self.value(assignment.value)
 
     def value(self, node: tree.CodeNode) -> Values:
@@ -230,26 +222,15 @@ class _ProgramRun:
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = self.value(start), self.value(length)
                 given = [np.atleast_1d(self.value(b)) for b in bases]
-                return fundamental_minors(self.along(along), *ends, given, places, wanted, node.beginning)
+                of_x = partial(_values_of, along, self._parameters)
+                return fundamental_minors(of_x, *ends, given, places, wanted, node.beginning)
             case tree.ScaledSum(amplitudes, exponents):
                 return scaled_sum([self.value(a) for a in amplitudes], [self.value(e) for e in exponents])
             case tree.Solve(entries, network, output, source):
                 return network_value([self.value(e) for e in entries], network, output, source)
             case tree.Item(values, position):
                 return self.value(values)[position]
-        message = f"no value for {type(node).__name__}"
-        raise TypeError(message)
-
-    def along(self, code: tree.Straight) -> Callable[[Values], list[Values]]:
-        """Return functions of x."""
-
-        def values(x: Values) -> list[Values]:
-            run = _ProgramRun(x, self._parameters)
-            run.assign(code.constants)
-            run.assign(code.assignments)
-            return [run.value(node) for node in code.values]
-
-        return values
+        raise TypeError(type(node).__name__)
 
 
 Values = Any
@@ -310,7 +291,7 @@ def scaled_sum(amplitudes: list[Values], exponents: list[Values]) -> list[Values
     return [total, growth]
 
 
-def mean_over_circle(parts: Callable[[Values], tuple[Values, ...]], s: Values, points: int) -> Values:
+def mean_over_circle(parts: Callable[[Values], Sequence[Values]], s: Values, points: int) -> Values:
     """Return numerator over denominator, each the mean of its values on a circle.
 
     Both are analytic, so the mean is the value at the center s, where the formula

@@ -13,7 +13,7 @@ transfer function is real up to a power of j: a :class:`RealSum` in the angular 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, reduce
 from itertools import product
@@ -221,10 +221,6 @@ class RealAxis:
                 return False
         return True
 
-    def where(self, signs: Mapping[Dispersion, bool]) -> RealAxis:
-        """Return the same for given signs of ``c_0``."""
-        return replace(self, signs=signs)
-
     def sign(self, dispersion: Dispersion) -> bool | None:
         """Return whether ``c_0`` is negative, ``None`` when it depends on values."""
         if dispersion in self.signs:
@@ -240,9 +236,7 @@ class RealAxis:
     def coefficient(self, dispersion: Dispersion) -> Factored:
         """Return ``c_0``, with the angular frequency in place of s."""
         found = self.real(dispersion.characteristic[0])
-        if found is None:
-            message = f"{dispersion.name} has losses"
-            raise ValueError(message)
+        assert found is not None  # without losses
         value, turn = found
         return -value if turn % 4 else value
 

@@ -74,6 +74,10 @@ class Forge:
         number = self.make(tree.RealNumber, abs(exact), pi_power)
         return self.negate(number) if exact < 0 else number
 
+    def ratio(self, value: Fraction) -> int:
+        """Return a quotient of two integers."""
+        return self.divide(self.constant(value.numerator), self.constant(value.denominator))
+
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
         return self.make(tree.ComplexNumber, Fraction(real), Fraction(imaginary))
@@ -181,29 +185,6 @@ class Forge:
         row = self.label(self.make(tree.Solutions, tuple(coefficients), terms), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
 
-    def fundamental_minors(
-        self,
-        ends: tuple[int, int],
-        bases: Sequence[int],
-        along: tree.Straight,
-        places: tuple[tuple[int, ...], ...],
-        wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...],
-        tip: tree.Tip | None = None,
-    ) -> tuple[list[int], list[int]]:
-        """Return minors, and the logarithms of their scales by numbers of rows.
-
-        The ``ends`` are where x starts, and the length.
-        """
-        row = self.make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted, tip)
-        size = 1 + max(max(place[:2]) for place in places)
-        items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + size)]
-        return items[: len(wanted)], items[len(wanted) :]
-
-    def scaled_sum(self, amplitudes: Sequence[int], exponents: Sequence[int]) -> tuple[int, int]:
-        """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(self.make(tree.ScaledSum, tuple(amplitudes), tuple(exponents)), "total")
-        return self.item(row, 0), self.item(row, 1)
-
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
         return self.make(tree.Item, values, position)
@@ -246,12 +227,10 @@ class _Schedule:
         roots = [x for x in (self.near, self.far) if x is not None]
         late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
         constants, at_near, at_far = self.sections(roots, late)
-        near = tree.Straight(constants, at_near, (self.nodes[self.near],))
-        if self.far is None:
-            return tree.lumped(parameters, near)
-        return tree.lumped(
-            parameters, near, tree.Straight(constants, at_near + at_far, (self.nodes[self.far],)), limit
-        )
+        near, far = tree.Straight(constants, at_near, (self.nodes[self.near],)), None
+        if self.far is not None:
+            far = tree.Straight(constants, at_near + at_far, (self.nodes[self.far],))
+        return tree.lumped(parameters, near, far, limit)
 
     def sections(
         self, roots: list[int], late: set[int], *, shared: bool = False

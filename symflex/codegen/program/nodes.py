@@ -40,7 +40,11 @@ class CodeNode:
     """
 
     OPERANDS: ClassVar[tuple[str, ...]] = ()
-    """The fields that hold operands, or tuples of them."""
+    """The fields that hold operands, or tuples of them: nodes, by their types."""
+
+    def __init_subclass__(cls) -> None:
+        own = tuple(name for name, kind in cls.__annotations__.items() if "CodeNode" in kind)
+        cls.OPERANDS = own or cls.OPERANDS
 
     @property
     def children(self) -> tuple[CodeNode, ...]:
@@ -93,8 +97,6 @@ class ComplexNumber(CodeNode):
 class ToComplex(CodeNode):
     """A real number as a complex one, for functions whose value is complex where it is negative."""
 
-    OPERANDS: ClassVar = ("operand",)
-
     operand: CodeNode
 
 
@@ -126,8 +128,6 @@ class Assigned(CodeNode):
 class Add(CodeNode):
     """A sum, evaluated from left to right."""
 
-    OPERANDS: ClassVar = ("terms",)
-
     terms: tuple[CodeNode, ...]
 
 
@@ -135,16 +135,12 @@ class Add(CodeNode):
 class Multiply(CodeNode):
     """A product, evaluated from left to right."""
 
-    OPERANDS: ClassVar = ("factors",)
-
     factors: tuple[CodeNode, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Divide(CodeNode):
     """A quotient."""
-
-    OPERANDS: ClassVar = ("numerator", "denominator")
 
     numerator: CodeNode
     denominator: CodeNode
@@ -154,8 +150,6 @@ class Divide(CodeNode):
 class IntegerPower(CodeNode):
     """An expression free of s raised to an integer of at least two."""
 
-    OPERANDS: ClassVar = ("base",)
-
     base: CodeNode
     exponent: int
 
@@ -163,8 +157,6 @@ class IntegerPower(CodeNode):
 @dataclass(frozen=True, slots=True)
 class Negate(CodeNode):
     """Minus its operand."""
-
-    OPERANDS: ClassVar = ("operand",)
 
     operand: CodeNode
 
@@ -175,8 +167,6 @@ class LargerRoot(CodeNode):
 
     Where m is small beside the root of p, the formula's value keeps digits that its derivative loses.
     """
-
-    OPERANDS: ClassVar = ("spelled", "middle", "product")
 
     spelled: CodeNode  # the expression above, for languages without derivatives
     middle: CodeNode  # m
@@ -191,8 +181,6 @@ class Apply(CodeNode):
     value may be complex.
     """
 
-    OPERANDS: ClassVar = ("argument",)
-
     function: str
     argument: CodeNode
 
@@ -200,8 +188,6 @@ class Apply(CodeNode):
 @dataclass(frozen=True, slots=True)
 class Within(CodeNode):
     """The point itself where its absolute value is at most ``end``, elsewhere not a number."""
-
-    OPERANDS: ClassVar = ("point",)
 
     point: CodeNode  # s
     end: float
@@ -214,8 +200,6 @@ class RootFactor(CodeNode):
     Parts of the root z are two doubles each, the value and what that leaves. That is added last, so that all
     digits are right also where s is close to z. Of a negative real root it is ``s - z``.
     """
-
-    OPERANDS: ClassVar = ("point",)
 
     point: CodeNode  # s
     # re and im: of z; im is positive, or zero for a single real root.
@@ -272,8 +256,6 @@ class Solutions(CodeNode):
     Solution k starts from ``y^(i)(0) = 1`` for i = k and 0 for the other i below n.
     """
 
-    OPERANDS: ClassVar = ("coefficients",)
-
     coefficients: tuple[CodeNode, ...]  # ``c_0, ..., c_(n-1)``
     terms: int  # length of their Taylor series
 
@@ -284,8 +266,6 @@ class Solve(CodeNode):
 
     See :mod:`symflex.algebra.line_networks`.
     """
-
-    OPERANDS: ClassVar = ("entries",)
 
     entries: tuple[CodeNode, ...]  # the values of the table's entries
     network: Table  # which entries stand where
@@ -314,8 +294,6 @@ class FundamentalMinors(CodeNode):
     See :func:`symflex.algebra.varying_minors.fundamental_minors`.
     """
 
-    OPERANDS: ClassVar = ("start", "length", "bases")
-
     start: CodeNode  # of x
     length: CodeNode
     bases: tuple[CodeNode, ...]  # functions of s
@@ -327,11 +305,6 @@ class FundamentalMinors(CodeNode):
     tip: Tip | None = None  # where a stiffness vanishes at the start
 
     @property
-    def size(self) -> int:
-        """The number of states; so many logarithms of scales follow the minors."""
-        return 1 + max(max(place[:2]) for place in self.places)
-
-    @property
     def beginning(self) -> tuple[object, ...]:
         """What run-time functions take of the tip, empty without one."""
         return astuple(self.tip) if self.tip else ()
@@ -341,8 +314,6 @@ class FundamentalMinors(CodeNode):
 class ScaledSum(CodeNode):
     """A sum of amplitudes times exponentials, over the largest one, and the logarithm of that, as a list."""
 
-    OPERANDS: ClassVar = ("amplitudes", "exponents")
-
     amplitudes: tuple[CodeNode, ...]
     exponents: tuple[CodeNode, ...]
 
@@ -350,8 +321,6 @@ class ScaledSum(CodeNode):
 @dataclass(frozen=True, slots=True)
 class Item(CodeNode):
     """One value of a list."""
-
-    OPERANDS: ClassVar = ("values",)
 
     values: CodeNode
     position: int
@@ -384,16 +353,18 @@ class Straight:
     assignments: tuple[Assignment, ...]
     values: tuple[CodeNode, ...]
 
+    @property
+    def every(self) -> tuple[Assignment, ...]:
+        """All assignments, in order."""
+        return (*self.constants, *self.assignments)
+
     def nodes(self) -> Iterator[CodeNode]:
         """Yield all expressions, parts included, in no particular order."""
-        for root in (*self.values, *(a.value for a in (*self.constants, *self.assignments))):
+        for root in (*self.values, *(a.value for a in self.every)):
             yield from root.walk()
 
-    def needed(self, values: Sequence[CodeNode], made_elsewhere: tuple[type[CodeNode], ...] = ()) -> Straight:
-        """Return the assignments that some values need, and these values.
-
-        Operands of nodes that are made elsewhere are not needed.
-        """
+    def needed(self, values: Sequence[CodeNode]) -> Straight:
+        """Return the assignments that some values need, and these values."""
         names = {n.name for value in values for n in value.walk() if isinstance(n, Assigned)}
         kept: list[list[Assignment]] = []
         for group in (self.assignments, self.constants):
@@ -401,8 +372,6 @@ class Straight:
             for assignment in reversed(group):
                 if assignment.name in names:
                     own.insert(0, assignment)
-                    if isinstance(assignment.value, made_elsewhere):
-                        continue
                     names |= {n.name for n in assignment.value.walk() if isinstance(n, Assigned)}
             kept.append(own)
         return Straight(tuple(kept[1]), tuple(kept[0]), tuple(values))

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion, Factored, Kernel
     from symflex.codegen.program.exponents import (
         Family,
-        KernelSum,
         Key,
         RealAxis,
         RealKey,
@@ -63,8 +62,7 @@ class Site:
         self.ring = self.tf.ratio.ring
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
         self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "exp"}
-        self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
-        self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
+        self._generators = _KernelGenerators(self)
 
     # ------------------------------------------------------------------------------- rational functions
 
@@ -170,7 +168,7 @@ class Site:
         forge, family = self.forge, self.families[i]
         factor = forge.constant(1) if factor is None else factor
         if family.wavenumber:
-            wavenumber = self._generators.generator(family.wavenumber)
+            wavenumber, _ = self._generators.generator(family.wavenumber)
             return forge.multiply([factor, self.length(family.lengths[j]), wavenumber])
         exponent = self.exponent(family, j)
         return forge.multiply([factor, forge.negate(exponent) if self.grows.get(i) else exponent])
@@ -221,42 +219,32 @@ class Site:
         exponent = [self.length(kernel.length), self.value(kernel.dispersion.shift)]
         return self.forge.apply("complex_exp", self.forge.negate(self.forge.multiply(exponent)))
 
-    def quotient(self, dispersion: Dispersion) -> int:
-        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
-        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
-
     # ------------------------------------------------------------------------------------ local solutions
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
-        """Return solution k of an equation at a length, for exponents up to a size."""
+        """Return solution k of an equation at a length, for exponents up to a size.
+
+        On the basis of a wave, a pair stands for its smaller wavenumber.
+        """
         forge, x = self.forge, self.length(length)
-        if basis.step > 1:
+        if basis.step == 1:
+            e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
+            coefficients = []
+            for i, polynomial in enumerate(basis.coefficients):
+                terms = [
+                    forge.multiply([forge.constant(number), forge.power(e, p), forge.power(f, q)])
+                    for (p, q), number in sorted(polynomial.items())
+                ]
+                coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
+            solution = forge.solutions(coefficients, series_length(size))[k]
+            return forge.multiply([forge.power(x, k), solution])
+        if dispersion.kind == "pair":
+            wavenumber, _ = self._generators.generator(dispersion.wavenumbers[1])
+            argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
+        else:
             argument = self._argument(dispersion, length)
-            if dispersion.kind == "wave":
-                argument = forge.negate(argument)
-            return self._series(basis, argument, x, k, size)
-        e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
-        coefficients = []
-        for i, polynomial in enumerate(basis.coefficients):
-            terms = [
-                forge.multiply([forge.constant(number), forge.power(e, p), forge.power(f, q)])
-                for (p, q), number in sorted(polynomial.items())
-            ]
-            coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
-        return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
-
-    def local_of_smaller(
-        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
-    ) -> int:
-        """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
-        forge, x = self.forge, self.length(length)
-        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
-        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
-        return self._series(basis, argument, x, k, size)
-
-    def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
-        forge = self.forge
-        self.forge.label(argument, "z")
+            argument = forge.negate(argument) if dispersion.kind == "wave" else argument
+        forge.label(argument, "z")
         series = basis.series(k, size)
         total = forge.constant(series[-1])
         for number in reversed(series[:-1]):
@@ -265,12 +253,11 @@ class Site:
 
     # ---------------------------------------------------------------------------------- sums of exponentials
 
-    def exponential_sum(self, terms: KernelSum, scales: Scales) -> int:
-        """Return a sum over its largest exponential; of circular terms that oscillate, half is given."""
-        return self.sum_of_leaves({key: self.polynomial(p) for key, p in terms.items()}, scales)
+    def exponential_sum(self, leaves: Mapping[Key, int], scales: Scales) -> int:
+        """Return a sum over its largest exponential, from the expressions of its coefficients.
 
-    def sum_of_leaves(self, leaves: Mapping[Key, int], scales: Scales) -> int:
-        """Return a sum as :meth:`exponential_sum` does, from the expressions of its coefficients."""
+        Of circular terms that oscillate, half is given.
+        """
         used = sorted({i for i, _ in scales})
         images = [(lambda t, i=i: self._term(i, t, scales)) for i in used]
         return self._sum({tuple(k[i] for i in used): v for k, v in leaves.items()}, images)
@@ -421,20 +408,16 @@ def _common_step(values: set[Fraction]) -> Fraction:
     return Fraction(gcd(*(int(v * below) for v in present)), below)
 
 
-@dataclass
 class _KernelGenerators(Generators):
     """Generators with wavenumbers and decays among them."""
 
-    site: Site | None = None
-
-    def generator(self, name: str) -> int:
-        """Return the expression of a generator."""
-        return self._generator(name)[0]
+    def __init__(self, site: Site) -> None:
+        super().__init__(site.forge, site.tf, is_far=False)
+        self.site = site
 
     def _make(self, name: str) -> tuple[int, int]:
-        site = self.site
-        if site is not None and name in site.waves:
-            return site.wavenumber(name), 1
-        if site is not None and name in site.kernels:
-            return site.decay(site.kernels[name]), 1
+        if name in self.site.waves:
+            return self.site.wavenumber(name), 1
+        if name in self.site.kernels:
+            return self.site.decay(self.site.kernels[name]), 1
         return super()._make(name)

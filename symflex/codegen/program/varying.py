@@ -10,13 +10,14 @@ each over its largest term; what follows the matrices along x is a function of t
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.algebra.minors import MinorSums
 from symflex.codegen.program.build import Generators
 from symflex.codegen.program.forge import Forge, straight
-from symflex.codegen.program.nodes import CodePiece, Piecewise, Tip
+from symflex.codegen.program.nodes import CodePiece, FundamentalMinors, Piecewise, ScaledSum, Tip
 from symflex.codegen.program.site import Site
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import varies_along_x
@@ -98,17 +99,18 @@ class _Workshop:
             own = [m for m in used if m.matrix == number]
             parted = PartedLaw(law, self._functions)
             inner = Forge()
-            along = _Along(inner, self.tf, is_far=False)
+            along = Generators(inner, self.tf, is_far=False)
             tip, beginning = (None, ()) if law.singular is None else self._tip(parted, law.singular)
-            parts = straight(inner, [along.value(t.along) for t in (*parted.every, *beginning)])
+            parts = straight(inner, [along.quotient(t.along)[0] for t in (*parted.every, *beginning)])
             s = self.ring.generator("s")
             bases = [Factored.polynomial(self.ring, s) ** parted.step, *(1 / d for d in parted.divisors)]
             ends = self.site.value(law.start[0]), self.site.length(length)
             wanted = tuple((m.rows, m.columns) for m in own)
-            values, scales = self.forge.fundamental_minors(
-                ends, [self.site.value(b) for b in bases], parts, parted.places, wanted, tip
-            )
-            self._minors |= {m: (v, scales[len(m.rows) - 1]) for m, v in zip(own, values, strict=True)}
+            given = tuple(self.site.value(b) for b in bases)
+            row = self.forge.make(FundamentalMinors, *ends, given, parts, parted.places, wanted, tip)
+            # After the minors come the logarithms of their scales, by numbers of rows.
+            item = partial(self.forge.item, self.forge.label(row, "minors"))
+            self._minors |= {m: (item(i), item(len(own) + len(m.rows) - 1)) for i, m in enumerate(own)}
 
     def _tip(self, parted: PartedLaw, singular: SingularStart) -> tuple[Tip, tuple[Summand, ...]]:
         """Return how finite solutions begin at a singular start, and the parts of B that is told by."""
@@ -148,15 +150,5 @@ class _Workshop:
             exponents.append(forge.add([scale for _, scale in made]))
         if len(amplitudes) == 1:
             return amplitudes[0], exponents[0]
-        return forge.scaled_sum(amplitudes, exponents)
-
-
-class _Along(Generators):
-    """Generators of a program of x."""
-
-    def value(self, value: Factored) -> int:
-        """Return a rational function of x and parameters."""
-        forge = self.forge
-        above, below = (self.product(v)[0] for v in (value.numerator(), value.denominator()))
-        unit = forge.divide(forge.constant(value.unit.numerator), forge.constant(value.unit.denominator))
-        return forge.divide(forge.multiply([unit, above]), below)
+        total = forge.label(forge.make(ScaledSum, tuple(amplitudes), tuple(exponents)), "total")
+        return forge.item(total, 0), forge.item(total, 1)

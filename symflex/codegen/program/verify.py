@@ -108,7 +108,7 @@ class Verification:
     samples: int  # number of frequencies
     reason: str = ""  # why it was not measured; empty when it was
 
-    def text(self, digits: int = 2) -> str:
+    def text(self) -> str:
         """Return the sentence that stands in the docstring.
 
         Examples
@@ -118,15 +118,15 @@ class Verification:
         """
         if self.error is None:
             return f"not verified: {self.reason}"
-        error = _error_text(self.error, digits)
+        error = _error_text(self.error)
         low, high = (frequency_text(f) for f in self.band)
         if self.error == inf:
             return f"not accurate: some values overflow over {low} ... {high}"
         return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
 
 
-def _error_text(error: float, digits: int) -> str:
-    return "0" if error == 0 else f"{error:.{digits - 1}e}"
+def _error_text(error: float) -> str:
+    return "0" if error == 0 else f"{error:.1e}"
 
 
 def frequency_text(hertz: Fraction) -> str:
@@ -144,11 +144,7 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_programs(
-    tf: AnyTransferFunction,
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    samples: int = SAMPLES,
-    *,
-    has_real: bool = True,
+    tf: AnyTransferFunction, samples: int = SAMPLES, *, has_real: bool = True
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
@@ -157,11 +153,11 @@ def choose_programs(
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.
 
-    The band is in Hz, by default that of the model's ``[analysis]``, else 0.1 Hz to 10 kHz; ``samples`` are
-    spaced evenly on a logarithmic scale, and more are taken near poles and zeros. SF503 when every program
+    The band is that of the model's ``[analysis]``, else 0.1 Hz to 10 kHz; ``samples`` are spaced evenly on a
+    logarithmic scale, and more are taken near poles and zeros. SF503 when every program
     would be too large, SF233 when a number does not fit in double precision.
     """
-    gauge = _gauge(_solved(tf), band_hz, samples)
+    gauge = _gauge(_solved(tf), samples)
     own, programs = _choose(gauge), _real_programs(gauge)
     first = next(programs, None)
     if first is None or not has_real:
@@ -180,10 +176,7 @@ def _solved(tf: AnyTransferFunction) -> AnyTransferFunction:
 
 
 def choose_band(
-    tf: AnyTransferFunction,
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    up_to_hz: Fraction | None = None,
-    samples: int = SAMPLES,
+    tf: AnyTransferFunction, up_to_hz: Fraction | None = None, samples: int = SAMPLES
 ) -> tuple[Piecewise, Verification, tuple[str, ...]]:
     """Return the program of the band form, how well it agrees with the function, and what is said of it.
 
@@ -194,10 +187,9 @@ def choose_band(
         raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
     (bound,) = derive_for_roots(tf.model, [(tf.output.name, tf.input.name)])
     values = EnclosedValues(bound)
-    end = up_to_hz or (band_hz[1] if band_hz else None)
-    form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, end)
+    form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, up_to_hz)
     program, high = form.program(), form.end_hz
-    low = (band_hz or tf.model.analysis.band or (DEFAULT_BAND[0],))[0]
+    low = (tf.model.analysis.band or DEFAULT_BAND)[0]
     band = (min(low, high / 1000), high)
     centers = [f for f in form.centers_hz if band[0] <= f <= band[1]]
     if len(centers) > 2 * MOST_EXTREMES:
@@ -209,22 +201,21 @@ def choose_band(
     verified = Verification(tf.name, "band", error, band, len(references.s), reason)
     off = [form.end * complex(x, y) for x in (-ASIDE_OF_AXIS, ASIDE_OF_AXIS) for y in HEIGHTS]
     worst = References(values, np.array(off)).worst_error(program)
-    return program, verified, (*form.sentences(), form.beside(ASIDE_OF_AXIS, _error_text(worst, 2)))
+    return program, verified, (*form.sentences(), form.beside(ASIDE_OF_AXIS, _error_text(worst)))
 
 
 def measure_values(
     tf: AnyTransferFunction,
     values: Callable[[NDArray[np.complex128]], Sequence[complex]],
     form: str,
-    band_hz: tuple[Fraction, Fraction] | None = None,
     samples: int = SAMPLES,
 ) -> Verification:
     """Return how well values that are computed in some other way agree with a transfer function.
 
     ``values`` takes an array of s [rad/s]; it is not called when nothing can be measured. ``form`` is what
-    the other way is called; band and samples as for :func:`choose_programs`.
+    the other way is called; ``samples`` are as for :func:`choose_programs`.
     """
-    gauge = _gauge(tf, band_hz, samples)
+    gauge = _gauge(tf, samples)
     if gauge.references is None:
         return gauge.verified(form, None)
     return gauge.verified(form, gauge.references.worst_of(values(gauge.references.s)))
@@ -250,8 +241,8 @@ class _Gauge:
         return Verification(self.tf.name, form, error, self.band, samples, self.reason)
 
 
-def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
-    band = band_hz or tf.model.analysis.band or DEFAULT_BAND
+def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
+    band = tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     pieces = None
     if not isinstance(tf, NestedTransferFunction) and tf.is_distributed and not tf.is_zero:

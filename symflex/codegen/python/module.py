@@ -28,7 +28,7 @@ from symflex.codegen.module_text import (
 )
 from symflex.codegen.program import evaluate
 from symflex.codegen.program.verify import double_of
-from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, statement
+from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, in_pieces, statement
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Contents, Member
     from symflex.codegen.program.verify import Verification
     from symflex.codegen.python.pieces import PrivateText
-    from symflex.model import Model
+    from symflex.model import Model, ModelParameter
 
 
 COPIED = (
@@ -163,16 +163,11 @@ Accuracy holds in double precision. Switch it on in jax before anything else:
 
 @cache
 def private_copy(function: Callable[..., object]) -> str:
-    """Return the text of a run-time function of this package as a private one, without annotations.
-
-    Raises ValueError: When its text has no signature with a result.
-    """
+    """Return the text of a run-time function of this package as a private one, without annotations."""
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
     found = signature.match(text)
-    if found is None:
-        message = f"{function} has no signature"
-        raise ValueError(message)
+    assert found is not None
     names = re.findall(r"(\w+): ", found.group(2))
     body = re.sub(r"(\w): Any = ", r"\1 = ", text[found.end() :])
     body = re.sub(rf"(?<!\.)\b({_OWN})\(", r"_\1(", body)
@@ -220,16 +215,19 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     blocks, code, solving = [parameter_table(model, names)], "", None
     for member in members:
         public = (responses if member.is_response else functions)[member.tf.name]
-        made = TracedText if dialect.is_traced else BlockText
         owner = public if member.program.is_real else functions[member.tf.name]
-        private = made(member.program, owner, names, values, dialect)
-        function = _Function(member, public, private, member.verification.text(contents.digits))
+        private: PrivateText = (
+            TracedText(in_pieces(member.program), owner, names, values, dialect)
+            if dialect.is_traced
+            else BlockText(member.program, owner, names, values, dialect)
+        )
+        function = _Function(member, public, private, member.verification.text())
         # A response in complex arithmetic calls what the function of s calls.
         own = "\n".join(private.functions() if owner == public else [])
         blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
         code += "\n".join([*function.body(), own, ""])
-        if isinstance(private, BlockText) and private.given.network is not None:
-            solving = private.network(private.given.network)
+        if isinstance(private, BlockText) and private.program.network is not None:
+            solving = private.network(private.program.network)
     if solving is not None:
         # Functions of one model solve the same network.
         blocks.append("\n".join([*solving, ""]))
@@ -239,7 +237,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     is_piecewise = not all(member.program.is_lumped for member in members)
     if is_piecewise:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
-    text = header(dialect.first, model, contents.verified[: len(functions)], contents.digits, dialect.remark)
+    text = header(dialect.first, model, contents.verified[: len(functions)], dialect.remark)
     lints = LINTS["traced" if dialect.is_traced else "numpy in pieces" if is_piecewise else "numpy"]
     start = f"{text}# ruff: noqa: {lints}  (names and texts are the model's)\n\n"
     imports = f"from __future__ import annotations\n\n{dialect.imports}\n"
@@ -298,9 +296,7 @@ class _Function:
         lines += ["", "    Parameters", "    ----------", f"    {self.variable} : {array} of {kind}"]
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in self.member.parameters:
-            name = names[parameter.name]
-            lines.append(f"    {name} : {array}{'' if parameter.value is None else ', optional'}")
-            lines += wrapped(described(parameter, name), WIDTH, "        ")
+            lines += parameter_entry(parameter, names[parameter.name], array)
         if dialect.is_argument:
             lines.append(f"    {dialect.space} : module, optional")
             lines.append("        Library of arrays; by default that of the arguments.")
@@ -315,22 +311,21 @@ class _Function:
         return docstring(lines, "    ")
 
 
-def header(first: str, model: Model, verified: Sequence[Verification], digits: int, remark: str = "") -> str:
+def header(first: str, model: Model, verified: Sequence[Verification], remark: str = "") -> str:
     """Return a module's docstring: a first line, origin, the verified error of every function, a remark."""
     lines = [first, "", *origin(model, "")]
     lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
-        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+        lines += wrapped(inert(f"{verification.name}: {verification.text()}"), WIDTH, "", "    ")
     text = docstring(lines, "")
     return text.rstrip().removesuffix('"""') + f'\n{remark}"""\n' if remark else text
 
 
 def origin(model: Model, indent: str) -> list[str]:
     """Return lines that tell title and source of a model, and an empty one if there are any."""
-    lines = [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
-    return [*lines, ""] if lines else []
+    return [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
 
 
 def docstring(lines: Sequence[str], indent: str) -> str:
@@ -349,6 +344,20 @@ def public_names(
     return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
 
+def parameter_entry(parameter: ModelParameter, name: str, kind: str) -> list[str]:
+    """Return what a docstring says of a parameter."""
+    first = f"    {name} : {kind}{'' if parameter.value is None else ', optional'}"
+    return [first, *wrapped(described(parameter, name), WIDTH, "        ")]
+
+
+def row_of_table(opening: str, entries: Sequence[str]) -> list[str]:
+    """Return a dictionary within a table, on one line where it fits."""
+    one_line = f"    {opening}{{{', '.join(entries)}}},"
+    if len(one_line) <= WIDTH and "\n" not in one_line:
+        return [one_line]
+    return [f"    {opening}{{", *(f"        {entry}," for entry in entries), "    },"]
+
+
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:
     """Return the dictionary of all parameters: value, unit and description."""
     lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
@@ -358,12 +367,7 @@ def parameter_table(model: Model, names: Mapping[str, str]) -> str:
             f'"unit": {literal(parameter.unit)}',
             f'"doc": {literal(parameter.doc)}',
         ]
-        one_line = f'    "{names[parameter.name]}": {{{", ".join(entries)}}},'
-        if len(one_line) <= WIDTH and "\n" not in one_line:
-            lines.append(one_line)
-        else:
-            inside = [f"        {entry}," for entry in entries]
-            lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
+        lines += row_of_table(f'"{names[parameter.name]}": ', entries)
     return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
 
 

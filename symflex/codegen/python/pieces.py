@@ -42,7 +42,7 @@ class PrivateText(ABC):
     Their names begin with what a private function is, so that ``A_over_F_0`` may be another public function.
     """
 
-    given: tree.Piecewise  # what they compute
+    program: tree.Piecewise  # what they compute
     name: str  # identifier of the public function whose programs these are
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
@@ -51,7 +51,7 @@ class PrivateText(ABC):
     @property
     def variable(self) -> str:
         """The first argument's name, ``s`` or ``omega``."""
-        return self.omega if self.given.is_real else "s"
+        return self.omega if self.program.is_real else "s"
 
     @property
     def omega(self) -> str:
@@ -66,7 +66,7 @@ class PrivateText(ABC):
     @property
     def arguments(self) -> list[str]:
         """Of the private functions."""
-        return [self.variable, *(self.parameters[p] for p in self.given.parameters)]
+        return [self.variable, *(self.parameters[p] for p in self.program.parameters)]
 
     @abstractmethod
     def call(self) -> list[str]:
@@ -134,7 +134,7 @@ class BlockText(PrivateText):
 
     def call(self) -> list[str]:
         """Return the statements that compute the value of ``arguments``."""
-        program, name = self.given, self.name
+        program, name = self.program, self.name
         if program.is_lumped:
             text = f"_in_blocks(_value_of_{name}, arguments)"
         elif program.is_real:
@@ -148,7 +148,7 @@ class BlockText(PrivateText):
 
     def functions(self) -> list[str]:
         """Return the lines of all functions; no text of the model is in them."""
-        program = self.given
+        program = self.program
         if program.network is not None:
             ends = f"{program.network.output}, {program.network.source}"
             value = f"_network_value(_entries(*arguments), _NETWORK, {ends})"
@@ -165,7 +165,7 @@ class BlockText(PrivateText):
 
     def network(self, solve: tree.Solve) -> list[str]:
         """Return the lines of what all functions share that solve a network: its table, and its entries."""
-        lines, printer = self._body(self.given.near, self.variable)
+        lines, printer = self._body(self.program.near, self.variable)
         entries = in_lines(", ".join(printer.print(e) for e in solve.entries), WIDTH - 8)
         return [
             *statement("_NETWORK", repr(solve.network), ""),
@@ -184,14 +184,14 @@ class BlockText(PrivateText):
         given = ", ".join(["_x", *self.arguments[1:]])
         return {
             minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
-            for number, minors in enumerate(self.given.minors)
+            for number, minors in enumerate(self.program.minors)
         }
 
     def _along(self) -> list[str]:
         """Return the lines of the functions of x that members vary like."""
         lines: list[str] = []
         variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
-        for number, minors in enumerate(self.given.minors):
+        for number, minors in enumerate(self.program.minors):
             own, printer = self._body(minors.along, variable)
             texts = ", ".join(printer.print(v) for v in minors.along.values)
             head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
@@ -207,10 +207,9 @@ class BlockText(PrivateText):
         used = {*self.dialect.reserved, *self.arguments[1:]}
         own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
         used |= set(own.values())
-        assignments = [*near.constants, *near.assignments, *program.late]
-        intermediates = identifiers({a.name: a.name for a in assignments}, used)
+        intermediates = identifiers({a.name: a.name for a in (*near.every, *program.late)}, used)
         printer = NumpyPrinter(self.parameters, intermediates, "s", own["inverse"])
-        for assignment in (*near.constants, *near.assignments):
+        for assignment in near.every:
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         value = printer.print(near.values[0])
         if far is None:
@@ -226,11 +225,10 @@ class BlockText(PrivateText):
         return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
-        assignments: list[tree.Assignment] = [*code.constants, *code.assignments]
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
-        names = identifiers({a.name: a.name for a in assignments}, taken)
+        names = identifiers({a.name: a.name for a in code.every}, taken)
         printer = NumpyPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
-        return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
+        return [line for a in code.every for line in printer.assignment(a.name, a.value, "    ")], printer
 
     def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
         text, scale = printer.print(condition.quantity), printer.print(condition.scale)
@@ -245,7 +243,7 @@ class BlockText(PrivateText):
 
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         value = printer.quotient(*piece.code.values)
-        if piece.is_complex and self.given.turn:
+        if piece.is_complex and self.program.turn:
             # The factor that the real pieces leave out comes after.
             value = f"-1j * ({value})"
         return [*lines, *statement("return", value, "    ")]
@@ -253,12 +251,7 @@ class BlockText(PrivateText):
 
 @dataclass(frozen=True)
 class TracedText(PrivateText):
-    """Prints functions without branches on values."""
-
-    @property
-    def program(self) -> tree.Piecewise:
-        """The program in pieces, each of which can be computed without the others."""
-        return in_pieces(self.given)
+    """Prints functions without branches on values, of programs :func:`in_pieces`."""
 
     def call(self) -> list[str]:
         """Return the statements that compute the value of ``arguments``."""
@@ -286,12 +279,11 @@ class TracedText(PrivateText):
         return [*lines, ")"]
 
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
-        assignments = (*code.constants, *code.assignments)
         taken = {*self.dialect.reserved, *self.arguments, variable}
         inverse = identifiers({"inverse": "inverse"}, taken)["inverse"]
-        names = identifiers({a.name: a.name for a in assignments}, {*taken, inverse})
+        names = identifiers({a.name: a.name for a in code.every}, {*taken, inverse})
         numbers: dict[str, Any] = {}
-        for assignment in assignments:
+        for assignment in code.every:
             if (number := number_of(assignment.value, numbers)) is not None:
                 numbers[assignment.name] = number
         has_fixed_sizes = self.dialect.has_fixed_sizes and bool(self.program.conditions)
@@ -305,7 +297,7 @@ class TracedText(PrivateText):
             has_fixed_sizes,
             self.leading,
         )
-        lines = [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")]
+        lines = [line for a in code.every for line in printer.assignment(a.name, a.value, "    ")]
         if any(inverse in line for line in lines):
             lines = [f"    {inverse} = 1.0 / {variable}", *lines]
         return lines, printer

@@ -45,7 +45,7 @@ def _chosen_once(monkeypatch):
     def choose(tf, *_, has_real):
         key = id(tf.ratio), has_real
         if key not in MADE:
-            MADE[key] = tf, choose_programs(tf, None, 3, has_real=has_real)
+            MADE[key] = tf, choose_programs(tf, 3, has_real=has_real)
         return MADE[key][1]
 
     def formula(tf):

@@ -111,7 +111,8 @@ def test_recurrences_are_taken_for_the_six_masses_because_they_are_the_most_accu
 
 def test_the_band_of_the_analysis_is_the_default(two_mass):
     assert choose_programs(two_mass)[0][1].band == (Fraction(1, 10), Fraction(100))
-    assert choose_programs(two_mass, BAND)[0][1].band == BAND
+    wide = replace(two_mass.model, analysis=replace(two_mass.model.analysis, band=BAND))
+    assert choose_programs(replace(two_mass, model=wide))[0][1].band == BAND
 
 
 def test_a_parameter_without_value_is_named_as_the_reason():
@@ -134,7 +135,6 @@ def test_the_sentence_says_error_and_band():
         verification.text()
         == "verified: worst relative error 3.1e-16 over 0.1 Hz ... 1 kHz against ball arithmetic"
     )
-    assert "3.14e-16" in verification.text(3)
 
 
 def test_a_frequency_is_printed_with_a_prefix():
