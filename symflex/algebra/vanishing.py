@@ -261,8 +261,8 @@ TRIALS = 4
 class OriginSeries:
     """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
 
-    General and varying dispersions are not covered. With ``at``, linear in s or in a parameter, that vanishes
-    instead of s. Orders above ``terms``, in the fourth root of s, are not found.
+    General and varying dispersions are not covered. With ``at``, a polynomial that vanishes instead of s.
+    Orders above ``terms``, in the fourth root of s, are not found.
     """
 
     def __init__(
@@ -291,20 +291,19 @@ def _find_point(
     """Return series for all generators near where a polynomial vanishes."""
     if any(d.kind in ("general", "varying") for d in table.dispersions):
         return None
-    linear = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), None)
-    if linear is None:
-        return None
-    parts = by_powers(ring, at, linear)
-    name, zero = ring.names[linear], ring.constant(0)
+    index = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), 0)
+    parts = by_powers(ring, at, index)
+    name, zero = ring.names[index], ring.constant(0)
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
-        rest, slope = (field.polynomial(parts.get(k, zero), ring.names, values) for k in (0, 1))
-        below = field.inverse(slope)
-        if below is None:
+        known = [field.polynomial(parts.get(k, zero), ring.names, values) for k in range(max(parts) + 1)]
+        there = nmod_poly([int(coefficient[0]) for coefficient in known], field.prime)
+        root = next((-f[0] / f[1] for f, _ in there.factor()[1] if f.degree() == 1), None)
+        if root is None or not int(there.derivative()(root)):
             return False
         # The scale decides in which fields the roots of several wavenumbers exist together.
-        scale = int(values[name][0]) or 1
-        values[name] = field.times(field.power(BRANCHES) * scale - rest, below)
+        scale = (int(values[name][0]) or 1) / there.derivative()(root)
+        values[name] = field.power(BRANCHES) * scale + field.constant(int(root))
         return True
 
     return find_point(ring, table, terms, prepare)

@@ -121,8 +121,8 @@ class Stability:
         """The bandwidth with a gain margin of 6 dB: where the loop gain first falls below one.
 
         It is infinite if every gain is stable. It is ``nan`` if no gain next to 0 is stable, if the loop
-        gain is below one from the lowest frequencies on, or if the loop is closed in several places. If the
-        stable gains end with the range examined, it is the bandwidth at half of the largest one.
+        gain is below one at the lowest frequencies or never, or if the loop is closed in several places. If
+        the stable gains end with the range examined, it is the bandwidth at half of the largest one.
         """
         found = self.proved.bandwidth
         if found is not None and found.gain is None:

@@ -455,8 +455,10 @@ def allowed_bandwidth(
     gain = end / MARGIN
     found = loop_gain.margins(gain)
     with precision(BITS):
-        before = _ratio(loop_gain.function, found[0].frequency.mid() / 2, BITS) if found else acb(0)
-        if not abs(before) * ball(gain) > 1:
+        before = _ratio(loop_gain.function, found[0].frequency.mid() / 2 if found else arb(1), BITS)
+        if not abs(before) * abs(ball(gain)) > 1:
             return AllowedBandwidth(gain, None, None, is_limited)
+    if not found:
+        return None  # it never falls below one
     worst = min(found, key=lambda margin: abs(float(margin.angle.mid())))
     return AllowedBandwidth(gain, found[0].frequency, worst.angle, is_limited)

@@ -79,7 +79,7 @@ class AllowedBandwidth:
 
     gain: Fraction | None  # the largest gain with that margin; ``None`` when every gain is stable
     # At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
-    # loop gain is below one from the lowest frequencies on.
+    # loop gain is below one at the lowest frequencies.
     frequency: arb | None
     phase_margin: arb | None  # the smallest one there in absolute value [rad], positive for lag
     is_limited: bool  # by a boundary: twice the gain is one. Otherwise the gains examined end there.
@@ -508,7 +508,7 @@ def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:
         return f"without limit: every {gain} > 0 is stable"
     at = f"{gain} = {_number(found.gain)}"
     if found.frequency is None or found.phase_margin is None:
-        return f"none: at {at} the loop gain is below one from the lowest frequencies on"
+        return f"none: at {at} the loop gain is below one at the lowest frequencies"
     place = f"{float(hertz(found.frequency).mid()):.{SHORT_DIGITS}g} Hz at {at}"
     angle = float(degrees(found.phase_margin).mid())
     shown = f"{place}, phase margin {abs(angle):.3g} deg {'lag' if angle > 0 else 'lead'}"

@@ -144,7 +144,7 @@ class KernelReduction:
         quotient, shared = back(quotient), back(shared)
         if matched:
             quotient, _ = self._radicals.in_lowest_terms(quotient)
-        shortest = _with_fewer_waves(self._shortest(quotient), table)
+        shortest = _with_fewer_waves(self._shortest(self._waves_apart(quotient)), table)
         ratio = _split_contents(shortest, self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:
@@ -255,16 +255,51 @@ class KernelReduction:
 
         return self.normal.balance(value.map_factors(self.ring, shortest))
 
+    def _waves_apart(self, value: Factored) -> Factored:
+        """Return a product in which no factor hides wavenumbers of a pair, or what vanishes where they meet.
+
+        If no parameter follows from the wavenumbers, ``q_1 (q_2 sinh(q_1) - q_1 sinh(q_2))`` has become
+        ``q_1 q_2 sinh(q_1) + (q_2^2 + c_2) sinh(q_2)``. A factor holds q_1 if its product with ``q_1 q_2^2``
+        holds ``c_0 = q_1^2 q_2^2``.
+        """
+        for law in () if self._is_solved else self.table.dispersions:
+            if law.kind != "pair":
+                continue
+            c, (first, second) = (
+                law.characteristic,
+                (Factored.generator(self.ring, w) for w in law.wavenumbers),
+            )
+            split = self._split(law)
+            for divisor, times, product in (
+                (first, first * second**2, c[0]),
+                (second, second * first**2, c[0]),
+                (split, split, c[2] ** 2 - c[0] * 4),
+            ):
+                if product.numerator().factors:
+                    divided = partial(self._divided, divisor, times, product)
+                    value = value.map_factors(self.ring, divided)
+        return value
+
+    def _divided(self, divisor: Factored, times: Factored, product: Factored, factor: fmpz_mpoly) -> Factored:
+        """Return a factor with a divisor set apart; ``product`` is the divisor by ``times``."""
+        whole = prod((f**e for f, e in times.factors), start=factor)
+        rest = _split_contents(self.normal.reduce(whole), self._kernel_content) / product
+        if any(e < 0 and product.exponent_of(f) > 0 for f, e in rest.factors):
+            return Factored.polynomial(self.ring, factor)
+        return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, product))
+
     def _modes(self, value: Factored) -> Factored:
         """Return the factors that are modes.
 
         What vanishes with a wavenumber is looked at elsewhere. No modes are factors that come of expressing
-        the equations in wavenumbers, nor the poles of the field equations, where their solutions have
-        essential singularities; exponentials have no zeros.
+        the equations in wavenumbers, such as what vanishes where those of a pair meet, nor the poles of the
+        field equations, where their solutions have essential singularities; exponentials have no zeros.
         """
         singular = [
             f for d in self.table.dispersions for c in d.characteristic for f, _ in c.denominator().factors
         ]
+        pairs = (d.characteristic for d in self.table.dispersions if d.kind == "pair")
+        singular += [f for c in pairs for f, _ in (c[2] ** 2 - c[0] * 4).numerator().factors]
         decays = [self.ring.generator(k.generator) for k in self.table.kernels if k.function == "exp"]
 
         def is_mode(factor: fmpz_mpoly) -> bool:

@@ -160,11 +160,16 @@ def test_an_order_where_something_else_vanishes_is_that_of_the_factor():
     assert [origin.order(f) for f in (w**2, d / w, w)] == [1, 0, None]
 
 
-def test_nothing_is_said_of_a_dispersion_without_names_or_where_nothing_is_linear():
+def test_nothing_is_said_of_a_dispersion_without_names():
     ring, table, (s, *_) = kernels_of("general")
     assert OriginSeries(ring, table).order(s) is None
+
+
+def test_a_point_where_nothing_is_linear_is_a_root_in_some_field():
     ring, table, (s, r, p, *_) = kernels_of("wave")
-    assert OriginSeries(ring, table, (s**2 + r**2 + p**2 - 5).expand()).order(s) is None
+    at = s**2 + r**2 + p**2 - 5
+    origin = OriginSeries(ring, table, at.expand())
+    assert [origin.order(f) for f in (s, at, at**3 * r)] == [0, 1, 3]
 
 
 def test_a_point_where_all_relations_hold_has_values_beside_dispersions_without_names():

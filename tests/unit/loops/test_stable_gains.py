@@ -220,6 +220,8 @@ def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
     # Half of the limit is a loop gain of 1/2 where it is largest.
     assert np.isnan(loop("K*D/(s + 1)", T="10 s").stability("K", (0, 2)).bandwidth_hz)
     assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
+    # Half of the range, 10, times 1/2 at rest and 1 far up: never below one.
+    assert loop("K*(s + 1)/(s + 2)").stability("K", (0, 20)).to_json_dict()["bandwidth"] is None
 
 
 @pytest.mark.slow

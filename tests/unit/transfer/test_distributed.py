@@ -9,6 +9,7 @@ from flint import acb, ctx
 from symflex import pipeline
 from symflex.algebra import degree_in
 from symflex.algebra.vanishing import OriginSeries
+from symflex.roots import Modes
 from symflex.transfer import bind
 
 HEAD = """
@@ -430,3 +431,65 @@ def test_a_pipe_with_friction_has_no_wavenumber_where_the_square_of_one_is_short
         return 1 / (mp.cosh(gamma * LENGTH) + gamma / compliance / mp.mpf(3e9) * mp.sinh(gamma * LENGTH))
 
     agrees(tf, along)
+
+
+OF_NUMBERS = """
+symflex = 1
+inputs.F = { torque = "a.theta" }
+outputs.Y = "c.theta"
+[elements]
+left = { type = "pin", at = "a" }
+right = { type = "pin", at = "c" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "squares"),
+    [
+        ("N = -98.69", lambda k: (10 * k**4 - mp.mpf("98.69") * k**2) / mp.mpf("0.5")),
+        pytest.param(
+            'theory = "timoshenko", rhoI = 0.01, kappaGA = 1000',
+            # 0 = w^4 rhoI rhoA - w^2 (rhoA kGA + k^2 (EI rhoA + rhoI kGA)) + EI kGA k^4: the lower root
+            lambda k: min(mp.polyroots([0.005, -(500 + 15 * k**2), 10000 * k**4], extraprec=100)),
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            'theory = "rayleigh", rhoI = 0.01, N = 30',
+            lambda k: (10 * k**4 + 30 * k**2) / (0.5 + k**2 / 100),
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_a_pinned_beam_of_numbers_alone_hides_nothing_and_has_the_frequencies_of_its_sines(law, squares):
+    beam = f'beam = {{ type = "beam", between = ["a", "c"], EI = 10, rhoA = 0.5, l = 1, {law} }}\n'
+    (tf,) = pipeline.derive_all(pipeline.loads(OF_NUMBERS + beam))
+    assert tf.hidden == ()
+    found = pipeline.roots(pipeline.bind(tf), Modes(1))
+    assert found.verdict.word == "marginal"
+    above = sorted(float(r.im.mid()) for r in found.poles if r.im > 0)
+    assert above == pytest.approx([float(mp.sqrt(squares(mp.pi)))], rel=1e-12)
+
+
+@pytest.mark.parametrize("stiffness", ["-20", '"k"'])
+def test_a_rod_on_a_repelling_foundation_drifts_unseen_by_the_distance_of_its_ends(stiffness):
+    text = f"""
+symflex = 1
+parameters.k = {{ value = -20, assume = "real" }}
+[elements.rod]
+type = "rod"
+between = ["a", "c"]
+EA = 10
+rhoA = 0.5
+l = 1
+k_f = {stiffness}
+c_f = 2
+[inputs.F]
+force = "a"
+[outputs]
+Y = "c - a"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    bound = pipeline.bind(tf)
+    # 0.5 s^2 + 2 s - 20 = 0 as a rigid body
+    assert "s^2 + 4*s - 40" in [str(h.polynomial) for h in bound.hidden]
+    assert pipeline.roots(bound, Modes(1)).verdict.word != "stable"
