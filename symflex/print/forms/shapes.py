@@ -564,6 +564,8 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
     """Return the number that divides a sum so that it has the numbers wanted, or ``s^n`` in front."""
     fronts = [abs(powers_of(t)[0]) for t in total.terms]
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
+    are_whole = all(f.denominator == 1 for f in fronts)
+    holds_sums = any(isinstance(base, Sum) for t in total.terms for base in powers_of(t)[1])
     tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
 
     def rank(divisor: Fraction) -> tuple[bool | int, ...]:
@@ -571,6 +573,8 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
         is_typed = all(is_wanted)
         has_symbols = {*names(total)} != {S}
+        # Whole numbers stay in a sum of longer parts, and where its first would be as odd as 2.5*m.
+        is_odd = not (is_whole[0] or is_wanted[0]) or (fronts[0] == 1 and (holds_sums or not is_typed))
         is_large = not has_symbols and (fronts[0] == 1 or max(fronts) >= LARGE)
         is_large &= not any("/" in number_text(x) for x in divided)
         as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
@@ -578,7 +582,7 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
             has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5
-            sum(is_wanted),
+            0 if are_whole and divisor != 1 and is_odd else sum(is_wanted),
             is_whole[0],
             sum(is_whole),
         )
