@@ -552,7 +552,9 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
-    spread = None if inside is None or scale == 1 else _scaled(inside, 1 / abs(scale), digits)
+    fronts = [scale, *(powers_of(t)[0] for t in inside.terms)] if inside is not None else []
+    stays = scale == 1 or all(x.denominator == 1 for x in fronts)  # as 6*(3*T*s + 1)
+    spread = None if inside is None or stays else _scaled(inside, 1 / abs(scale), digits)
     if inside is not None and spread is not None and ({*names(inside)} == {S} or len({*names(inside)}) > 1):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
         tried.append(negative(whole) if scale < 0 else whole)
