@@ -256,7 +256,7 @@ class Radicals:
             for f, e in side:
                 scale = scale * self._shortest(f) ** (sign * e)
         hidden = shared.map_factors(self.ring, self._shortest).filter(lambda f: bool(degree_in(f, 0)))
-        result = self._without_rooted_scale(self.reduced(scale))
+        result = self.without_rooted_scale(self.reduced(scale))
         if not shared.is_one:
             return result, hidden
         return min(self.tidy(value), result, key=_size), shared
@@ -295,7 +295,7 @@ class Radicals:
         common = self.gcd(f, g)
         return common if degree_in(common, 0) else None
 
-    def _without_rooted_scale(self, value: Factored) -> Factored:
+    def without_rooted_scale(self, value: Factored) -> Factored:
         """Return a product whose sums of roots free of s stand below no longer, where that is shorter."""
         scale = value.filter(lambda f: len(f) > 1 and self._is_rooted(f) and not degree_in(f, 0))
         if scale.is_one:
@@ -304,8 +304,11 @@ class Radicals:
         for factor, exponent in scale.factors:
             one = Factored.polynomial(self.ring, factor)
             freed = freed * (one if exponent > 0 else self._inverse(factor)) ** abs(exponent)
-        top = self.normal(freed.numerator().expand())
-        return min(value, self.reduced(value / scale * top / freed.denominator()), key=_size)
+        ratio = self.normal(freed.numerator().expand()) / freed.denominator()
+        top, bottom = ratio.numerator().expand(), ratio.denominator().expand()
+        common = top.gcd(bottom)
+        above, below = (Factored.polynomial(self.ring, p / common) for p in (top, bottom))
+        return min(value, self.reduced(value / scale * above / below), key=_size)
 
     def gcd(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly:
         """Return the greatest common divisor in s of two polynomials in normal form, by Euclid's algorithm.

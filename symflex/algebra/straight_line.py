@@ -328,6 +328,10 @@ class Workbench:
             return product if a == b else self.negate(product)
         if a == b == _NUMBER:
             return self.number(self.fraction(x) * self.fraction(y))
+        if a == _DIVIDE and self.operands[x][1] == y:
+            return self.operands[x][0]
+        if b == _DIVIDE and self.operands[y][1] == x:
+            return self.operands[y][0]
         key = _pair_key(_MULTIPLY, x, y)
         known = self._known.get(key)
         return self._make(_MULTIPLY, (x, y), key) if known is None else known

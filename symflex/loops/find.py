@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
@@ -264,9 +264,12 @@ class _GainSearch:
         boundaries, intervals = [], []
         is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
         start: arb | None = ends[0]
+        counted = self.along.radius[0] * 1.01 if self.along is not None and is_open else inf
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
-            # A stable loop is not stable at one gain alone where poles touch the axis and turn back.
-            if counts[i] == counts[i + 1] and not (counts[i].is_stable and group):
+            # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
+            # that cross it above the highest frequency counted only seem to.
+            turns = any(not omega > counted for c in group for omega in c.frequencies)
+            if counts[i] == counts[i + 1] and not (counts[i].is_stable and turns):
                 continue
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))

@@ -214,8 +214,12 @@ def _quantity(
     """Return (quantity, whether a unit was written)."""
     own = Reader()
     quantity = own.quantity(entry.value, what)
-    also = _formula_hint(entry.value.text, named) if isinstance(entry.value, StringValue) else None
-    for problem in own.problems:
+    text = entry.value.text if isinstance(entry.value, StringValue) else None
+    also = _formula_hint(text, named) if text else None
+    formula = Reader()
+    if text and text.value.replace("*", "/").split("/")[0].strip() in {*named, "pi"}:
+        formula.read(parse, text)  # a formula with a mistake in it
+    for problem in formula.problems or own.problems:
         hints = (problem.hint, also if problem.code == "SF202" else None)
         reader.take((replace(problem, hint="; ".join(filter(None, hints)) or None),))
     return quantity, bool(quantity and quantity.unit)

@@ -129,7 +129,8 @@ class KernelReduction:
         # Where parameters follow from the wavenumbers, that alone makes equal functions equal.
         pairs = not self._is_solved
         above, below = (
-            _solved_for(self.normal.reduce_factored(v, pairs=pairs), self.solved) for v in (num, den)
+            self._radicals.reduced(_solved_for(self.normal.reduce_factored(v, pairs=pairs), self.solved))
+            for v in (num, den)
         )
         if below.is_zero:
             return None
@@ -146,6 +147,8 @@ class KernelReduction:
             quotient, _ = self._radicals.in_lowest_terms(quotient)
         shortest = _with_fewer_waves(self._shortest(self._waves_apart(quotient)), table)
         ratio = _split_contents(shortest, self._kernel_content)
+        plain = ratio.filter(lambda f: not self.has_kernels(f))
+        ratio = ratio / plain * self._radicals.without_rooted_scale(plain)  # (1 + j*eta)^2 is multiplied out
         modes = self._modes(self._shortest(shared))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)

@@ -197,7 +197,26 @@ class _Network:
         network = _Network(equations, bench, columns, classes, [])
         for row in equations.rows:
             network.rows.append(network._row(row.about, row.form, is_balance=row.role == "balance"))
+        network._part()
         return network
+
+    def _part(self) -> None:
+        """Part the classes of nodes that only ratios join, as gears do: their differences mean nothing."""
+        parts = list(range(len(self.classes)))
+
+        def part(column: int) -> int:
+            while parts[column] != column:
+                parts[column] = column = parts[parts[column]]
+            return column
+
+        for row, _ in self.rows:
+            entries = row.entries
+            both = [t for terms in entries.values() for t in terms] if len(entries) == 2 else []  # noqa: PLR2004
+            is_ratio = row.implicit < 0 and self.bench.add(both)
+            first: dict[int, int] = {}
+            for c in () if is_ratio else (c for c in (row.implicit, *entries) if c >= 0 <= self.classes[c]):
+                parts[part(c)] = part(first.setdefault(self.classes[c], c))
+        self.classes[:] = [kind if kind < 0 else part(c) for c, kind in enumerate(self.classes)]
 
     def _row(
         self, about: Variable, form: LinearForm, *, is_balance: bool

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
+from math import gcd
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
@@ -16,7 +17,7 @@ from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import S, of_powers, powers_of, rebuilt
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from flint import fmpz_mpoly
 
@@ -75,12 +76,14 @@ def _tidied(part: Expression, order: Mapping[str, int]) -> Expression:
         for base in sorted(terms[0][1], key=lambda base: isinstance(base, Sum))
         if isinstance(base, Name | Sum) and all(powers.get(base, 0) > 0 for _, powers in terms)
     }
-    if not shared:
+    whole = gcd(*(x.numerator for x, _ in terms)) if all(x.denominator == 1 for x, _ in terms) else 1
+    if not shared and whole == 1:
         return part
     rest = (
-        of_powers(x, {b: n - shared.get(b, 0) for b, n in p.items() if n != shared.get(b)}) for x, p in terms
+        of_powers(x / whole, {b: n - shared.get(b, 0) for b, n in p.items() if n != shared.get(b)})
+        for x, p in terms
     )
-    return product_of([of_powers(Fraction(1), shared), sum_of(rest)])
+    return product_of([of_powers(Fraction(whole), shared), sum_of(rest)])
 
 
 def _collected(part: Expression, arranger: Arranger) -> Expression:
@@ -131,8 +134,17 @@ def _by_powers(total: Sum, order: Mapping[str, int]) -> Expression:
     for n in sorted(parts, reverse=True):
         if n:
             parts[n].sort(key=lambda e: [order.get(name.name, 0) for name in names(e)])
-        by_powers.append(product_of([_tidied(sum_of(parts[n]), order), power(S, n)]))
+        by_powers.append(product_of([_tidied(sum_of(_added(parts[n])), order), power(S, n)]))
     return sum_of([*by_powers, *others])
+
+
+def _added(terms: Iterable[Expression]) -> list[Expression]:
+    """Return terms, those that differ in their number alone added up."""
+    fronts: dict[Expression, Fraction] = {}
+    for front, powers in map(powers_of, terms):
+        one = of_powers(Fraction(1), powers)
+        fronts[one] = fronts.get(one, Fraction(0)) + front
+    return [of_powers(front, powers_of(one)[1]) for one, front in fronts.items()]
 
 
 def _is_large(tf: TransferFunction) -> bool:

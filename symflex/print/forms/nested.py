@@ -10,9 +10,7 @@ law.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from fractions import Fraction
 from itertools import count
-from math import prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
@@ -31,6 +29,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     number,
+    power,
     quotient,
 )
 from symflex.print.forms.notation import Naming, names_of, reachable
@@ -167,7 +166,7 @@ class _Printer:
         tf = self.tf
         self.symbols = {c.generator: c.expression for c in tf.constants}
         self.order = {name: n for n, name in enumerate(tf.program.names)}
-        self.order[LAPLACE] = len(self.order)
+        self.order |= {"pi": -1, LAPLACE: len(self.order)}
         self.sums = 0
         self.functions = _laws(tf)
         for i in tf.steps:
@@ -180,7 +179,8 @@ class _Printer:
                 self.split.pop(i, None)
             self.known[i] = expression
         num, den = self.known[tf.num], self.known[tf.den]
-        where, laws = tuple(self.lines), tuple(map(self._law, self.functions.values()))
+        laws = tuple(map(self._law, self.functions.values()))
+        where = reachable((num, den, *(law for _, law in laws)), self.lines)
         if isinstance(den, Negative):
             num, den = _negated(num), den.operand
         if tf.den == ONE and isinstance(num, Quotient):
@@ -243,6 +243,12 @@ class _Printer:
                 flat += [_negated(t) for t in term.operand.terms]
             else:
                 flat.append(term)
+        while opposite := {t.operand for t in flat if isinstance(t, Negative)}.intersection(flat):
+            for term in opposite:
+                flat.remove(term)
+                flat.remove(Negative(term))
+        if len(flat) <= 1:
+            return flat[0] if flat else number(0)
         first = next((n for n, t in enumerate(flat) if not isinstance(t, Negative)), 0)
         flat.insert(0, flat.pop(first))
         if len(flat) <= LONGEST_SUM:
@@ -268,14 +274,13 @@ class _Printer:
                 over, under = under, over
             above += over
             below += under
-        ratio = prod((f.value for f in above if isinstance(f, Number)), start=Fraction(1))
-        ratio /= prod(f.value for f in below if isinstance(f, Number))
-        above = [f for f in above if not isinstance(f, Number)]
-        below = [f for f in below if not isinstance(f, Number)]
+        ratio, powers = powers_of(Quotient(_multiplied(above), _multiplied(below)))
+        above = [power(base, n) for base, n in powers.items() if n > 0]
+        below = [power(base, -n) for base, n in powers.items() if n < 0]
         turned = next((n for n, f in enumerate(above) if isinstance(f, Sum) and _turned(f) is not f), None)
         if ratio < 0 and turned is not None:
             ratio, above[turned] = -ratio, _turned(above[turned])
-        if below and ratio.numerator == 1 != ratio:
+        if ratio.numerator == 1 != ratio:
             below.append(Number(1 / ratio))
         elif ratio != 1:
             above.append(Number(ratio))

@@ -552,7 +552,9 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     sums = [b for b, n in powers.items() if isinstance(b, Sum) and n == 1 and Name(IMAGINARY) not in names(b)]
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
-    spread = None if inside is None or scale == 1 else _scaled(inside, 1 / abs(scale), digits)
+    fronts = [scale, *(powers_of(t)[0] for t in inside.terms)] if inside is not None else []
+    stays = scale == 1 or all(x.denominator == 1 for x in fronts)  # as 6*(3*T*s + 1)
+    spread = None if inside is None or stays else _scaled(inside, 1 / abs(scale), digits)
     if inside is not None and spread is not None and ({*names(inside)} == {S} or len({*names(inside)}) > 1):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
         tried.append(negative(whole) if scale < 0 else whole)
@@ -564,6 +566,8 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
     """Return the number that divides a sum so that it has the numbers wanted, or ``s^n`` in front."""
     fronts = [abs(powers_of(t)[0]) for t in total.terms]
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
+    are_whole = all(f.denominator == 1 for f in fronts)
+    holds_sums = any(isinstance(base, Sum) for t in total.terms for base in powers_of(t)[1])
     tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
 
     def rank(divisor: Fraction) -> tuple[bool | int, ...]:
@@ -571,6 +575,8 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
         is_typed = all(is_wanted)
         has_symbols = {*names(total)} != {S}
+        # Whole numbers stay in a sum of longer parts, and where its first would be as odd as 2.5*m.
+        is_odd = not (is_whole[0] or is_wanted[0]) or (fronts[0] == 1 and (holds_sums or not is_typed))
         is_large = not has_symbols and (fronts[0] == 1 or max(fronts) >= LARGE)
         is_large &= not any("/" in number_text(x) for x in divided)
         as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
@@ -578,7 +584,7 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
             has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5
-            sum(is_wanted),
+            0 if are_whole and divisor != 1 and is_odd else sum(is_wanted),
             is_whole[0],
             sum(is_whole),
         )

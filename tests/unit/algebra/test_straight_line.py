@@ -102,6 +102,15 @@ def test_signs_stand_outside_of_products_and_of_sums_that_have_no_other():
     assert_consistent(bench)
 
 
+def test_a_quotient_times_its_divisor_is_what_was_divided():
+    bench = Workbench(NAMES)
+    s, k, b = (bench.generator(i) for i in range(3))
+    total = bench.add([k, b])
+    assert bench.multiply(bench.divide(s, total), total) == s
+    assert bench.multiply(total, bench.divide(ONE, total)) == ONE
+    assert bench.multiply(bench.negate(total), bench.divide(s, total)) == bench.negate(s)
+
+
 def test_numbers_are_one_step_each():
     bench = Workbench(NAMES)
     s = bench.generator(0)

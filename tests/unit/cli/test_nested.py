@@ -89,3 +89,34 @@ def test_a_latex_document_says_that_roots_are_left_out(shell, spec):
     assert done.code == 0
     assert "in nested form; hidden modes were not looked for" in done.out
     assert "poles and zeros of X/F are left out" in done.err
+
+
+def test_equal_factors_are_a_power_and_opposite_terms_are_gone(shell, spec):
+    from pathlib import Path
+
+    Path("motor.toml").write_text(
+        """
+symflex = 1
+parameters = { R = {}, k_t = {}, G = {}, d = {}, l = {}, J = {} }
+definitions = { k = "pi*G*d^4/(32*l)" }
+inputs = { u = { voltage = "v" } }
+outputs = { X = "phi" }
+[elements]
+motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "phi", R = "R", k_t = "k_t" }
+rotor = { type = "inertia", at = "phi", J = "J" }
+shaft = { type = "torsion_spring", between = ["phi", "ground"], k = "k" }
+""",
+        "utf-8",
+    )
+    done = shell("derive", "motor.toml", "--form", "nested")
+    # By hand: J s^2 X + k X = k_t (u - k_t s X)/R, with k of a round bar in torsion.
+    assert "k_t^2*s" in done.out and "k = pi*G*d^4/(32*l)" in done.out and "k_t*k_t" not in done.out
+
+
+def test_terms_that_cancel_in_a_sum_are_left_out(shell, spec):
+    from symflex.expressions import Name, Negative
+    from symflex.print.forms.nested import _Printer
+
+    a, b = Name("a"), Name("b")
+    printer = _Printer(None, {})
+    assert printer._sum([a, b, Negative(a)]) == b

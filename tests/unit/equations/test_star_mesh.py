@@ -448,6 +448,32 @@ outputs.both = "x + y"
 """
 
 
+def test_nothing_is_subtracted_where_gears_drive_what_springs_join():
+    # Reflected to the driven side of a gear 1:N, an inertia on the driving side is N^2 times as large.
+    text = """
+    symflex = 1
+    parameters = { N = {}, J = {}, J_m = {}, b = {}, k = {} }
+    inputs.T = { torque = "phi" }
+    outputs.X = "w"
+    elements.gear = { type = "transformer", from = "phi", to = "theta", ratio = "1/N" }
+    elements.rotor = { type = "inertia", at = "phi", J = "J_m" }
+    elements.bearing = { type = "rotary_damper", between = ["phi", "ground"], b = "b" }
+    elements.drum = { type = "inertia", at = "theta", J = "J" }
+    elements.rope = { type = "torsion_spring", between = ["theta", "w"], k = "k" }
+    elements.load = { type = "inertia", at = "w", J = "J" }
+    """
+    equations = assemble(pipeline.loads(text))
+    found = eliminate(equations, [("X", "T")])
+    ((num, den),) = found.quotients
+    program = found.program
+    assert Step.NEGATE not in {program.kinds[i] for i in program.steps_of(num, den)}
+    given = numbers(program.names)
+    n, j, j_m, b, k, s = (given[x] for x in ("N", "J", "J_m", "b", "k", "s"))
+    driven = n**2 * (j_m * s**2 + b * s) + j * s**2
+    expected = n * k / (driven * (j * s**2 + k) + j * s**2 * k)
+    assert value(program, num, given) / value(program, den, given) == expected
+
+
 def test_a_division_that_is_all_of_a_response_is_its_quotient():
     equations = pipeline.assemble_sparse(pipeline.loads(APART))
     found = eliminate(equations, [("X", "F"), ("Y", "F"), ("both", "F")])

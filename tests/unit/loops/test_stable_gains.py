@@ -106,6 +106,21 @@ def test_a_neutral_loop_is_certified_only_below_a_gain_of_one(loop):
 
 
 @pytest.mark.slow
+def test_what_crosses_above_the_highest_frequency_counted_does_not_seem_to_touch_the_axis():
+    # 1 = g*s/(s + 50)*exp(-s/100): |s/(s + 50)| grows with omega, so each pole crosses once, to the right.
+    found = symflex.Model(
+        parameters={"g": {"value": 0.6}, "T": "10 ms"},
+        blocks={"D": {"type": "delay", "T": "T"}, "H": {"type": "tf", "num": [1, 0], "den": [1, "50 1/s"]}},
+        signals={"y": "r + g*H*D*y"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    ).stability("g", (0, 60))
+    assert not found.certified
+    assert [b.entering for b in found.boundaries] == [2] * len(found.boundaries)
+    assert all(b.frequencies_hz[0] < found.counted_up_to_hz for b in found.boundaries)
+
+
+@pytest.mark.slow
 def test_poles_cross_where_a_damper_at_the_actuator_does_nothing_and_what_is_not_proved_is_said(
     lossless_beam,
 ):

@@ -80,6 +80,20 @@ def test_formula_prints_j_and_reduces_its_square():
     assert "j^2" not in str(tf.form("polynomial"))
 
 
+def test_a_stepped_rod_has_no_power_of_its_loss_above_and_below():
+    # By hand, with K_1 = sinh(q_1)/gamma: F = rho*s^2*(A_1*K_1*L_0 + A_2*K_0*L_1)*Y.
+    text = """symflex = 1
+parameters = { E = {}, rho = {}, A_1 = {}, A_2 = {}, l_1 = {}, l_2 = {}, eta = {} }
+inputs.F = { force = "root" }
+outputs.Y = "tip"
+[elements]
+big = { type = "rod", between = ["root", "step"], E = "E", A = "A_1", rho = "rho", l = "l_1", eta_s = "eta" }
+tip = { type = "rod", between = ["step", "tip"], E = "E", A = "A_2", rho = "rho", l = "l_2", eta_s = "eta" }
+"""
+    form = symflex.loads(text).transfer_function("Y", "F").form("krylov")
+    assert str(form).splitlines()[0] == "Y/F = 1/(rho*s^2*(A_1*K_1*L_0 + A_2*K_0*L_1))"
+
+
 def test_beam_has_the_modes_and_response_of_its_complex_stiffness():
     bound = symflex.loads(CANTILEVER).transfer_function("Y", "F").bind()
     roots = (1.8751040687119611, 4.6940911329741746, 7.8547574382376126)

@@ -613,6 +613,41 @@ def test_normalised_forms_are_normalised_where_decimals_are_typed():
     assert printed(tf_of(text, "y", "u"), "monic") == ("1.6e8", "s^2 + 14000*s + 1e8")
 
 
+def test_a_damping_ratio_of_a_half_does_not_halve_what_is_printed():
+    # By hand, with w = 2*pi*f: X = K*G*(r - X)/Z, Z = m*s^2 + b*s + k, G = w^2/(s^2 + w*s + w^2).
+    text = """symflex = 1
+parameters = { m = {}, b = {}, k = {}, f = { unit = "Hz" }, K = {} }
+blocks.G = { type = "low_pass", omega = "f", zeta = 0.5 }
+inputs.r = { unit = "m" }
+outputs.X = "x"
+elements.mass = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
+elements.drive = { type = "force_source", at = "x", f = "K*G*(r - x)" }
+"""
+    whole = "(m*s^2 + b*s + k)*(s^2 + 2*pi*f*s + 4*pi^2*f^2) + 4*pi^2*f^2*K"
+    assert printed(tf_of(text, "X", "r")) == ("4*pi^2*f^2*K", whole)
+
+
+def test_like_terms_are_added_and_whole_numbers_stand_in_front():
+    # By hand: x/y = (1.5*m*s^2 + b*s + k)/(b*s + k), C = (1 + 3*T*s)/(1 + T*s/3), both masses 2.5*m.
+    text = """symflex = 1
+parameters = { m = {}, b = {}, c = {}, k = {}, K = {}, T = { unit = "s" } }
+blocks.C = { type = "lead_lag", k = "K", T_1 = "3*T", T_2 = "T/3" }
+inputs.r = { unit = "m" }
+outputs.X = "x"
+elements.here = { type = "mass", at = "x", m = "m" }
+elements.there = { type = "mass", at = "y", m = "1.5*m" }
+elements.ground = { type = "damper", between = ["x", "ground"], b = "c" }
+elements.loss = { type = "damper", between = ["x", "y"], b = "b" }
+elements.spring = { type = "spring", between = ["x", "y"], k = "k" }
+elements.drive = { type = "force_source", at = "x", f = "C*(r - y)" }
+"""
+    num, den = printed(tf_of(text, "X", "r"), "definitions")
+    assert num == "6*K*(3*T*s + 1)*(1.5*m*s^2 + b*s + k)"
+    assert den == ("3*m*s^3*(m*s + c)*(T*s + 3) + (b*s + k)*(s*(5*m*s + 2*c)*(T*s + 3) + 6*K*(3*T*s + 1))")
+
+
 def test_numbers_nobody_can_read_are_printed_as_decimals():
     long = "(0.123456789012345*s + 1.000000000000017)*(s^2 + 0.3333333333333333*s + 0.1414213562373095)"
     text = f'symflex = 1\ninputs.u = {{}}\noutputs.y = "u/({long})"'
