@@ -116,6 +116,8 @@ class Reader:
                 )
                 if entry.key in LOSS_WORDS and "eta_s" in known:
                     hint = "a loss factor is 'eta_s'"
+                elif entry.key == "matrices":
+                    hint = "Python's symflex.from_matrices(M=..., D=..., K=...) makes a model of matrices"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
 
     def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:

@@ -29,6 +29,7 @@ from symflex.roots.distributed.right_half_plane import (
 )
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
+from symflex.roots.functions.kernel_function import split_off_kernels
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
 from symflex.roots.passive import fastest_growth, observed, passive_loop
@@ -331,11 +332,12 @@ class _Searched:
         sides = self.sides if self.bound.ratio.is_zero else self.sides[2:]
         gone = [root for side in sides for root in side.roots]
         degenerate = degenerate_points(self.bound)
+        written = _without_modes(degenerate, self.bound)
         self.hidden = [
             HiddenRoot(root)
             for root in _chosen(gone, within)
             # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
-            if root.is_zero or not any(overlap(root, other) for other in degenerate)
+            if root.is_zero or not any(overlap(root, other) for other in written)
         ]
         self.hidden += [
             HiddenRoot(root, "coincident")
@@ -416,6 +418,7 @@ class _Searched:
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = degenerate_points(bound)
+        written = _without_modes(degenerate, bound)
         proof, rests = _passivity_of(bound)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
@@ -454,7 +457,8 @@ class _Searched:
             apart = tuple(
                 r
                 for r in whole.roots
-                if (proof and r in known) or not any(overlap(r, p) for p in degenerate if not p.is_zero)
+                if (proof and r in known)
+                or not any(overlap(r, p) for p in (written if is_hidden else degenerate) if not p.is_zero)
             )
             has_more = has_more or bool(whole.unproved) or len(apart) < len(whole.roots)
             if any(is_right(r) for r in whole.roots if r not in apart):
@@ -572,6 +576,13 @@ def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
             if not value.is_zero:
                 roots += polynomial_roots(bound, value, ACCUMULATION_DIGITS)
     return roots
+
+
+def _without_modes(degenerate: Sequence[Root], bound: BoundTransferFunction) -> list[Root]:
+    """Return the points where nothing is hidden, such as a rigid motion on a foundation."""
+    plain, _ = split_off_kernels(cancelled(bound), bound.kernels)
+    modes = polynomial_roots(bound, plain, ACCUMULATION_DIGITS)
+    return [point for point in degenerate if not any(overlap(point, mode) for mode in modes)]
 
 
 def _exclusion(hole: Cell) -> Exclusion:

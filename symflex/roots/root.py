@@ -94,6 +94,9 @@ class Root:
         """Return the box as one complex ball."""
         return acb(self.re, self.im)
 
+    def __complex__(self) -> complex:
+        return complex(self.enclosure().mid())
+
     def natural_frequency(self) -> arb:
         """Return abs(s) [rad/s], of models with loss factors omega_r."""
         return self.size()

@@ -35,6 +35,10 @@ def test_a_root_has_a_frequency_and_a_damping_ratio():
         assert given.damping_ratio() == (zeta if zeta is None else pytest.approx(zeta))
 
 
+def test_a_root_is_a_complex_number():
+    assert complex(root(-3, 4)) == -3 + 4j
+
+
 def test_a_frequency_is_known_as_well_as_both_parts():
     with precision(600):
         third = arb(1) / 3
