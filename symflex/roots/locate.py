@@ -332,7 +332,7 @@ class _Searched:
         sides = self.sides if self.bound.ratio.is_zero else self.sides[2:]
         gone = [root for side in sides for root in side.roots]
         degenerate = degenerate_points(self.bound)
-        written = _without_modes(degenerate, self.bound)
+        written = degenerate_points(self.bound, is_hidden=True)
         self.hidden = [
             HiddenRoot(root)
             for root in _chosen(gone, within)
@@ -417,8 +417,6 @@ class _Searched:
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h for h in self.hidden if h.cause == "coincident"]
-        degenerate = degenerate_points(bound)
-        written = _without_modes(degenerate, bound)
         proof, rests = _passivity_of(bound)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
@@ -454,11 +452,11 @@ class _Searched:
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
+            degenerate = degenerate_points(bound, is_hidden=is_hidden)
             apart = tuple(
                 r
                 for r in whole.roots
-                if (proof and r in known)
-                or not any(overlap(r, p) for p in (written if is_hidden else degenerate) if not p.is_zero)
+                if (proof and r in known) or not any(overlap(r, p) for p in degenerate if not p.is_zero)
             )
             has_more = has_more or bool(whole.unproved) or len(apart) < len(whole.roots)
             if any(is_right(r) for r in whole.roots if r not in apart):
@@ -564,8 +562,11 @@ def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
 
 
-def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
-    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
+def degenerate_points(bound: BoundTransferFunction, *, is_hidden: bool = False) -> list[Root]:
+    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode.
+
+    Factors of s alone that are hidden are modes there, such as a rigid motion on a foundation.
+    """
     roots: list[Root] = []
     for law in bound.kernels.dispersions:
         values = [*law.characteristic[:1], *law.meets]
@@ -575,14 +576,11 @@ def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
         for value in values:
             if not value.is_zero:
                 roots += polynomial_roots(bound, value, ACCUMULATION_DIGITS)
+    if is_hidden and roots:
+        plain, _ = split_off_kernels(cancelled(bound), bound.kernels)
+        modes = polynomial_roots(bound, plain, ACCUMULATION_DIGITS)
+        roots = [root for root in roots if not any(overlap(root, mode) for mode in modes)]
     return roots
-
-
-def _without_modes(degenerate: Sequence[Root], bound: BoundTransferFunction) -> list[Root]:
-    """Return the points where nothing is hidden, such as a rigid motion on a foundation."""
-    plain, _ = split_off_kernels(cancelled(bound), bound.kernels)
-    modes = polynomial_roots(bound, plain, ACCUMULATION_DIGITS)
-    return [point for point in degenerate if not any(overlap(point, mode) for mode in modes)]
 
 
 def _exclusion(hole: Cell) -> Exclusion:
