@@ -298,7 +298,7 @@ def _find_point(
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
         known = [field.polynomial(parts.get(k, zero), ring.names, values) for k in range(max(parts) + 1)]
         there = nmod_poly([int(coefficient[0]) for coefficient in known], field.prime)
-        root = next((-f[0] / f[1] for f, _ in there.factor()[1] if f.degree() == 1), None)
+        root = next((root for root, _ in there.roots()), None)
         if root is None or not int(there.derivative()(root)):
             return False
         # The scale decides in which fields the roots of several wavenumbers exist together.

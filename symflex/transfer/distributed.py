@@ -274,9 +274,9 @@ class KernelReduction:
             )
             split = self._split(law)
             for divisor, times, product in (
+                (split, split, c[2] ** 2 - c[0] * 4),
                 (first, first * second**2, c[0]),
                 (second, second * first**2, c[0]),
-                (split, split, c[2] ** 2 - c[0] * 4),
             ):
                 if product.numerator().factors:
                     divided = partial(self._divided, divisor, times, product)

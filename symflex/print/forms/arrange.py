@@ -590,10 +590,15 @@ def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:
     ring, i = value.ring, value.ring.index[name]
     wave, generator = Factored.generator(ring, name), ring.context.gen(i)
     degree = next(e for f, e in one.factors if f == generator)
+    sums = [f for f, _ in one.factors if len(f) > 1]  # rho*A*s^2 + k_f
 
     def put(factor: fmpz_mpoly, more: int) -> Factored:
         above, below = with_image(ring, factor * generator**more, i, wave**degree / one, degree)
-        return Factored.polynomial(ring, above) / below / wave**more
+        made = Factored.number(ring, 1) / below / wave**more
+        for f in sums:
+            while not above % f:
+                above, made = above / f, made * Factored.polynomial(ring, f)
+        return made * Factored.polynomial(ring, above)
 
     ways = [range(degree) if len(f) > 1 and degree_in(f, i) else range(1) for f, _ in value.factors]
     made = []
