@@ -16,7 +16,7 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedErr
 from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY
 from symflex.model.signs import is_passive
-from symflex.roots.distributed.proof import limits
+from symflex.roots.distributed.proof import TOUCHING, limits
 from symflex.roots.distributed.right_half_plane import (
     COMPRESSED,
     DEGENERATE,
@@ -96,7 +96,12 @@ def locate(
         where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
+        found = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
+        if found.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
+            return found
+        # Lengths whose values are multiples share their kernels once they are numbers.
+        again = locate_distributed(of_numbers(bound), region, digits, with_zeros=with_zeros, judged=judged)
+        return again if again.certificate.certified else found
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
@@ -139,12 +144,12 @@ def equations_of(bound: BoundNested) -> Equations:
     return known or assemble_sparse(model)
 
 
-def _with_values(bound: BoundNested) -> Model:
+def _with_values(bound: AnyBoundFunction) -> Model:
     return with_numbers(bound.source.model, (), dict(bound.values), in_kernels=True)
 
 
-def lumped(bound: BoundNested) -> BoundTransferFunction:
-    """Return a function in nested form without waves as a quotient of polynomials, of numbers and s."""
+def of_numbers(bound: AnyBoundFunction) -> BoundTransferFunction:
+    """Return a function as the quotient that numbers in place of all parameters make of its model."""
     (found,) = derive_bound(_with_values(bound), [(bound.source.output.name, bound.source.input.name)])
     return found
 
@@ -161,7 +166,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
-        return locate(lumped(bound), region, digits)
+        return locate(of_numbers(bound), region, digits)
     where, is_default = _region_of(bound, region)
     proof, rests = _passivity(bound, bound.values)
     found = locate_in_network(
@@ -246,7 +251,7 @@ def locate_distributed(
     found = sum(root.multiplicity for roots in chosen for root in roots)
     every = [root for roots in chosen for root in roots]
     if reason is None and not all(root.certified for root in every):
-        reason = "some roots could not be told apart"
+        reason = TOUCHING
     missing = sum(side.missing for side in searched.sides)
     engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL]
     excluded = {hole for side in searched.sides for hole in side.excluded()}

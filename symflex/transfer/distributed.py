@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import combinations
+from itertools import combinations, product
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -263,7 +263,8 @@ class KernelReduction:
 
         If no parameter follows from the wavenumbers, ``q_1 (q_2 sinh(q_1) - q_1 sinh(q_2))`` has become
         ``q_1 q_2 sinh(q_1) + (q_2^2 + c_2) sinh(q_2)``. A factor holds q_1 if its product with ``q_1 q_2^2``
-        holds ``c_0 = q_1^2 q_2^2``.
+        holds ``c_0 = q_1^2 q_2^2``, and ``s - a q_1`` if its product with those of ``-q_1`` and the other
+        wavenumber holds what all four make, a polynomial in s.
         """
         for law in () if self._is_solved else self.table.dispersions:
             if law.kind != "pair":
@@ -273,23 +274,57 @@ class KernelReduction:
                 (Factored.generator(self.ring, w) for w in law.wavenumbers),
             )
             split = self._split(law)
-            for divisor, times, product in (
+            parts = [
                 (split, split, c[2] ** 2 - c[0] * 4),
                 (first, first * second**2, c[0]),
                 (second, second * first**2, c[0]),
-            ):
-                if product.numerator().factors:
-                    divided = partial(self._divided, divisor, times, product)
+            ]
+            # s^2 - 2500 q_2^2 may be 1250 (q_1^2 - q_2^2), which neither of its factors tells
+            waves = value.filter(lambda f: len(f) > 1 and self._has_waves(f) and not self.has_kernels(f))
+            for side, exponent in ((waves.numerator(), 1), (waves.denominator(), -1)):
+                made = self._divided(*parts[0], side.expand())
+                if all(made.exponent_of(f) > 0 for f, _ in split.factors):
+                    value = value * (made / side) ** exponent
+            for f, _ in value.factors:
+                if len(f) > 1 and self._has_waves(f) and not self.has_kernels(f):
+                    divisor, times = Factored.polynomial(self.ring, f), self._conjugates(f, law)
+                    whole = self.normal.reduce((divisor * times).expand())
+                    if not any(self._has_waves(g) for g, _ in whole.factors):
+                        parts.append((divisor, times, whole))
+            for divisor, times, whole in parts:
+                if whole.numerator().factors:
+                    divided = partial(self._divided, divisor, times, whole)
                     value = value.map_factors(self.ring, divided)
+            # What vanishes where they meet, the split's square over powers of s, say, may face the split.
+            meets = parts[0][2]
+            largest = max((f for f, _ in meets.numerator().factors), key=len, default=None)
+            order = 0 if largest is None else value.exponent_of(largest)
+            if order * min(value.exponent_of(f) for f, _ in split.factors) < 0:
+                value = value * (split**2 / meets) ** order
         return value
 
-    def _divided(self, divisor: Factored, times: Factored, product: Factored, factor: fmpz_mpoly) -> Factored:
-        """Return a factor with a divisor set apart; ``product`` is the divisor by ``times``."""
-        whole = prod((f**e for f, e in times.factors), start=factor)
-        rest = _split_contents(self.normal.reduce(whole), self._kernel_content) / product
-        if any(e < 0 and product.exponent_of(f) > 0 for f, e in rest.factors):
+    def _conjugates(self, factor: fmpz_mpoly, law: Dispersion) -> Factored:
+        """Return the product of the other polynomials that signs and order of two wavenumbers make."""
+        gens = list(self.ring.context.gens())
+        first, second = (self.ring.index[w] for w in law.wavenumbers)
+        made = [factor]
+        result = Factored.number(self.ring, 1)
+        for (one, other), x, y in product(((first, second), (second, first)), (1, -1), (1, -1)):
+            images = [*gens]
+            images[first], images[second] = x * gens[one], y * gens[other]
+            conjugate = self.ring.compose(factor, images)
+            if conjugate not in made and -conjugate not in made:
+                made.append(conjugate)
+                result = result * Factored.polynomial(self.ring, conjugate)
+        return result
+
+    def _divided(self, divisor: Factored, times: Factored, whole: Factored, factor: fmpz_mpoly) -> Factored:
+        """Return a factor with a divisor set apart; ``whole`` is the divisor by ``times``."""
+        multiplied = prod((f**e for f, e in times.factors), start=factor)
+        rest = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / whole
+        if any(e < 0 and whole.exponent_of(f) > 0 for f, e in rest.factors):
             return Factored.polynomial(self.ring, factor)
-        return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, product))
+        return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, whole))
 
     def _modes(self, value: Factored) -> Factored:
         """Return the factors that are modes.
@@ -430,10 +465,10 @@ def _with_fewer_waves(value: Factored, table: KernelTable) -> Factored:
     used = [(f, e, ring.used_in([f])) for f, e in value.factors]
     own = [(f, e) for f, e, names in used if names & waves and not names & kernels]
     for (f, e), (g, d) in combinations(own, 2):
-        product = normal.reduce(f * g)
-        if e == d and ring.used_in(p for p, _ in product.factors).isdisjoint(waves):
+        joined = normal.reduce(f * g)
+        if e == d and ring.used_in(p for p, _ in joined.factors).isdisjoint(waves):
             pair = Factored.polynomial(ring, f) * Factored.polynomial(ring, g)
-            return _with_fewer_waves(value / pair**e * product**e, table)
+            return _with_fewer_waves(value / pair**e * joined**e, table)
     return value
 
 

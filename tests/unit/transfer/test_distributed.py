@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import mpmath as mp
 import pytest
 from flint import acb, ctx
@@ -495,3 +497,79 @@ Y = "c - a"
     found = pipeline.roots(bound, Modes(1))
     assert found.verdict.word == "unstable"
     assert max(float(h.root.re.mid()) for h in found.hidden) == pytest.approx(44**0.5 - 2, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_two_rayleigh_beams_of_numbers_have_the_frequencies_of_one_as_long_as_both():
+    law = 'EI = 2.5, rhoA = 1, rhoI = 0.002, k_f = 400, theory = "rayleigh"'
+    text = f"""
+symflex = 1
+inputs.F = {{ force = "b" }}
+outputs.Y = "b"
+[elements]
+one = {{ type = "beam", between = ["a", "b"], l = 2, {law} }}
+two = {{ type = "beam", between = ["b", "c"], l = 1, {law} }}
+left = {{ type = "pin", at = "a" }}
+right = {{ type = "fixed", at = "c" }}
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    found = pipeline.roots(pipeline.bind(tf), Modes(3))
+    assert (found.verdict.word, found.certificate.certified) == ("marginal", True)
+
+    def clamped(omega):
+        # w = A sin(b x) + B sinh(a x), with 2.5 q^4 + 0.002 omega^2 q^2 = omega^2 - 400 for q = a and j b
+        half = omega**2 / 2500
+        root = mp.sqrt(half**2 + (omega**2 - 400) / mp.mpf("2.5"))
+        a, b = mp.sqrt(root - half), mp.sqrt(root + half)
+        return b * mp.cos(3 * b) * mp.sinh(3 * a) - a * mp.sin(3 * b) * mp.cosh(3 * a)
+
+    grid = [20 + mp.mpf(k) / 50 for k in range(1, 350)]
+    ends = [(x, y) for x, y in pairwise(grid) if clamped(x) * clamped(y) < 0]
+    omega = sorted(float(r.im.mid()) for r in found.poles if r.im > 0)
+    assert omega == pytest.approx(
+        [float(mp.findroot(clamped, e, solver="anderson")) for e in ends], rel=1e-12
+    )
+
+
+@pytest.mark.slow
+def test_a_free_timoshenko_beam_of_numbers_with_dashpots_along_it_comes_to_rest_as_a_rigid_body():
+    text = """
+symflex = 1
+inputs.F = { force = "a" }
+outputs.Y = "b"
+[elements.m]
+type = "beam"
+theory = "timoshenko"
+between = ["a", "b"]
+l = 2
+EI = 10
+rhoA = 1
+rhoI = 0.01
+kappaGA = 80
+c_f = 2
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    found = pipeline.roots(pipeline.bind(tf), Modes(2))
+    assert (found.verdict.word, found.certificate.certified) == ("marginal", True)
+    # s^2 + 2 s = 0 of the translation; a second root at 0 would be the angle's, which is hidden
+    at_rest = [(float(r.re.mid()), r.multiplicity) for r in found.poles if abs(r.im) < 1e-9]
+    assert {(0.0, 1), (-2.0, 1)} <= set(at_rest)
+
+
+@pytest.mark.slow
+def test_lengths_that_are_multiples_by_value_alone_hide_what_their_kernels_would_share():
+    text = """
+symflex = 1
+parameters = { N = 90, mu = 0.5, l_1 = 0.5, l_2 = 1 }
+inputs.F = { force = "b" }
+outputs.Y = "b"
+[elements]
+one = { type = "string", between = ["ground", "b"], N = "N", rhoA = "mu", l = "l_1" }
+two = { type = "string", between = ["b", "ground"], N = "N", rhoA = "mu", l = "l_2" }
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    found = pipeline.roots(pipeline.bind(tf), Modes(4))
+    assert found.certificate.certified
+    unit = float(mp.pi * mp.sqrt(90 / mp.mpf("0.5")) / 1.5)
+    assert [float(h.root.im.mid()) / unit for h in found.hidden if h.root.im > 0] == pytest.approx([3])
+    assert sorted(float(r.im.mid()) / unit for r in found.poles if r.im > 0) == pytest.approx([1, 2, 4, 5])
