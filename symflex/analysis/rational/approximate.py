@@ -29,7 +29,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import locate, lumped
+from symflex.roots.locate import locate, of_numbers
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, modes_of
 from symflex.transfer import BoundNested
@@ -172,7 +172,7 @@ def approximate(
     if not isinstance(bound, BoundNested):
         bound = without_lengths_of_zero(bound)
     elif not bound.is_distributed:
-        bound = lumped(bound)
+        bound = of_numbers(bound)
     if bound.is_zero:
         message = f"{bound.name} is identically zero"
         raise ModelError(Diagnostic("SF402", message, None, "the input does not reach the output"))

@@ -52,7 +52,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions.format import decimal_exponent
 from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import equations_of, lumped
+from symflex.roots.locate import equations_of, of_numbers
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
@@ -122,7 +122,7 @@ def time_response(
     elif isinstance(bound, BoundNested) and bound.is_distributed:
         found = _of_network(bound, integrations, times)
     else:
-        written = lumped(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
+        written = of_numbers(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
         found = _answer(Asked(written, integrations, times, digits))
     return EnclosedResponse(
         bound.name,
