@@ -100,6 +100,11 @@ class Dispersion:
         )
 
     @property
+    def discriminant(self) -> Factored:
+        """``(lambda_1^2 - lambda_2^2)^2`` of a pair: zero where its wavenumbers meet."""
+        return self.characteristic[2] ** 2 - self.characteristic[0] * 4
+
+    @property
     def has_double_root(self) -> bool:
         """Tell whether two roots of the characteristic polynomial are equal at every s."""
         if not self.characteristic:

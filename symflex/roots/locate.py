@@ -5,6 +5,7 @@ from __future__ import annotations
 from cmath import exp as cexp
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import chain
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
@@ -328,26 +329,35 @@ class _Searched:
 
     def _may_be_removable(self) -> bool:
         """Tell whether a pole lies where wavenumbers vanish or meet: a zero may lie there, too."""
-        degenerate = [point for point in degenerate_points(self.bound) if not point.is_zero]
+        degenerate = [point for point in self._degenerate if not point.is_zero]
         return any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate)
+
+    @cached_property
+    def _degenerate(self) -> list[Root]:
+        return degenerate_points(self.bound)
+
+    @cached_property
+    def _without_modes(self) -> list[Root]:
+        """The degenerate points without hidden factors of s alone: those are modes, as rigid motions are."""
+        plain, _ = split_off_kernels(cancelled(self.bound), self.bound.kernels)
+        modes = polynomial_roots(self.bound, plain, ACCUMULATION_DIGITS) if self._degenerate else []
+        return [point for point in self._degenerate if not any(overlap(point, mode) for mode in modes)]
 
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""
         within = self._within
         sides = self.sides if self.bound.ratio.is_zero else self.sides[2:]
         gone = [root for side in sides for root in side.roots]
-        degenerate = degenerate_points(self.bound)
-        written = degenerate_points(self.bound, is_hidden=True)
         self.hidden = [
             HiddenRoot(root)
             for root in _chosen(gone, within)
             # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
-            if root.is_zero or not any(overlap(root, other) for other in written)
+            if root.is_zero or not any(overlap(root, other) for other in self._without_modes)
         ]
         self.hidden += [
             HiddenRoot(root, "coincident")
             for root in _chosen(shared, within)
-            if not any(overlap(root, other) for other in (*degenerate, *gone))
+            if not any(overlap(root, other) for other in (*self._degenerate, *gone))
         ]
 
     def prove(self) -> str | None:
@@ -393,7 +403,6 @@ class _Searched:
             side.restore()
         shared = _match(*pair)
         # Where wavenumbers vanish or meet, both may have a root; one of them was perhaps not yet met.
-        degenerate = degenerate_points(self.bound)
         for side, other in (pair, pair[::-1]):
             side.roots = [
                 root
@@ -401,7 +410,7 @@ class _Searched:
                 if root.is_zero
                 or other.is_finite
                 or float(root.natural_frequency().log().mid()) < other.reached
-                or not any(overlap(root, point) for point in degenerate)
+                or not any(overlap(root, point) for point in self._degenerate)
             ]
         self._hide(shared)
 
@@ -457,7 +466,7 @@ class _Searched:
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
-            degenerate = degenerate_points(bound, is_hidden=is_hidden)
+            degenerate = self._without_modes if is_hidden else self._degenerate
             apart = tuple(
                 r
                 for r in whole.roots
@@ -567,24 +576,16 @@ def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
 
 
-def degenerate_points(bound: BoundTransferFunction, *, is_hidden: bool = False) -> list[Root]:
-    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode.
-
-    Factors of s alone that are hidden are modes there, such as a rigid motion on a foundation.
-    """
+def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
+    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
     roots: list[Root] = []
     for law in bound.kernels.dispersions:
         values = [*law.characteristic[:1], *law.meets]
         if law.kind == "pair":
-            values.append(law.characteristic[2])
-            values.append(law.characteristic[2] ** 2 - law.characteristic[0] * 4)
+            values += [law.characteristic[2], law.discriminant]
         for value in values:
             if not value.is_zero:
                 roots += polynomial_roots(bound, value, ACCUMULATION_DIGITS)
-    if is_hidden and roots:
-        plain, _ = split_off_kernels(cancelled(bound), bound.kernels)
-        modes = polynomial_roots(bound, plain, ACCUMULATION_DIGITS)
-        roots = [root for root in roots if not any(overlap(root, mode) for mode in modes)]
     return roots
 
 

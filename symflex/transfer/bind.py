@@ -481,7 +481,7 @@ def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
         zeros += [f for x in law.meets for f, _ in x.factors if images.apply_factored(x).is_zero]
         if law.wavenumbers and images.apply_factored(c[0]).is_zero:
             zeros += [f for f, _ in c[0].factors]
-        elif law.kind == "pair" and images.apply_factored(c[2] ** 2 - c[0] * 4).is_zero:
+        elif law.kind == "pair" and images.apply_factored(law.discriminant).is_zero:
             zeros += [f for x in c for f, _ in x.factors]
         elif law.kind == "general" and law.replaced(images.apply_factored).has_double_root:
             zeros += [f for x in c for f, _ in x.factors]

@@ -266,37 +266,36 @@ class KernelReduction:
         holds ``c_0 = q_1^2 q_2^2``, and ``s - a q_1`` if its product with those of ``-q_1`` and the other
         wavenumber holds what all four make, a polynomial in s.
         """
+
+        def is_of_waves(factor: fmpz_mpoly) -> bool:
+            return len(factor) > 1 and self._is_of_waves(factor)
+
         for law in () if self._is_solved else self.table.dispersions:
             if law.kind != "pair":
                 continue
-            c, (first, second) = (
-                law.characteristic,
-                (Factored.generator(self.ring, w) for w in law.wavenumbers),
-            )
-            split = self._split(law)
+            first, second = (Factored.generator(self.ring, w) for w in law.wavenumbers)
+            split, meets, c_0 = self._split(law), law.discriminant, law.characteristic[0]
             parts = [
-                (split, split, c[2] ** 2 - c[0] * 4),
-                (first, first * second**2, c[0]),
-                (second, second * first**2, c[0]),
+                (split, split, meets),
+                (first, first * second**2, c_0),
+                (second, second * first**2, c_0),
             ]
-            # s^2 - 2500 q_2^2 may be 1250 (q_1^2 - q_2^2), which neither of its factors tells
-            waves = value.filter(lambda f: len(f) > 1 and self._has_waves(f) and not self.has_kernels(f))
+            # s^2 - 2500 q_2^2 may be 1250 (q_1^2 - q_2^2), which neither of its factors tells.
+            waves = value.filter(is_of_waves)
             for side, exponent in ((waves.numerator(), 1), (waves.denominator(), -1)):
                 made = self._divided(*parts[0], side.expand())
                 if all(made.exponent_of(f) > 0 for f, _ in split.factors):
                     value = value * (made / side) ** exponent
-            for f, _ in value.factors:
-                if len(f) > 1 and self._has_waves(f) and not self.has_kernels(f):
-                    divisor, times = Factored.polynomial(self.ring, f), self._conjugates(f, law)
-                    whole = self.normal.reduce((divisor * times).expand())
-                    if not any(self._has_waves(g) for g, _ in whole.factors):
-                        parts.append((divisor, times, whole))
+            for f, _ in value.filter(is_of_waves).factors:
+                divisor, times = Factored.polynomial(self.ring, f), self._conjugates(f, law)
+                whole = self.normal.reduce((divisor * times).expand())
+                if not any(self._has_waves(g) for g, _ in whole.factors):
+                    parts.append((divisor, times, whole))
             for divisor, times, whole in parts:
                 if whole.numerator().factors:
                     divided = partial(self._divided, divisor, times, whole)
                     value = value.map_factors(self.ring, divided)
             # What vanishes where they meet, the split's square over powers of s, say, may face the split.
-            meets = parts[0][2]
             largest = max((f for f, _ in meets.numerator().factors), key=len, default=None)
             order = 0 if largest is None else value.exponent_of(largest)
             if order * min(value.exponent_of(f) for f, _ in split.factors) < 0:
@@ -336,8 +335,8 @@ class KernelReduction:
         singular = [
             f for d in self.table.dispersions for c in d.characteristic for f, _ in c.denominator().factors
         ]
-        pairs = (d.characteristic for d in self.table.dispersions if d.kind == "pair")
-        singular += [f for c in pairs for f, _ in (c[2] ** 2 - c[0] * 4).numerator().factors]
+        pairs = (d for d in self.table.dispersions if d.kind == "pair")
+        singular += [f for d in pairs for f, _ in d.discriminant.numerator().factors]
         decays = [self.ring.generator(k.generator) for k in self.table.kernels if k.function == "exp"]
 
         def is_mode(factor: fmpz_mpoly) -> bool:

@@ -210,7 +210,7 @@ def fits_lanes(program: tree.Piecewise) -> bool:
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:
     """Tell whether a program varies, has one branch, and calls no function of s but an exponential.
 
-    Of a product over roots the imaginary axis has to mirror all.
+    The imaginary axis has to mirror all roots of a product over roots.
     """
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)

@@ -256,7 +256,7 @@ class Site:
     def exponential_sum(self, leaves: Mapping[Key, int], scales: Scales) -> int:
         """Return a sum over its largest exponential, from the expressions of its coefficients.
 
-        Of circular terms that oscillate, half is given.
+        Coefficients of circular terms that oscillate are given halved: such a term is twice a cosine or sine.
         """
         used = sorted({i for i, _ in scales})
         images = [(lambda t, i=i: self._term(i, t, scales)) for i in used]

@@ -148,7 +148,7 @@ MOST_AVERAGES = 1e9
 """Of a number of averages, beyond which it is a mistake."""
 SHOWN_NAMES = 8
 SLOWEST, FASTEST = 1e-18, 1e18
-"""Of a frequency [Hz]: the fourth power of a ratio of two, and its square, have to be numbers."""
+"""Limits of a frequency [Hz]: the fourth power of a ratio of two, squared, is still a double."""
 SMALLEST, LARGEST = 1e-100, 1e100
 """Of a magnitude: its square, and the square of that over another, have to be numbers too."""
 

@@ -210,13 +210,20 @@ class _Network:
             return column
 
         for row, _ in self.rows:
-            entries = row.entries
-            both = [t for terms in entries.values() for t in terms] if len(entries) == 2 else []  # noqa: PLR2004
-            is_ratio = row.implicit < 0 and self.bench.add(both)
+            if self._is_ratio(row):
+                continue
             first: dict[int, int] = {}
-            for c in () if is_ratio else (c for c in (row.implicit, *entries) if c >= 0 <= self.classes[c]):
-                parts[part(c)] = part(first.setdefault(self.classes[c], c))
+            for c in (row.implicit, *row.entries):
+                if c >= 0 <= self.classes[c]:
+                    parts[part(c)] = part(first.setdefault(self.classes[c], c))
         self.classes[:] = [kind if kind < 0 else part(c) for c, kind in enumerate(self.classes)]
+
+    def _is_ratio(self, row: _NetworkRow) -> bool:
+        """Tell whether a row holds two nodes, and not their difference."""
+        match [*row.entries.values()]:
+            case [one, other] if row.implicit < 0:
+                return bool(self.bench.add([*one, *other]))
+        return False
 
     def _row(
         self, about: Variable, form: LinearForm, *, is_balance: bool

@@ -522,13 +522,13 @@ def test_where_a_passive_model_has_no_pole_far_up_the_axis_those_below_decide(wo
 
 
 def test_to_the_right_where_wavenumbers_meet_there_may_be_no_pole(world, monkeypatch):
-    monkeypatch.setattr(room, "degenerate_points", lambda _, **__: [root(2, 0), root(0, 0)])
+    monkeypatch.setattr(room, "degenerate_points", lambda _: [root(2, 0), root(0, 0)])
     world.beyond["poles"] = RightHalfPlane((root(2, 0), root(3, 0), root(0, 0)))
     shown = world.locate()
     assert places(shown.unstable) == [(3, 0, 1)]
     assert (shown.verdict.found, shown.verdict.right, shown.verdict.reason) == (1, None, DEGENERATE)
     # To the left nothing depends on it.
-    monkeypatch.setattr(room, "degenerate_points", lambda _, **__: [root(-2, 0)])
+    monkeypatch.setattr(room, "degenerate_points", lambda _: [root(-2, 0)])
     world.beyond["poles"] = RightHalfPlane((root(-2, 0),))
     assert world.locate().verdict.word == "stable"
 
