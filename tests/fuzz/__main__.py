@@ -69,7 +69,10 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         for name in names:
             count, found, is_broken = fuzz(
-                name, max(given.seconds // len(names), 1), given.folder or Path(scratch)
+                name,
+                max(given.seconds // len(names), 1),
+                given.folder or Path(scratch),
+                is_guided=given.guided,
             )
             print(f"{name:16} {count:9d} inputs, {len(found)} failed", flush=True)
             failed |= bool(found) or bool(is_broken)

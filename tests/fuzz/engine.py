@@ -1,8 +1,8 @@
 """One target under atheris: ``python -m tests.fuzz.engine [--unguided] NAME FOLDER [libFuzzer's options]``.
 
 Unguided, only the target itself is instrumented: that is several times as fast, and finds nothing deep by
-itself, so it is for mutating a corpus that guided runs left in the folder. An input that fails is kept there,
-and the run goes on; of failures at one place the first is kept.
+itself, so it mutates every input of the corpus that guided runs left in the folder. An input that fails is
+kept there, and the run goes on; of failures at one place the first is kept.
 """
 
 from __future__ import annotations
@@ -52,6 +52,8 @@ def main(arguments):
     corpus.mkdir(exist_ok=True)
     for i, seed in enumerate(target.seeds()):
         (corpus / f"seed-{i}").write_bytes(seed)
+    if not is_guided:
+        options = ["-keep_seed=1", *options]
     atheris.Setup([target_name, *LIMITS, *options, f"-artifact_prefix={folder}/", str(corpus)], one)
     atheris.Fuzz()
 

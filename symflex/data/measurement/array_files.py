@@ -110,6 +110,9 @@ Arrays = dict[str, npt.NDArray[Any]]
 _MAGIC: Final = b"\x93NUMPY"
 _ENDING: Final = ".npy"
 _DESCRIPTION: Final = re.compile(r"'descr': '([<>|=]?)([biufcSU?]\d{0,6})'")
+_FIELDS: Final = re.compile(
+    r"'descr': \[((?:\('\w{1,60}', '[<>|=]?(?:[iu][1248]|f[48]|c8|c16)'\),? ?){1,99})\]"
+)
 _ORDER: Final = re.compile(r"'fortran_order': (True|False)")
 _SHAPE: Final = re.compile(r"'shape': \(((?:\d{1,12}, ?)*\d{0,12}),?\)")
 _END, _END_SIZE, _END_64, _COMMENT = b"PK\x05\x06", 22, b"PK\x06\x07", 0xFFFF
@@ -132,7 +135,8 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
             infos = file.infolist()
             if len(infos) > members or sum(info.file_size for info in infos) > limit:
                 raise OverflowError
-            return {info.filename.removesuffix(_ENDING): read_array(_member(file, info)) for info in infos}
+            named = ((info.filename.removesuffix(_ENDING), _member(file, info)) for info in infos)
+            return {key: array for name, member in named for key, array in read_array(name, member).items()}
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, NotImplementedError) as error:
         raise ValueError(str(error)[:100] or CUT) from None
 
@@ -158,21 +162,29 @@ def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     return content
 
 
-def read_array(content: bytes) -> npt.NDArray[Any]:
-    """Return the array of an .npy file; ValueError with the reason when it is none of numbers or texts."""
+def read_array(name: str, content: bytes) -> Arrays:
+    """Return the array of an .npy file under a name, or the fields of a structured one under their own.
+
+    ValueError with the reason when it is none of numbers or texts.
+    """
     reader = ByteReader(content)
     require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is not an array")
     major = reader.integer("u1")
     reader.take(1)
     header = bytes(reader.take(reader.integer("u2" if major == 1 else "u4"))).decode("latin-1")
     description, order, shape = (pattern.search(header) for pattern in (_DESCRIPTION, _ORDER, _SHAPE))
+    if (fields := _FIELDS.search(header)) and shape:
+        dtype = np.dtype(re.findall(r"'(\w+)', '([^']+)'", fields[1]))
+        count = prod(int(size) for size in re.findall(r"\d+", shape[1]))
+        rows = np.frombuffer(reader.take(count * dtype.itemsize), dtype)
+        return {field: rows[field] for field in dtype.names or ()}
     if description is None or order is None or shape is None:
         message = "an array holds neither plain numbers nor text"
         raise ValueError(message)
     sizes = [int(size) for size in re.findall(r"\d+", shape[1])]
     reader.order = description[1] or "="
     try:
-        return reader.numbers(description[2], sizes, "F" if order[1] == "True" else "C")
+        return {name: reader.numbers(description[2], sizes, "F" if order[1] == "True" else "C")}
     except TypeError:  # a kind of number that numpy has not
         message = f"an array is of an unknown kind '{description[2]}'"
         raise ValueError(message) from None

@@ -97,7 +97,7 @@ def _octave_variables(data: bytes) -> Arrays:
 
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
     ".npz": ("a numpy archive (.npz)", lambda data: read_archive(data, MAX_BYTES, MAX_RESPONSES)),
-    ".npy": ("a numpy array (.npy)", lambda data: {"array": read_array(data)}),
+    ".npy": ("a numpy array (.npy)", lambda data: read_array("array", data)),
     ".mat": ("a MATLAB file (.mat)", lambda data: read_variables(data, MAX_BYTES)),
     "octave": ("a text file of Octave", _octave_variables),
 }

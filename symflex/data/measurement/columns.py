@@ -46,8 +46,8 @@ _WORDS: Final = {
 }  # fmt: skip
 """Words by which a column is known, the first kind that has one of them."""
 KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
-_SPREAD: Final = frozenset("std stdev sd sigma err unc uncertainty var variance snr thd".split())
-"""Words of columns that say how accurate others are."""
+_SPREAD: Final = frozenset("std stdev sd sigma err unc uncertainty var variance snr thd margin".split())
+"""Words of columns that say how accurate others are, or how far from a limit."""
 _PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
 _OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
 _FREQUENCY_UNITS: Final = {
@@ -403,9 +403,11 @@ def assembled(
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
     names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
-    unused = [name for name in names if name]
+    unused = [f"'{name[:30]}'" for name in names if name]
+    if any(not c.name and id(c) not in used for c in columns[1:] if header and not is_asked):
+        unused.append("without a name")
     if unused:
-        listed = ", ".join(f"'{name[:30]}'" for name in unused[:MOST_LISTED])
+        listed = ", ".join(unused[:MOST_LISTED])
         listed += ", ..." if len(unused) > MOST_LISTED else ""
         guesses.append(f"{'columns' if len(unused) > 1 else 'column'} {listed} not used")
     return made, list(dict.fromkeys(guesses))

@@ -303,6 +303,10 @@ def _columns(
         elif [*cells, ""][i + 1] == cells[i] and re.fullmatch(r"[vi]\(.+\)", cells[i], re.I):  # ngspice
             meanings[i : i + 2] = [ColumnMeaning(part, label=cells[i]) for part in ("real", "imaginary")]
             guesses.append(f"'{cells[i][:30]}' twice is read as real and imaginary part")
+    longer = next((i for i, row in enumerate(block.rows) if len(row) > width), None)
+    if longer is not None:
+        many = len(block.rows[longer])
+        guesses.append(f"line {block.lines[longer] + 1} has {many} cells: the first {width} are read")
     header = None if line is None else table.line(line)
     above = [i for i in block.above if table.lines[i].strip()]
     is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i not in (line, under))

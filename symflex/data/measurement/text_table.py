@@ -28,7 +28,8 @@ COMMENTS: Final = ("#", "%", "!", "//", "*", ";", '"#', '"*', '"!')
 SIGNS: Final = "#%!/*; \t"
 """What stands before the text of a comment."""
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
+_POLAR = re.compile(rf"\(?({_NUMBER})\s*(dB\s*[,;]|(?:dB)?\s*\u2220)\s*({_NUMBER})\s*(\S{{0,3}}?)\)?", re.I)
+"""Size and angle: ``(-3dB,45deg)``, ``1.2\u222045\u00b0``."""
 _CARTESIAN = re.compile(
     rf"\(?({_NUMBER})\s*([-+])\s*(?:%?[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:%?[ij]m?)?\)?", re.I
 )
@@ -70,9 +71,9 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
     guesses: tuple[str, ...] = ()
     try:
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            text, guesses = data.decode("utf-16"), ("the text is UTF-16",)
+            text, guesses = data[: len(data) & ~1].decode("utf-16"), ("the text is UTF-16",)
         elif sixteen:
-            text, guesses = data.decode(sixteen), ("the text is UTF-16",)
+            text, guesses = data[: len(data) & ~1].decode(sixteen), ("the text is UTF-16",)
         else:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
@@ -127,10 +128,11 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
 
 
 def _complex_number(text: str) -> complex | None:
-    if match := _LEVEL.fullmatch(text):
+    if match := _POLAR.fullmatch(text):
+        size, angle = np.float64(match[1]), float(match[3])
         with np.errstate(over="ignore"):
-            size = np.float64(10) ** (np.float64(match[1]) / 20)
-        return complex(size * np.exp(1j * np.radians(float(match[2]))))
+            size = np.float64(10) ** (size / 20) if match[2][:1] in "dD" else size
+        return complex(size * np.exp(1j * (angle if match[4].lower() == "rad" else np.radians(angle))))
     match = _CARTESIAN.fullmatch(text)
     if match and re.search("[ij]", text, re.I):
         sign = -1.0 if match[2] == "-" else 1.0  # older numpy writes 1+-2j

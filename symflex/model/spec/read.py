@@ -82,7 +82,7 @@ def _meant(name: str) -> str | None:
     folder, own = os.path.split(name)
     stem, suffix = os.path.splitext(own)
     try:
-        beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix))[:MOST_FILES]
+        beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix) and f != own)[:MOST_FILES]
     except OSError:
         return None
     if meant := nearest(stem, [f.removesuffix(suffix) for f in beside]):

@@ -652,6 +652,12 @@ def files_of_simulators_and_names():
     traces = "Frequency(Hz),|Z|(ohm)-data,|Z|(ohm)-mem,θz(deg)-data,θz(deg)-mem\n"
     yield Saved("empty_memory.csv", (traces + rows(F, SIZE, 0 * F, DEG, 0 * F)).encode())
     parts = [f"{z.real:.9e}-%i*{-z.imag:.9e}" for z in H]
+    turned = [f"{a:.9e}\u2220{d:.9f}°" for a, d in zip(SIZE, DEG, strict=True)]
+    yield Saved("polar.csv", ("freq,v(out)\n" + rows(F, turned)).encode())
+    yield Saved("cut.txt", ("f\tre\tim\n" + rows(F, RE, IM, sep="\t")).encode("utf-16")[:-1])
+    more = rows(F, RE, IM).replace("\n", ",1,2\n", 1)
+    yield Saved("one_longer.csv", ("f,re,im\n" + more).encode())
+    yield Saved("two_unnamed.csv", ("f,re,im\n" + rows(F, RE, IM, TEN, SIZE)).encode())
     yield Saved("scilab.csv", ("f,H\n" + rows(F, parts)).encode())
     for i, (names, columns) in enumerate((
         ("f,X/F,phase_deg", (F, SIZE, DEG)), ("f [Hz],X1/F1 [m/N],phase X1/F1 [°]", (F, SIZE, DEG)), ("f,X/F (dB),phase_deg", (F, DB, DEG)),
@@ -717,6 +723,9 @@ def array_files():
 
     npy = io.BytesIO()
     np.save(npy, np.column_stack([F, H]))
+    table = io.BytesIO()
+    np.save(table, np.rec.fromarrays([F, RE, IM], names="freq,re,im"))
+    yield Saved("table.npy", table.getvalue())
     w, column = 2 * np.pi * F, F[:, None]
     yield Saved("struct.mat", mat(data={"w": w, "P": {"frf": H}}))
     yield Saved("bode.mat", mat(mag=SIZE[None, None, :], phase=DEG[None, None, :], wout=w[:, None]))

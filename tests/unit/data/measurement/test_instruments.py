@@ -74,6 +74,8 @@ GUESSES = {
     "empty_memory.csv": "columns '|Z|(ohm)-mem', 'θz(deg)-mem' not used",
     "both.mpt": "'(Y)/Ohm-1' is one over 'Z', and is left out",
     "wrdata.data": "'v(out)' twice is read as real and imaginary part",
+    "one_longer.csv": "line 2 has 5 cells: the first 3 are read",
+    "two_unnamed.csv": "column without a name not used",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 

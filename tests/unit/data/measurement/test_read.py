@@ -109,6 +109,7 @@ def test_columns_that_are_not_named_are_not_listed(write):
 MISTAKES = {
     "unknown column": ("frequency_hz,re,img\n1,2,3\n", "SF602", "a.csv:1:17"),
     "no header": ("1,2,3\n2,3,4\n", "SF602", "a.csv:1:1"),
+    "a margin for a phase": ("f,db,phase margin (deg)\n1,2,3\n2,3,4\n3,4,5\n", "SF602", "a.csv:1:6"),
     "no phase": ("f,db\n1,2\n", "SF602", "a.csv:1:1"),
     "phase without unit": ("f,db,phase\n1,2,3\n", "SF602", "a.csv:1:6"),
     "unknown unit": ("frequency [rpm],re,im\n1,2,3\n", "SF602", "a.csv:1:1"),
