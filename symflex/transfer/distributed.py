@@ -318,10 +318,15 @@ class KernelReduction:
         return result
 
     def _divided(self, divisor: Factored, times: Factored, whole: Factored, factor: fmpz_mpoly) -> Factored:
-        """Return a factor with a divisor set apart; ``whole`` is the divisor by ``times``."""
+        """Return a factor with a divisor set apart; ``whole`` is the divisor by ``times``.
+
+        A power of s may be left below: at s = 0 all wavenumbers may vanish, and a factor less than their
+        product.
+        """
         multiplied = prod((f**e for f, e in times.factors), start=factor)
         rest = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / whole
-        if any(e < 0 and whole.exponent_of(f) > 0 for f, e in rest.factors):
+        lacking = [f for f, e in rest.factors if e < 0 and whole.exponent_of(f) > 0]
+        if lacking and (lacking != [self.ring.context.gen(0)] or len(whole.numerator().factors) == 1):
             return Factored.polynomial(self.ring, factor)
         return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, whole))
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from mpmath import mpc, mpf, sqrt, workdps
+from mpmath import expm, findroot, matrix, mpc, mpf, sqrt, workdps
 
 from symflex import pipeline
 from symflex.balls import to_complex_mpmath, to_mpmath
@@ -94,3 +94,35 @@ def test_sections_of_a_pinned_timoshenko_beam_turn_alike_at_the_cut_off_frequenc
     result = solved(TIMOSHENKO, 30, CUT_OFF, PINNED, 'torque = "a.theta"', "a.theta")
     assert check(result.poles, lambda: mpc(0, sqrt(7)), 30).on_imaginary_axis
     assert result.certificate.certified
+
+
+@pytest.mark.slow
+def test_what_vanishes_with_wavenumbers_of_numbers_is_no_pole():
+    # Clamped, with a spring of 100 N/m at 2 m, where F acts. Its wavenumbers vanish at 0, -0.6 and +-200j.
+    beam = ', EI = 7, rhoA = 0.5, rhoI = 0.002, kappaGA = 80, c_f = 0.3, theory = "timoshenko" }\n'
+    model = pipeline.loads(
+        f"symflex = 1\n[elements]\nm = {{ type = 'beam', between = ['a', 'b'], l = 1{beam}"
+        f"n = {{ type = 'beam', between = ['b', 'c'], l = 1{beam}f = {{ type = 'fixed', at = 'a' }}\n"
+        "k = { type = 'spring', between = ['c', 'ground'], k = 100 }\n"
+        "[inputs.F]\nforce = 'c'\n[outputs]\nY = 'b'\n"
+    )
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    result = locate(bound, Modes(2), 15)
+
+    def determinant(s):
+        """Of moment, and shear force less the spring's, at the end, by w and phi of the clamped one."""
+        mass, damping = s * s / 2, 3 * s / 10
+        motion = matrix([
+            [0, 1, 0, mpf(1) / 80], [0, 0, mpf(1) / 7, 0], [0, s * s / 500, 0, -1], [mass + damping, 0, 0, 0]
+        ])  # fmt: skip
+        across = expm(2 * motion)
+        ends = [(across[2, j], across[3, j] + 100 * across[0, j]) for j in (2, 3)]
+        return ends[0][0] * ends[1][1] - ends[0][1] * ends[1][0]
+
+    assert result.certificate.certified
+    assert result.verdict.word == "stable"
+    assert len(result.poles) == 4
+    for guess in (mpc(-0.3, 10), mpc(-0.3, 24)):
+        with workdps(40):
+            pole = findroot(determinant, guess)
+        check(result.poles, lambda pole=pole: pole, 15)
