@@ -39,6 +39,7 @@ from symflex.loops.stability_map import (
 )
 from symflex.roots import find_polynomial_roots
 from symflex.roots.distributed.far_out import NEUTRAL
+from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 
@@ -79,6 +80,8 @@ def find_stable_gains(
     lumped, along, (low, high) = _factors(loop, limits, up_to)
     if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
         return _at_nominal(loop, (low, high), digits, MIRRORED)
+    if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
+        return _at_nominal(loop, (low, high), digits, along.reasons[-1])
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]

@@ -14,7 +14,7 @@ from symflex.balls import ball, precision
 from symflex.loops.apart import PolesApart
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots import decimals
-from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -386,7 +386,9 @@ def stability_html(found: StabilityMap) -> str:
 def _passages(found: StabilityMap) -> Iterator[Passage]:
     unit = f" [{found.unit}]" if found.unit else ""
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
-    lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
+    lines += [
+        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons
+    ]
     if found.nominal is not None:
         lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
     if found.verdict.hidden:

@@ -32,6 +32,7 @@ MOST_NAMES = 3
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to decide"
 NONE_FOUND = "no pole was found, and those elsewhere may lie on the imaginary axis"
 NONE_ON_AXIS = "none of those found lies on the imaginary axis, but others may"
+WITHOUT_END = "infinitely many poles lie right of the axis"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +79,7 @@ class StabilityVerdict:
         if self.word == "unstable":
             least = "" if self.right is not None else "at least "
             poles = "1 pole" if self.found == 1 else f"{self.found} poles"
-            said = f"unstable: {least}{poles} in the right half plane"
+            said = f"unstable: {least}{poles} in the right half plane" if self.found else "unstable"
             return f"{said}; {self.reason}" if self.reason else said
         said = "marginal, not asymptotically stable" if self.word == "marginal" else self.word
         return f"{said}: {self.reason}" if self.reason else said
@@ -184,6 +185,8 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
         if unclear:
             unproved = unproved or ON_AXIS
         return StabilityVerdict("unstable", None if unproved else count, True, unproved, count)
+    if WITHOUT_END in unproved:
+        return StabilityVerdict("unstable", None, True, unproved)
     on_axis = [root for root in roots if root.on_imaginary_axis]
     if on_axis:
         where = "poles on the imaginary axis"

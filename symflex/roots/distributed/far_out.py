@@ -23,6 +23,7 @@ from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, expone
 from symflex.balls import ball, precision
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues, Valued
+from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 from symflex.transfer.enclose import summed
 
@@ -48,6 +49,7 @@ TOO_MANY = "no bound on the poles is known for so many exponentials"
 TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
 ADVANCED = "a delayed term has the highest power of s, so poles right of the axis have no bound"
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
+DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
 NO_LOSS = "waves without enough loss have poles all along the axis"
 
@@ -301,7 +303,11 @@ class _SumFarOut:
         return arguments, [found[i] for i in range(self.sectors)]
 
     def obstacle(self, radius: float) -> str:
-        """Say why no term outweighs the others for large s."""
+        """Say why no term outweighs the others for large s.
+
+        If a delayed one outweighs all others of the highest power of s along the axis, infinitely many roots
+        lie right of it (Bellman and Cooke 1963, chapter 12).
+        """
         powers = self.powers(radius)
         if powers is None or any(each.wavenumber for each in self.sums.arguments):
             return NO_LOSS
@@ -312,6 +318,11 @@ class _SumFarOut:
         if () not in highest:
             return EVERY_DELAYED
         delayed = max((p for own, p in highest.items() if own), default=Fraction(-1))
+        sizes = {own: abs(powers[0][own][p]) for own, p in highest.items() if p == max(highest.values())}
+        total = sum(sizes.values(), arb(0))
+        are_delays = all(powers[1][i].is_delay and a > 0 and not b for own in highest for i, a, b in own)
+        if are_delays and any(own and 2 * size > total for own, size in sizes.items()):
+            return DELAY_LEADS
         return ADVANCED if delayed > highest[()] else NEUTRAL
 
     def powers(self, radius: float) -> tuple[Terms, list[_Power]] | None:

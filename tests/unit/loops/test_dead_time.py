@@ -93,8 +93,8 @@ def test_a_cascade_is_proved_with_dead_time_in_several_places():
 
 @pytest.mark.slow
 def test_a_loop_that_cannot_be_proved_has_a_reason():
-    # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and not small enough.
-    text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/1000)*motor.i")
+    # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and of one size.
+    text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/5000)*motor.i")
     found = stability(pipeline.loads(text), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     assert not found.certified
     assert "share the highest power of s" in found.reasons[0]
@@ -119,3 +119,20 @@ inputs.r = {{}}
 outputs.V = "v"
 """
     assert stability(pipeline.loads(text), StabilityOptions("K")).verdict.word == word
+
+
+def test_a_loop_whose_delayed_rate_outweighs_the_rate_is_unstable_for_every_gain():
+    # s (1 + 1.2 exp(-s)) + K: for large s exp(-s) is -1/1.2, and so poles have a real part near ln(1.2).
+    text = """
+symflex = 1
+parameters.K = 0.001
+blocks.D = { type = "delay", T = 1 }
+signals.v = "(K*(r - v) - 1.2*s*D*v)/s"
+inputs.r = {}
+outputs.V = "v"
+"""
+    found = stability(pipeline.loads(text), StabilityOptions("K"))
+    assert found.verdict.word == "unstable"
+    assert not found.intervals
+    assert "infinitely many poles lie right of the axis" in found.reasons[0]
+    assert "not proved" not in stability_text(found)
