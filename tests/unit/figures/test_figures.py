@@ -196,7 +196,7 @@ def test_a_name_becomes_a_label():
         ("x2", "x_{2}"),
         ("speed", r"\mathrm{speed}"),
         ("a_b_max", r"a_{b,\mathrm{max}}"),
-        ("x_", "x"),
+        ("L_", r"\mathtt{L\_}"),
     ):
         assert label_of_name(name) == label, (name, label)
 
