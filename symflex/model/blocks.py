@@ -17,6 +17,7 @@ from symflex.expressions import (
     Negative,
     Number,
     Product,
+    is_number,
     negative,
     power,
     product_of,
@@ -117,6 +118,9 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
         reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint or f"types: {types}")
         return None
     values = _read_values(reader, entry, table, block)
+    if values is not None and block.kernel_time and is_number(lower(values[0][1]), 0):
+        # Without dead time it is rational: a lag of no time.
+        block, values = BLOCKS["lag"], (("k", signed_number(Fraction(1))), *values)
     return None if values is None else PlacedBlock(entry.key, block, values, span=entry.key_span)
 
 

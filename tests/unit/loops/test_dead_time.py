@@ -136,3 +136,22 @@ outputs.V = "v"
     assert not found.intervals
     assert "infinitely many poles lie right of the axis" in found.reasons[0]
     assert "not proved" not in stability_text(found)
+
+
+@pytest.mark.parametrize("written", ["0", '"0 s"'])
+def test_without_dead_time_a_loop_is_one_of_polynomials(written):
+    # s + K*exp(-s*T) is stable up to K = pi/(2 T); without dead time it always is.
+    text = f"""
+symflex = 1
+parameters.K = 3
+blocks.D = {{ type = "delay", T = {written} }}
+blocks.I = {{ type = "integrator" }}
+signals.v = "I*K*D*(r - v)"
+inputs.r = {{}}
+outputs.V = "v"
+"""
+    model = pipeline.loads(text)
+    assert not model.is_distributed
+    found = stability(model, StabilityOptions("K"))
+    assert found.method == "polynomials"
+    assert [(i.low, i.high) for i in found.stable] == [(0, None)]
