@@ -857,6 +857,12 @@ def ask(columns: Sequence[DataColumn]) -> str:
         return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"
     if not rest:
         return HINT
+    kinds = {columns[i].meaning.kind for i in rest}
+    if "magnitude" in kinds and not kinds & {"phase", "real", "imaginary"}:
+        at = next(i for i in rest if columns[i].meaning.kind == "magnitude")
+        words = ["-"] * max(places[0], at) + ["-"]
+        words[places[0]], words[at] = "f", "mag" if columns[at].meaning.scale == "linear" else "mag_db"
+        return f"--columns {','.join(words)} computes the phase of a minimum-phase response"
     one, two = (columns[i].numbers.real for i in rest[:2])
     with np.errstate(all="ignore"):
         is_phase = bool(MOST_RADIANS < np.nanmax(np.abs(two), initial=0) < MOST_DEGREES)

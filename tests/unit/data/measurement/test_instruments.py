@@ -126,6 +126,15 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert found.values == pytest.approx(values, rel=1e-3), name
 
 
+def test_sizes_on_and_off_axis_are_asked_for_with_the_option_that_reads_the_first(tmp_path):
+    path = tmp_path / "speaker.csv"
+    path.write_text("freq_hz,spl_db,spl_30deg_db\n" + rows(F, DB, DB - 3))
+    with pytest.raises(DataError) as caught:
+        read_measurement(path)
+    (found,) = read_measurement(path, WORD.search(caught.value.diagnostics[0].hint)[1])
+    assert abs(found.values) == pytest.approx(abs(H), rel=1e-6)
+
+
 @pytest.mark.parametrize(("ratio", "level"), [(1.242, 2.9), (1.3, 3.0), (1.15, 1.9)])
 def test_positive_decibels_near_one_are_never_read_as_a_ratio(tmp_path, ratio, level):
     # A lag turns the phase by asin((r - 1)/(r + 1)): 6.2 degrees for 1.242, as many as a turn has radians.
