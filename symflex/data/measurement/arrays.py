@@ -50,14 +50,14 @@ Arrays = Mapping[str, Array]
 
 FREQUENCY: Final = (
     "frequency_hz", "frequency", "freq", "f", "f_hz", "freq_hz", "fhz", "freqs", "frequencies", "hz", "faxis",
-    "f_axis", "freqaxis", "freq_axis", "fvec", "freq_vec", "freqvec", "frequency_vector",
+    "f_axis", "freq_domain", "freqaxis", "freq_axis", "fvec", "freq_vec", "freqvec", "frequency_vector",
 )  # fmt: skip
 ANGULAR: Final = ("omega", "w", "wout", "om", "w_rad", "omega_rad", "freq_rad", "rad_s")
 VALUES: Final = (
     "values", "h", "frf", "frfs", "g", "response", "responsedata", "h1", "txy", "tf_values", "tf_data", "hf",
     "frf_avg", "h_avg", "tfe", "resp", "z", "p",
 )  # fmt: skip
-NUMBERED: Final = re.compile(r"(?:h|g|frf|tf)_?\d+(?:_\d+)?")
+NUMBERED: Final = re.compile(r"(?:h|g|frf|tf|hf_chan)_?\d+(?:_\d+)?")
 WORDS: Final = {"cxy": "coherence", "cohere": "coherence", "magdb": "mag_db", "ph": "phase"}
 """Names of arrays that are none of columns."""
 UNITS: Final = ("frequencyunit", "frequency_unit", "units")

@@ -80,7 +80,8 @@ def test_what_ends_a_command_is_said_with_its_code():
     """A budget of time that nobody asks, one of memory, libraries that abort or crash, an exit of its own."""
     for body, options, code, said in (
         (ENDLESS, ("--budget", "0.5"), 5, "SF506"),
-        ("block = bytearray(b'x') * 10**9", ("--memory", "500 MB"), 5, "SF504"),
+        # A bytearray would say of itself that its buffers are exported: CPython drops it half made.
+        ("block = b'x' * 10**9", ("--memory", "500 MB"), 5, "SF504"),
         ("from flint import fmpz; x = fmpz(1) << 16 * 10**9", ("--memory", "500 MB"), 5, "SF504"),
         ("os.kill(os.getpid(), 11)", (), 5, "SF508"),
         ("os.write(2, b'Impossible inverse'); os.abort()", (), 5, "crashed: Impossible inverse"),

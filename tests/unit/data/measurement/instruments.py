@@ -744,6 +744,8 @@ def array_files():
     yield Saved("runs.mat", mat(run=np.array([{"f": F, "H": H}, {"f": F, "H": H2}], object)), (H, H2))
     axis = {"start_value": F[0], "increment": F[1] - F[0]}
     yield Saved("testlab.mat", mat(Signal={"x_values": axis, "y_values": {"values": H[:, None]}}))
+    spectra = {"Time_domain": column / 1280, "PSD_chan_1": SIZE[:, None], "Hf_coh_chan_2": COH[:, None]}
+    yield Saved("channels.mat", mat(Freq_domain=column, Hf_chan_2=H[:, None], **spectra))
     yield Saved("unnamed.npz", npz(F, H))
     yield Saved("named.npz", npz(axis=np.e * F, G=H), columns="f=axis,h=G", frequency=(np.e * F,))
     yield Saved("parts.npz", npz(f_hz=F, re=RE, im=IM))
