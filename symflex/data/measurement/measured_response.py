@@ -268,6 +268,10 @@ def _ordered(
     if wrong.any() and are_few(wrong):
         note(lines[wrong], "what holds no number, or zero")
         lines = lines[~wrong]
+    above = np.zeros(lines.size, bool) if coherence is None else coherence[lines] > 1
+    if above.any() and are_few(above):
+        note(lines[above], "a coherence above 1")
+        lines = lines[~above]
     steps = np.diff(frequency[lines])
     if lines.size > 1 and np.all(steps < 0):
         return lines[::-1], [*said, "the lines go down in frequency, and are reversed"]

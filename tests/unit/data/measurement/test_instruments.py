@@ -126,6 +126,16 @@ def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads
         assert found.values == pytest.approx(values, rel=1e-3), name
 
 
+def test_few_lines_with_a_coherence_above_one_are_left_out_and_said(tmp_path):
+    share = [0.9] * F.size
+    share[3] = share[50] = 1.2
+    path = tmp_path / "a.csv"
+    path.write_text("f,re,im,coh\n" + rows(F, RE, IM, share))
+    (found,) = read_measurement(path)
+    assert found.values.size == F.size - 2
+    assert "left out a coherence above 1: lines 5, 52" in found.guesses
+
+
 def test_sizes_on_and_off_axis_are_asked_for_with_the_option_that_reads_the_first(tmp_path):
     path = tmp_path / "speaker.csv"
     path.write_text("freq_hz,spl_db,spl_30deg_db\n" + rows(F, DB, DB - 3))
