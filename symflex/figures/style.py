@@ -232,10 +232,10 @@ def label_of_name(name: str) -> str:
     >>> print(label_of_name("X_tip"), label_of_name("omega_p1"), label_of_name("x2"), label_of_name("y_s"))
     X_{\mathrm{tip}} \omega_{\mathrm{p1}} x_{2} y_{s}
     """
-    if "" in name.split("_"):  # as equations print it, so that ``L_`` is not ``L``
+    head, *subscripts = parts = name.split("_")
+    if not all(parts):  # as equations print it, so that ``L_`` is not ``L``
         spelt = name.replace("_", r"\_")
         return rf"\mathtt{{{spelt}}}"
-    head, *subscripts = name.split("_")
     digits = _TRAILING_DIGITS.fullmatch(head)
     if digits and not subscripts:
         head, subscripts = digits["stem"], [digits["digits"]]

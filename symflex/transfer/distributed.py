@@ -327,8 +327,8 @@ class KernelReduction:
         rest = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / whole
         s = self.ring.context.gen(0)
         lacking = [f for f, e in rest.factors if e < 0 and whole.exponent_of(f) > 0]
-        others = (f for f, _ in whole.numerator().factors if f != s and int(f.degrees()[0]))
-        if lacking and (lacking != [s] or next(others, None) is None):
+        has_others = any(f != s and int(f.degrees()[0]) for f, _ in whole.numerator().factors)
+        if lacking and not (lacking == [s] and has_others):
             return Factored.polynomial(self.ring, factor)
         return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, whole))
 

@@ -857,21 +857,22 @@ def ask(columns: Sequence[DataColumn]) -> str:
         return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"
     if not rest:
         return HINT
+
+    def option(**words: int) -> str:
+        """Return the option that says which word each column has, after the frequency's."""
+        at = {i: word for word, i in words.items()} | {places[0]: "f"}
+        return "--columns " + ",".join(at.get(i, "-") for i in range(max(at) + 1))
+
     kinds = {columns[i].meaning.kind for i in rest}
     if "magnitude" in kinds and not kinds & {"phase", "real", "imaginary"}:
-        at = next(i for i in rest if columns[i].meaning.kind == "magnitude")
-        words = ["-"] * max(places[0], at) + ["-"]
-        words[places[0]], words[at] = "f", "mag" if columns[at].meaning.scale == "linear" else "mag_db"
-        return f"--columns {','.join(words)} computes the phase of a minimum-phase response"
+        size = next(i for i in rest if columns[i].meaning.kind == "magnitude")
+        word = "mag" if columns[size].meaning.scale == "linear" else "mag_db"
+        return f"{option(**{word: size})} computes the phase of a minimum-phase response"
     one, two = (columns[i].numbers.real for i in rest[:2])
     with np.errstate(all="ignore"):
         is_phase = bool(MOST_RADIANS < np.nanmax(np.abs(two), initial=0) < MOST_DEGREES)
         sizes = ("mag_db", "mag") if np.any(one < 0) else ("mag", "mag_db")
     readings = [("re", "im"), *((s, "phase_deg") for s in sizes)]
     readings = readings[1:] + readings[:1] if is_phase else readings
-    options = []
-    for reading in readings:
-        words = ["-"] * (max(places[0], rest[1]) + 1)
-        words[places[0]], words[rest[0]], words[rest[1]] = "f", *reading
-        options.append("--columns " + ",".join(words))
+    options = [option(**dict(zip(reading, rest, strict=False))) for reading in readings]
     return f"say what the columns are: {options[0]}, or {', or '.join(options[1:])}"

@@ -254,6 +254,12 @@ def _ordered(
         many = "lines" if left_out.size > 1 else "line"
         said.append(f"left out {kind}: {many} {listed}{more}")
 
+    def without(wrong: npt.NDArray[np.bool_], kind: str) -> npt.NDArray[np.intp]:
+        if not (wrong.any() and are_few(wrong)):
+            return lines
+        note(lines[wrong], kind)
+        return lines[~wrong]
+
     lines = np.flatnonzero(frequency != 0)
     if lines.size < frequency.size:
         said.append("the line at 0 Hz is left out")
@@ -265,13 +271,9 @@ def _ordered(
         wrong = ~np.isfinite(frequency[lines]) | ~np.isfinite(values[lines]) | (values[lines] == 0)
     if coherence is not None:
         wrong |= np.isnan(coherence[lines])
-    if wrong.any() and are_few(wrong):
-        note(lines[wrong], "what holds no number, or zero")
-        lines = lines[~wrong]
-    above = np.zeros(lines.size, bool) if coherence is None else coherence[lines] > 1
-    if above.any() and are_few(above):
-        note(lines[above], "a coherence above 1")
-        lines = lines[~above]
+    lines = without(wrong, "what holds no number, or zero")
+    if coherence is not None:
+        lines = without(coherence[lines] > 1, "a coherence above 1")
     steps = np.diff(frequency[lines])
     if lines.size > 1 and np.all(steps < 0):
         return lines[::-1], [*said, "the lines go down in frequency, and are reversed"]

@@ -71,8 +71,8 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
     guesses: tuple[str, ...] = ()
     try:
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            text, guesses = data[: len(data) & ~1].decode("utf-16"), ("the text is UTF-16",)
-        elif sixteen:
+            sixteen = "utf-16"
+        if sixteen:  # half a character at the end is left out
             text, guesses = data[: len(data) & ~1].decode(sixteen), ("the text is UTF-16",)
         else:
             text = data.decode("utf-8")

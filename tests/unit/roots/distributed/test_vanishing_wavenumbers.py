@@ -110,7 +110,7 @@ def test_what_vanishes_with_wavenumbers_of_numbers_is_no_pole():
     result = locate(bound, Modes(2), 15)
 
     def determinant(s):
-        """Of moment, and shear force less the spring's, at the end, by w and phi of the clamped one."""
+        """Return that of the conditions at the spring, by the moment and shear force at the clamp."""
         mass, damping = s * s / 2, 3 * s / 10
         motion = matrix([
             [0, 1, 0, mpf(1) / 80], [0, 0, mpf(1) / 7, 0], [0, s * s / 500, 0, -1], [mass + damping, 0, 0, 0]
