@@ -82,9 +82,16 @@ def solved(c, p, q):
 
 
 NAMELESS = "-w''/k = -(p - 4*w)*s"
+LONG = "w'''' + 2*s^2*w/k^2 = 3*s*w'' + p"  # takes seconds: a quartic without symmetry
 
 
-@pytest.mark.parametrize(("equation", "is_nameless"), [*((e, False) for e in EQUATIONS), (NAMELESS, True)])
+@pytest.mark.parametrize(
+    ("equation", "is_nameless"),
+    [
+        *(pytest.param(e, False, marks=pytest.mark.slow if e == LONG else ()) for e in EQUATIONS),
+        (NAMELESS, True),
+    ],
+)
 def test_a_field_has_the_values_and_derivatives_that_its_equation_and_ends_give_it(equation, is_nameless):
     c, p, q = EQUATIONS[equation]
     model = read(equation, len(c))
