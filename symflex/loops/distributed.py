@@ -8,7 +8,8 @@ principle about a half disc, beyond which, where this can be proved, there are n
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
 from math import exp, log
 from typing import TYPE_CHECKING
@@ -22,7 +23,7 @@ from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_or
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
-from symflex.roots.distributed.far_out import right_tail
+from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
@@ -31,12 +32,15 @@ from symflex.roots.pole_zero_map import count_right
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from fractions import Fraction
 
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128
 """Precision of gains and their limits."""
+OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
+"""What is said where delayed terms leave poles without a bound."""
+HALVINGS = 12
+"""Of a range, until its end is known to some hundredths of the gain's own value."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
 NEXT_TO_ZERO = 1e-6
@@ -64,6 +68,27 @@ class DistributedFactors:
     up_to: float | None  # a frequency up to which to search where no end can be proved [rad/s]
     reasons: list[str] = field(default_factory=list)
     method: str = "argument principle"
+    is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
+
+    @property
+    def where_no_delay_leads(self) -> DistributedFactors:
+        """The same on the largest part of the range, found by halving, in which the poles have a bound.
+
+        Beyond a gain at which a delayed term outweighs the others, infinitely many poles lie right of the
+        axis. The same whole range where that is not what keeps poles without a bound, or where no part helps.
+        """
+        if not any(tail in OUTWEIGHED for tail in self._tails):
+            return self
+        found, good, bad = self, Fraction(0), Fraction(1)
+        for _ in range(HALVINGS):
+            share = (good + bad) / 2
+            low, high = self.limits
+            part = replace(self, limits=(share * low, share * high), is_narrowed=True, reasons=[])
+            if part.is_endless:
+                bad = share
+            else:
+                found, good = part, share
+        return found
 
     @cached_property
     def with_gain(self) -> tuple[LoopFunction, ...]:

@@ -113,8 +113,9 @@ def find_stable_gains(
         apart=apart,
         tf=loop.bound.name,
         is_passive=along is not None and along.passive is not None,
+        is_narrowed=along is not None and along.is_narrowed,
     )
-    is_alone = found.nominal_interval is None and along is None
+    is_alone = found.nominal_interval is None and (along is None or along.is_narrowed)
     # Terms that do not outweigh one another for all gains may do so for one.
     if nominal is not None and (is_alone or NEUTRAL in found.reasons):
         found = replace(found, at_nominal=closed_loop_roots(loop, nominal).verdict)
@@ -185,7 +186,10 @@ def _factors(
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)
-    return lumped, DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to), (low, high)
+    along = DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to)
+    if limits is None:
+        along = along.where_no_delay_leads
+    return lumped, along, along.limits
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:

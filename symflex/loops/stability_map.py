@@ -130,6 +130,8 @@ class StabilityMap:
         ``"OUT/IN"``, whose input and output see the poles that are not hidden; empty where nothing is.
     is_passive : bool
         It is proved that no gain of the range brings a pole into the right half plane.
+    is_narrowed : bool
+        The range ends where a delayed term may outweigh the others of the highest power of s.
     """
 
     gain: str
@@ -151,6 +153,7 @@ class StabilityMap:
     at_nominal: StabilityVerdict | None = None
     tf: str = ""
     is_passive: bool = False
+    is_narrowed: bool = False
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -444,7 +447,8 @@ def _examined(found: StabilityMap) -> str:
         return f"{name} > {_number(low)}"
     if low is None:
         return f"{name} < {_number(high)}"
-    return f"{_number(low)} < {name} < {_number(high)}"
+    where = ", where no delayed term outweighs the others" if found.is_narrowed else ""
+    return f"{_number(low)} < {name} < {_number(high)}{where}"
 
 
 def _poles(count: int) -> str:

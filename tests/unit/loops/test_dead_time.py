@@ -138,6 +138,30 @@ outputs.V = "v"
     assert "not proved" not in stability_text(found)
 
 
+@pytest.mark.parametrize(("gain", "word"), [(2, "stable"), (6, "unstable")])
+def test_the_range_of_a_delayed_acceleration_ends_below_the_mass(gain, word):
+    # 4 s^2 + 8 s + 100 + K s^2 exp(-s T): at a crossing K^2 = 16 - 736/w^2 + 10^4/w^4, first where w T is
+    # near pi and K is 3.9998; beyond K = 4 infinitely many poles lie right of the axis.
+    text = f"""
+symflex = 1
+parameters = {{ m = "4 kg", K_a = "{gain} kg" }}
+elements.block = {{ type = "mass", at = "x", m = "m" }}
+elements.spring = {{ type = "spring", between = ["x", "ground"], k = "100 N/m" }}
+elements.damper = {{ type = "damper", between = ["x", "ground"], b = "8 N*s/m" }}
+elements.motor = {{ type = "force_source", at = "x", f = "F - K_a*D*s^2*x" }}
+blocks.D = {{ type = "delay", T = "4 ms" }}
+inputs.F = {{}}
+outputs.X = "x"
+"""
+    found = stability(pipeline.loads(text), StabilityOptions("K_a"))
+    assert found.certified
+    assert found.is_narrowed
+    assert found.verdict.word == word
+    (stable,) = found.stable
+    assert (found.limits[0], not found.boundaries) == (0, True)
+    assert 3.9 < float(stable.high) < 3.9999
+
+
 @pytest.mark.parametrize("written", ["0", '"0 s"'])
 def test_without_dead_time_a_loop_is_one_of_polynomials(written):
     # s + K*exp(-s*T) is stable up to K = pi/(2 T); without dead time it always is.
