@@ -30,6 +30,7 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
+from symflex.model.dead_times import with_dead_times
 from symflex.model.declarations import (
     CycleReading,
     DeclaredParameter,
@@ -190,6 +191,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         outputs,
         fields,
     )
+    draft = with_dead_times(draft, taken | loads | {n.name for n in nodes})
     draft = with_imaginary_unit(reader, draft)
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
