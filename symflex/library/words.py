@@ -134,7 +134,7 @@ THINGS: tuple[Thing, ...] = (
     ),
     # Control
     Thing(("notch", "notch_filter", "antiresonance"), "notch"),
-    Thing(("low_pass", "lowpass", "first_order", "rc_filter", "time_constant"), "lag, low_pass"),
+    Thing(("low_pass", "lowpass", "first_order", "pt1", "rc_filter", "time_constant"), "lag, low_pass"),
     Thing(("lead", "compensator", "lead_compensator", "lag_compensator"), "lead_lag"),
     Thing(("pi", "pd", "controller", "regulator"), "pid"),
     Thing(("dead_time", "transport_delay", "pure_delay", "latency", "zoh", "sampling"), "delay"),
@@ -143,9 +143,52 @@ THINGS: tuple[Thing, ...] = (
         "[signals]",
         'e = "r - k*x"',
     ),
-    Thing(("transfer_function", "zpk", "filter", "plant"), "tf"),
+    Thing(
+        ("transfer_function", "zpk", "filter", "high_pass", "washout", "butterworth", "pt2", "plant"), "tf"
+    ),
+    Thing(("derivative", "differentiator", "d_term"), "[signals]", 'v = "s*x", or "s/(1 + T*s)*x"'),
+    Thing(("pade",), "delay", "it is exact; `symflex rational` approximates"),
     Thing(("saturation", "limiter", "relay", "deadzone", "quantizer"), "", "it is not linear"),
 )
+
+
+KEYS: dict[str, tuple[str, ...]] = {
+    "node": ("at", "between"),
+    "nodes": ("between", "at"),
+    "ends": ("between",),
+    "c": ("b",),
+    "d": ("b",),
+    "damping": ("b", "eta_s"),
+    "stiffness": ("k",),
+    "mass": ("m",),
+    "inertia": ("J",),
+    "length": ("l",),
+    "density": ("rho",),
+    "f": ("omega", "omega_p", "tau"),
+    "f_0": ("omega", "omega_p"),
+    "w": ("omega", "omega_p"),
+    "frequency": ("omega", "omega_p"),
+    "tau": ("T",),
+    "T_d": ("T",),
+    "K": ("k_p",),
+    "M": ("tau",),
+    "F": ("f",),
+    "value": ("f", "tau", "v", "i"),
+}
+"""Keys of an element or a block as others call them, and as they are called here."""
+
+
+def key_meant(word: str, known: Iterable[str]) -> str | None:
+    """Return which of the known keys an unknown one means, None where that is not plain.
+
+    Examples
+    --------
+    >>> key_meant("c", ("between", "b")), key_meant("Kp", ("k_p", "k_i")), key_meant("x", ("k",))
+    ('b', 'k_p', None)
+    """
+    known = list(known)
+    alike = [k for k in known if k.replace("_", "").lower() == word.replace("_", "").lower()]
+    return next((k for k in (*alike, *KEYS.get(word, ())) if k in known), None)
 
 
 def thing(word: str) -> Thing | None:

@@ -31,7 +31,7 @@ from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import read_entries, signed_number
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue, parse_with_recovery, read
+from symflex.model.spec import ArrayValue, StringValue, parse_with_recovery, read
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 NESTING_LIMIT = 8
 DECLARATION = "symflex"
+RATIO = "tf"
+"""The type of a block that has a numerator, or is written as a formula."""
 ALLOW_HINT = "--allow-outside FOLDER, in Python allow_outside, lets model blocks read another folder"
 BLOCK_LIMIT = 100
 """``model`` blocks with those inside them: files of two blocks each would double them at every level."""
@@ -102,21 +104,30 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
     what = f"block '{entry.key}'"
     if not reader.name(entry, "a block", RESERVED):
         return None
+    if isinstance(entry.value, StringValue):
+        formula = reader.expression(entry.value, what)
+        if formula is None:
+            return None
+        ratio = (("num", formula), ("den", signed_number(Fraction(1))))
+        return PlacedBlock(entry.key, BLOCKS[RATIO], ratio, span=entry.key_span)
     table = reader.table(entry, what, 'for instance { type = "integrator" }')
     if table is None:
         return None
-    types = ", ".join((*BLOCKS, MODEL_BLOCK))
-    kind = reader.needed(table, "type", entry, f"{what} has no type", f"block types: {types}")
-    text = reader.string(kind, f"type of {what}") if kind else None
-    if text is None:
-        return None
-    if text.value == MODEL_BLOCK:
-        return _read_model_block(reader, entry, table, origin)
-    block = BLOCKS.get(text.value)
-    if block is None:
-        hint = hint_of_type(text.value, (*BLOCKS, MODEL_BLOCK), ELEMENTS, "an element, of [elements]")
-        reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint or f"types: {types}")
-        return None
+    block = BLOCKS[RATIO]
+    if table.get("type") is not None or table.get("num") is None:
+        types = ", ".join((*BLOCKS, MODEL_BLOCK))
+        kind = reader.needed(table, "type", entry, f"{what} has no type", f"block types: {types}")
+        text = reader.string(kind, f"type of {what}") if kind else None
+        if text is None:
+            return None
+        if text.value == MODEL_BLOCK:
+            return _read_model_block(reader, entry, table, origin)
+        if text.value not in BLOCKS:
+            hint = hint_of_type(text.value, (*BLOCKS, MODEL_BLOCK), ELEMENTS, "an element, of [elements]")
+            message = f"unknown block type '{text.value[:60]}'"
+            reader.note("SF216", message, text.span, hint or f"types: {types}")
+            return None
+        block = BLOCKS[text.value]
     values = _read_values(reader, entry, table, block)
     if values is not None and block.kernel_time and is_number(lower(values[0][1]), 0):
         # Without dead time it is rational: a lag of no time.
@@ -127,9 +138,8 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
 def _read_values(
     reader: Reader, entry: KeyValue, table: TableValue, block: Block
 ) -> tuple[tuple[str, Expression], ...] | None:
-    reader.keys(
-        table, ("type", "doc", *(p.name for p in block.parameters)), f"{block.type_name} '{entry.key}'"
-    )
+    keys = ("type", "doc", *(p.name for p in block.parameters))
+    meant = reader.keys(table, keys, f"{block.type_name} '{entry.key}'")
     values: list[tuple[str, Expression]] = []
     complete = True
     is_matrix = block.type_name == "ss"
@@ -147,14 +157,11 @@ def _read_values(
         elif parameter.default is not None:
             expression = signed_number(Fraction(parameter.default))
         else:
-            names = ", ".join(p.name for p in block.parameters)
-            reader.note(
-                "SF214",
-                f"{block.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
-                entry.key_span,
-                f"parameters of {block.type_name}: {names}",
-            )
             expression = None
+            names = ", ".join(p.name for p in block.parameters)
+            message = f"{block.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}"
+            if parameter.name not in meant:
+                reader.note("SF214", message, entry.key_span, f"parameters of {block.type_name}: {names}")
         if expression is None:
             complete = False
         else:

@@ -123,10 +123,10 @@ def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
     keys = [key for p in element.ports for key in (p.name, p.pair) if key]
     keys += [p.name for p in element.parameters]
     keys += [c.name for c in element.choices]
-    reader.keys(table, ("type", *keys, "latex", "doc"), f"{element.type_name} '{entry.key}'")
-    nodes = [(port, _references(reader, table, port, entry, element)) for port in element.ports]
+    meant = reader.keys(table, ("type", *keys, "latex", "doc"), f"{element.type_name} '{entry.key}'")
+    nodes = [(port, _references(reader, table, port, entry, element, meant)) for port in element.ports]
     choices = _choices(reader, table, entry, element)
-    values = None if choices is None else _values(reader, table, entry, element, dict(choices))
+    values = None if choices is None else _values(reader, table, entry, element, dict(choices), meant)
     if any(references is None for _, references in nodes):
         return None
     if all(r.is_ground for _, references in nodes for r in references or ()):
@@ -166,9 +166,17 @@ def _choices(
 
 
 def _values(
-    reader: Reader, table: TableValue, entry: KeyValue, element: Element, choices: Mapping[str, str]
+    reader: Reader,
+    table: TableValue,
+    entry: KeyValue,
+    element: Element,
+    choices: Mapping[str, str],
+    meant: frozenset[str],
 ) -> tuple[tuple[str, Expression], ...] | None:
-    """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
+    """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong.
+
+    Nothing more is said of what a wrong key plainly meant.
+    """
     who = f"{element.type_name} '{entry.key}'"
     given: dict[str, Expression] = {}
     complete = True
@@ -207,7 +215,7 @@ def _values(
             given_of = [p for p in with_it if table.get(p.name) is not None]
             left = [p for p in with_it if given_of and not any(map(table.get, (p.name, *p.of)))]
             missing = left[0] if left else parameter
-            if missing not in said:
+            if missing not in said and missing.name not in meant:
                 said.append(missing)
                 reader.note(
                     "SF214",
@@ -246,7 +254,7 @@ def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element
 
 
 def _references(
-    reader: Reader, table: TableValue, port: Port, entry: KeyValue, element: Element
+    reader: Reader, table: TableValue, port: Port, entry: KeyValue, element: Element, meant: frozenset[str]
 ) -> tuple[NodeReference, ...] | None:
     what = f"{port.name} of {element.type_name} '{entry.key}'"
     found, wanted = table.get(port.name), port.terminals
@@ -260,6 +268,8 @@ def _references(
     if found is None:
         if port.default is not None:
             return tuple(NodeReference(n) for n in port.default)
+        if port.name in meant:
+            return None
         ports = ", ".join(p.name for p in element.ports)
         reader.note(
             "SF217",

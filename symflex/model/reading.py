@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
+from symflex.library.words import key_meant
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, name_hint, parse_quantity
 
@@ -106,19 +107,26 @@ class Reader:
         self.misfit(f"{what} must be a table", entry.value, hint)
         return None
 
-    def keys(self, table: TableValue, allowed: Iterable[str], what: str, example: str = "") -> None:
-        """Note every key that is not allowed; an example shows what they are for."""
+    def keys(self, table: TableValue, allowed: Iterable[str], what: str, example: str = "") -> frozenset[str]:
+        """Note every key that is not allowed, and return those plainly meant by them.
+
+        An example shows what the keys are for.
+        """
         known = tuple(allowed)
+        absent = [k for k in known if table.get(k) is None]
+        found: set[str] = set()
         for entry in table.entries:
             if entry.key not in known:
-                hint = nearest(entry.key, known) or "; ".join(
-                    filter(None, ("known keys: " + ", ".join(known), example))
-                )
+                meant = key_meant(entry.key, absent)
+                found |= {meant} if meant else set()
+                hint = f"write {meant}" if meant else nearest(entry.key, known)
+                hint = hint or "; ".join(filter(None, ("known keys: " + ", ".join(known), example)))
                 if entry.key in LOSS_WORDS and "eta_s" in known:
                     hint = "a loss factor is 'eta_s'"
                 elif entry.key == "matrices":
                     hint = "Python's symflex.from_matrices(M=..., D=..., K=...) makes a model of matrices"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
+        return frozenset(found)
 
     def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:
         """Tell whether the entry's key is a name; ``reserved`` says why some are taken."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import symflex
-from symflex import pipeline
+from symflex import pipeline, transfer
 from symflex.cli import run
 from symflex.errors import SpecError
 
@@ -149,3 +149,40 @@ def test_a_report_of_a_folder_follows_no_link_out_of_it(place, beside, capsys):
     (place / "work" / "link.toml").symlink_to(beside)
     assert run(["report", ".", "-o", "../report", "--no-pdf", "-j", "1"]) == 2
     assert "leads out of the folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        '"K*s/(s + 2)"',
+        '{ num = "K*s", den = [1, 2] }',
+        '{ num = [1, 0], den = "(s + 2)/K" }',
+        '{ type = "tf", num = "K*s", den = "s + 2" }',
+    ],
+)
+def test_a_block_is_a_formula_or_a_ratio_without_a_type(written):
+    text = f"""symflex = 1
+parameters.K = 3
+blocks.G = {written}
+signals.y = "G*r"
+inputs.r = {{}}
+outputs.Y = "y"
+"""
+    (function,) = pipeline.derive_all(pipeline.loads(text))
+    assert transfer.bind(function)(4j) == pytest.approx(12j / (2 + 4j), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("block", "said"),
+    [
+        ('{ type = "delay", tau = 1 }', "write T"),
+        ('{ type = "pid", Kp = 1 }', "write k_p"),
+        ('{ type = "low_pass", f = "5 Hz", zeta = 1 }', "write omega"),
+    ],
+)
+def test_a_key_that_is_called_otherwise_elsewhere_is_one_problem(block, said):
+    with pytest.raises(SpecError) as caught:
+        pipeline.loads(
+            f'symflex = 1\nblocks.G = {block}\nsignals.y = "G*r"\ninputs.r = {{}}\noutputs.Y = "y"\n'
+        )
+    assert [(d.code, d.hint) for d in caught.value.diagnostics] == [("SF207", said)]
