@@ -172,6 +172,8 @@ KEYS: dict[str, tuple[str, ...]] = {
     "T_d": ("T",),
     "K": ("k_p",),
     "M": ("tau",),
+    "position": ("displacement",),
+    "speed": ("velocity",),
     "F": ("f",),
     "value": ("f", "tau", "v", "i"),
 }

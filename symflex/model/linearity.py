@@ -25,7 +25,7 @@ from symflex.expressions import (
     names,
     names_among,
 )
-from symflex.model.scope import outside, without_point
+from symflex.model.scope import IN_TIME, outside, without_point
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -47,6 +47,7 @@ FUNCTION_HINT = "functions of s enter through [fields], through distributed elem
 NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
+OPERATORS = frozenset("d der ddt diff dot deriv derivative velocity int integral integrate".split())
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 RATIO = "a quotient of two is a transfer function: make the denominator an input, and the numerator an output"
 
@@ -265,7 +266,7 @@ def _strongest(degrees: Iterable[Degree]) -> Degree:
 
 def _derivative(span: Span | None) -> Diagnostic:
     message = "only an unknown of [fields] has a derivative along x"
-    return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
+    return Diagnostic("SF223", message, span, IN_TIME)
 
 
 def _not_along(call: Call, scope: ModelScope) -> Diagnostic:
@@ -288,8 +289,11 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
     if meanings:
         message = f"'{call.name}' is {meanings[0].described}, not a function"
         hint = f"write '{call.name}*(...)' to multiply"
-        hint += "; a derivative in time is written with s: s*x" if call.name == "d" else ""
+        hint += f"; {IN_TIME}" if call.name == "d" else ""
         return Diagnostic("SF210", message, call.span, hint)
+    if call.name.lower() in OPERATORS:
+        hint = f"{IN_TIME}, and an integral x/s"
+        return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)
     if call.name.lower() in NONLINEAR:
         return Diagnostic("SF222", f"{call.name} is not linear", call.span, LINEARISE)
     hint = nearest(call.name, [*FUNCTIONS, *scope.unknowns]) or "functions: " + ", ".join(FUNCTIONS)

@@ -54,6 +54,7 @@ PORTS = {name for element in ELEMENTS.values() for p in element.ports for name i
     *("node", "nodes", "pins", "ends")
 }
 """Where elements have their nodes, and what else people call it."""
+EXAMPLE = 'for instance { force = "x_act" }, or {} for a free signal'
 TYPES_HINT = "'symflex elements' lists the types"
 
 
@@ -378,10 +379,10 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     what = f"input '{entry.key}'"
     if not reader.name(entry, "an input", RESERVED):
         return None
-    table = reader.table(entry, what, 'for instance { force = "x_act" }, or {} for a free signal')
+    table = reader.table(entry, what, EXAMPLE)
     if table is None:
         return None
-    reader.keys(table, (*INPUT_KINDS, "unit", "latex", "doc"), what)
+    reader.keys(table, (*INPUT_KINDS, "unit", "latex", "doc"), what, EXAMPLE)
     label = read_label(reader, table, what)
     kinds = [e for e in table.entries if e.key in INPUT_KINDS]
     if len(kinds) > 1:

@@ -42,6 +42,7 @@ RESERVED: dict[str, str] = {
     "ground": "it is the reference node",
 }
 """Names that have a meaning of their own, and which."""
+IN_TIME = "a derivative in time is written with s: s*x"
 WHERE_J = (
     "j, with j^2 = -1, is for loss factors such as 'k*(1 + j*eta)': it is allowed in values of elements "
     "(not lengths), in definitions and in [fields]; for j*omega write s"
@@ -152,8 +153,9 @@ class ModelScope:
             return WHERE_J
         if name in IMAGINARY_NAMES:
             return f"if it is meant, {IMAGINARY_UNIT}"
-        if name == "dt" or (name[:1] == "d" and name[1:] in self.meanings):
-            return "a derivative in time is written with s: s*x"
+        moving = name.removesuffix("dot").removesuffix("d").rstrip("_") if name.endswith("dot") else name[1:]
+        if name == "dt" or (moving in self.meanings and (name[0] == "d" or name.endswith("dot"))):
+            return IN_TIME
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:
