@@ -577,7 +577,9 @@ def _inside(factor: Expression) -> tuple[Expression, ...]:
 
 
 MOST_WAYS = 16
-"""Ways to write factors by the law of a wavenumber that are made, of which the two shortest are arranged."""
+"""Ways to write factors by the law of a wavenumber that are made."""
+ARRANGED = 4
+"""The shortest of them: their sums are arranged, and what takes fewest characters is printed."""
 
 
 def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:
@@ -607,8 +609,9 @@ def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:
         for (factor, exponent), more in zip(value.factors, chosen, strict=True):
             found = found * put(factor, more) ** exponent
         alone = next((e for f, e in found.factors if f == generator), 0)
-        made.append(found / one ** int(alone / degree))
-    return sorted(made, key=_symbols)[:2]
+        found = found / one ** int(alone / degree)
+        made += [found, *(v for v in (found / one, found * one) if _symbols(v) < _symbols(found) - 1)]
+    return sorted(made, key=_symbols)[:ARRANGED]
 
 
 def _symbols(value: Factored) -> int:
