@@ -125,7 +125,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
         terms = _expanded_terms(assemble_sparse(model), wanted[0])
         if terms > MOST_PRODUCTS:
             message = f"the closed form is too large: its determinant would have {_some(terms)} terms"
-            hint = "roots, plots, sweeps, stability and exports do not need it; or split the model"
+            hint = "split the model; roots, plots, sweeps, stability and exports do not need it"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
     return _derive_expanded(model, wanted)
 
