@@ -161,7 +161,7 @@ def alone(element: Element) -> str:
 {declared} = {{ {values} }}
 {rest}
 outputs = {{ y = "{output}" }}
-elements = {{ {element.type_name} = {{ {", ".join(keys)} }} }}
+elements = {{ {element.type_name.replace("_", "")} = {{ {", ".join(keys)} }} }}
 """
 
 
