@@ -248,7 +248,7 @@ def is_large_network(model: Model) -> bool:
 
 
 def _some(terms: float) -> str:
-    return f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
+    return f"about {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
 
 
 def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:
