@@ -72,7 +72,7 @@ SHAPED_MODES: Final = {
     "help": "Shape the N lowest modes.",
 }
 MOST_DIGITS: Final = 10_000
-JOINT: Final = {"help": "No longer changes anything: shapers of several modes are convolved."}
+JOINT: Final = {"help": "Has no effect any more: shapers of several modes are convolved."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
 WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5 mm, 170 mm or a number in mm."}
@@ -113,7 +113,7 @@ class DeriveOptions:
         choices=REPRESENTATIONS,
         **SHOWN,
         help="expanded: quotients of polynomials; nested: straight-line programs of named sub-impedances; "
-        "auto: nested, with a note, where expansion would explode.",
+        "auto: nested, with a note, if expansion would be too large.",
     )
     as_json: bool = option(False, "--json", help="Same as --format json.")
     digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of the form zpk.")

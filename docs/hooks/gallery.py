@@ -114,7 +114,8 @@ def on_page_markdown(markdown: str, **_: object) -> str:
         markdown = SPECIFICATION.sub(
             lambda match: f"{match[0]}\n\n{drawing_html(match[1], match[2])}\n", markdown
         )
-    markdown = INLINE.sub(lambda match: typeset(match[1], is_display=False), markdown)
+    # Markdown would take <math> at the start of a line for a paragraph of its own.
+    markdown = INLINE.sub(lambda match: f"<span>{typeset(match[1], is_display=False)}</span>", markdown)
     return FORMULA.sub(lambda match: TYPESET[match[1]](match[2]), markdown)
 
 
@@ -160,7 +161,7 @@ def alone(element: Element) -> str:
 {declared} = {{ {values} }}
 {rest}
 outputs = {{ y = "{output}" }}
-elements = {{ {element.type_name} = {{ {", ".join(keys)} }} }}
+elements = {{ {element.type_name.replace("_", "")} = {{ {", ".join(keys)} }} }}
 """
 
 

@@ -77,7 +77,7 @@ class Analyses(Plotted):
     def step_info(self, digits: int = 12) -> StepInfo | None:
         r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
 
-        It is proved that no later peak is higher, and that no later crossing of a level follows. The result
+        It is proved that no later peak is higher, and that no level is crossed again later. The result
         is None if the response does not come to rest, comes to rest at 0, jumps after delays, or is not
         proved.
 
@@ -253,7 +253,7 @@ class Analyses(Plotted):
         Raises
         ------
         BudgetError
-            SF505, SF506 if only roots at 0 were found of a distributed system.
+            SF505, SF506 if only roots at 0 were found for a distributed system.
         UsageError
             SF902 for more than one choice, or one that is impossible.
 

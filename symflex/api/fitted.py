@@ -47,7 +47,7 @@ class Fit:
 
     @property
     def standard_errors(self) -> Resonances:
-        """The standard error of each of them, in the same shapes; 0 for what was not fitted."""
+        """Standard errors of :attr:`resonances`, in the same shapes; 0 for what was not fitted."""
         return self.found.standard_errors()
 
     @property
@@ -57,9 +57,9 @@ class Fit:
 
     @property
     def is_minimum_phase(self) -> tuple[bool, ...]:
-        """Whether a minimum-phase function has the magnitude and phase, for each response.
+        """Whether a minimum-phase function has the measured magnitude and phase, for each response.
 
-        False too where the data do not tell; ``found.phase_tests`` has the three verdicts.
+        Also False if the data do not decide it; ``found.phase_tests`` has the three verdicts.
         """
         return tuple(test.is_minimum_phase for test in self.found.phase_tests)
 

@@ -373,7 +373,7 @@ class Model:
         Raises
         ------
         UsageError
-            SF902 no such parameter, SF804 no range, SF806 no straight line in the gain.
+            SF902 no such parameter, SF804 no range, SF806 no value, or no loop linear in the gain.
         ModelError
             SF801 no pole depends on the parameter.
         UncertifiedError

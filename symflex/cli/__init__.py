@@ -30,7 +30,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "stability": ("analyses", "Print the gains for which a feedback loop is stable."),
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
     "draw": ("plot", "Draw the model as a textbook would."),
-    "plot": ("plot", "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot."),
+    "plot": ("plot", "Draw a Bode plot, a pole-zero plot, mode shapes, a root locus or a Nyquist plot."),
     "export": ("formulas", "Write numeric code or LaTeX."),
     "audit": ("formulas", "Compare printed formulas with derived ones."),
     "fit": ("measured", "Fit resonances to measured frequency responses."),

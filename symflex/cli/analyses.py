@@ -161,7 +161,7 @@ BUDGET_CODE = "SF5"
 def sweep(spec: Specification, given: SweepOptions) -> int:
     """Solve SPEC at many values of its parameters.
 
-    Computes poles, zeros, a response or stability margins. Several --over make a grid; with --monte-carlo,
+    It computes poles, zeros, a response or stability margins. Several --over make a grid; with --monte-carlo,
     ranges without a count are sampled as a Latin hypercube. Every root is proved at every point, as by
     'symflex roots', and written as the nearest double with a radius; modes keep their names along the sweep.
     The result does not depend on the number of workers.

@@ -112,7 +112,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
-    By default, all of them. Strings in JSON use the specification's own expression grammar.
+    Without --tf, all are printed. Strings in JSON follow the expression grammar of specifications.
     """
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print

@@ -42,7 +42,7 @@ NAMED = 12
 
 FOLLOWED = (
     "Waves are followed piece by piece along members whose coefficients vary. The faster they oscillate, the "
-    "more pieces there are; beyond some thousand waves, values are NaN."
+    "more pieces there are; beyond a few thousand waves, values are NaN."
 )
 """What is said of functions of members that vary along x."""
 

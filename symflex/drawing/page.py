@@ -22,7 +22,7 @@ TITLED: Final = ("element", "input", "output", "block", "field")
 """Kinds of parts whose names an SVG shows."""
 _TITLED: Final = re.compile(rf'<g id="({"|".join(TITLED)})\.(\w+)\.\d+">')
 _FAMILY: Final = re.compile("font-family: 'STIXGeneral'")
-SERIFS: Final = "'STIX Two Text', 'Times New Roman', Times, serif"
+SERIFS: Final = "'STIX Two Text', 'Times New Roman', 'Liberation Serif', 'Nimbus Roman', Times, serif"
 """Fonts with letters nearly as wide, for readers without STIX."""
 MARGIN: Final = 4.0
 BETWEEN: Final = 11.0

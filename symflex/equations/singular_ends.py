@@ -135,7 +135,7 @@ def _values(first: Sequence[Sequence[Factored]], powers: Sequence[int]) -> Matri
             continue
         forms[i] = {i: exponent + 1}
         if powers[i] or len(form) > 1 or any(c.numerator().depends_on(LAPLACE) for c in form.values()):
-            message = "inertia does not vanish with the stiffness, and slopes go like a logarithm"
+            message = "inertia does not vanish with the stiffness, so slopes grow like a logarithm"
             raise UnsolvedEndError(message)
         # What would make a logarithm is zero.
         held.update(form)

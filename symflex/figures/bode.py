@@ -140,7 +140,7 @@ def said_of_grid(found: PoleZeroMap) -> str:
     certificate = found.certificate
     if not certificate.is_exceeded:
         return ""
-    return f"{found.tf}: {certificate.reason}; drawn where its values turn, without knowing all roots"
+    return f"{found.tf}: {certificate.reason}; drawn from its values, because not all roots are known"
 
 
 def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Figure | None:

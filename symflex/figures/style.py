@@ -187,16 +187,17 @@ def write_titles(figure: Figure, titles: Sequence[Sequence[str]], above: float, 
 
 
 def title_lines(title: str | None, width: float) -> list[str]:
-    """Return a title broken to a width [inches], without the characters that do not print.
+    """Return a title broken to a width [inches], but not at equals signs, without what does not print.
 
     Examples
     --------
-    >>> title_lines("Two masses joined by a flexible transmission", 1.5)
-    ['Two masses joined by a', 'flexible transmission']
+    >>> title_lines("Two masses, one pole at s = 0", 1.5)
+    ['Two masses, one pole at', 's = 0']
     """
     words = " ".join((title or "").split())
-    printed = "".join(c for c in words if c.isprintable())
-    return textwrap.wrap(printed, max(8, int(width * LETTERS_PER_INCH)), max_lines=4, placeholder=" ...")
+    printed = "".join(c for c in words if c.isprintable()).replace(" = ", "\xa0=\xa0")
+    lines = textwrap.wrap(printed, max(8, int(width * LETTERS_PER_INCH)), max_lines=4, placeholder=" ...")
+    return [line.replace("\xa0", " ") for line in lines]
 
 
 _PARSER: Final = MathTextParser("path")

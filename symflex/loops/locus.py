@@ -163,7 +163,7 @@ def _traceable(loop: AnyLoop, roots: Sequence[Root]) -> Traceable:
             continue
     message = "poles of the network cannot be followed as far as they are marked"
     if not largest:
-        message = "no pole of the network but at s = 0 is known at the ends of the range"
+        message = "the only poles known at the ends of the range are at s = 0"
     raise UncertifiedError(Diagnostic("SF807", message, None, "trace fewer modes: --modes N"))
 
 

@@ -421,7 +421,7 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
         yield _margins(found)
     if found.bandwidth is not None:
         said = 2 * INDENT + bandwidth_text(found.gain, found.bandwidth)
-        yield Passage([f"{INDENT}bandwidth, where the gain may still double (6 dB)", said])
+        yield Passage([f"{INDENT}bandwidth with a gain margin of 6 dB", said])
     if found.boundaries:
         yield Passage([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
 

@@ -297,10 +297,10 @@ class DimensionSystem:
                 without = f"give '{name}' in '1/s'" if is_frequency else "give it without turns"
                 if use.angular:
                     message = f"'{name}', in '{unit}', is read in radians here: as {shown}"
-                    hint = f"write {shown} to say so, or {without} where no 2*pi is meant"
+                    hint = f"write {shown} to make that clear, or {without} if no 2*pi is meant"
                 else:
                     message = f"'{name}', in '{unit}', is read in cycles here: without 2*pi"
-                    hint = f"write {shown} where radians are meant; {without} to say that none are"
+                    hint = f"write {shown} if radians are meant; if not, {without} to make that clear"
                 yield Diagnostic("SF655", message, use.span, hint, "warning")
 
     def measure(self, expression: Expression) -> Measure:

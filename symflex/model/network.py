@@ -598,7 +598,7 @@ def _mixed(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) 
         if kinds[0] != kinds[1]:
             names = f"'{other.reference.node}' and '{attachment.reference.node}'"
             words = f"{WORDS[kinds[0]]} and {WORDS[kinds[1]]}"
-            message = f"{names} of {attachment.who} are {words}, and a pair is of one kind"
+            message = f"{names} of {attachment.who} are {words}, but a pair must be of one kind"
             yield Diagnostic("SF220", message, attachment.reference.span)
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 
-NAMED = "in a formula a value with a unit is a name: declare it in [parameters]"
+NAMED = "a formula cannot hold a value with a unit: declare it in [parameters]"
 LOSS_WORDS = ("loss", "loss_factor", "tan_delta", "damping", "structural", "g")
 """What a key for a loss factor is called elsewhere."""
 SHOWN = 40

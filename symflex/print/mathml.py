@@ -208,8 +208,9 @@ def _joined(
 
 
 def _primed(name: str, order: int) -> str:
-    counted = row(operator("("), numeral(str(order)), operator(")"))
-    return MATHML.power.format(name, operator("′" * order) if order <= MOST_PRIMES else counted)
+    if order <= MOST_PRIMES:
+        return row(name, operator("′″‴"[order - 1]))  # high enough in fonts: not raised
+    return MATHML.power.format(name, row(operator("("), numeral(str(order)), operator(")")))
 
 
 def _scientific(mantissa: str, exponent: str) -> str:

@@ -215,7 +215,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
             shown += "; all known poles in the right half plane"
         lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if found.is_default_region:
-        lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
+        lines.append(f"{INDENT}this is the default: a distributed system has infinitely many poles")
     for part in found.excluded:
         im = f" +- {part.im:g} j" if part.im else ""
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"

@@ -141,7 +141,7 @@ _Placed = TypeVar("_Placed", Constant, PlacedUnit)
 _Result = tuple[Constant, PlacedUnit]
 
 NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
-_ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
+_ONE_NUMBER: Final = "write the number before the unit; a unit holds no number except 1 in '1/s'"
 _NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
 NEARER: Final = "choose a unit in which the number is closer to 1"
 # Stands at no place, so that a unit alone never seems to touch it.
@@ -220,7 +220,7 @@ def _syntax_hint(before: str, after: str, found: str) -> str | None:
             return "a quantity begins with a number, as in '1 kg'"
         constant = before[:-1].strip(SPACES)
         if SIGNED_NUMBER.fullmatch(constant) and before[-1] in "*/":
-            return f"a space parts number and unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
+            return f"write a space before the unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
     if re.match(NUMBER, found):
         return _ONE_NUMBER
     after = after[len(found) :]

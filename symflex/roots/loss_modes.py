@@ -57,7 +57,7 @@ NO_STABILITY: Final = StabilityVerdict(
     reason="loss factors hold only on s = j*omega and do not decide stability",
 )
 FOLLOWED: Final = "Newton steps from roots without losses"
-NOT_COUNTED: Final = "each root is proved; that no other lies between them is not"
+NOT_COUNTED: Final = "each root is proved, but not that no other lies between them"
 FURTHER: Final = 3
 """Modes without losses beyond those wanted: the circle that is counted lies between two."""
 WIDER: Final = Fraction(5, 4)

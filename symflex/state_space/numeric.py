@@ -280,7 +280,7 @@ def _float(value: Fraction) -> float:
 
 def _zero_denominator() -> ModelError:
     message = "the state equations divide by zero for these values"
-    hint = "a rigid or massless limit has its own equations: bind() first, then state_space()"
+    hint = "for a rigid or massless limit, call bind() first, then state_space()"
     return ModelError(Diagnostic("SF231", message, None, hint))
 
 

@@ -88,8 +88,8 @@ def with_filters_apart(model: Model) -> Model:
 def _opened(expression: Expression, known: Mapping[str, Expression], sizes: Mapping[str, int]) -> Expression:
     used = names_among(expression, known)
     if sum(sizes[name] for name in used) > PARTS_LIMIT:
-        message = f"an expression would have more than {PARTS_LIMIT} parts with its definitions opened"
-        hint = "make a signal of what is used often, which is not opened"
+        message = f"an expression would have more than {PARTS_LIMIT} parts with its definitions inserted"
+        hint = "make a signal of what is used often: signals are not inserted"
         raise BudgetError(Diagnostic("SF501", message, expression.span, hint))
     return substitute(expression, known) if used else expression
 

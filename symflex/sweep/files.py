@@ -272,9 +272,7 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
         fits = name in known and known[name].dims == dims and known[name].values.dtype.kind in kinds
         require(fits, f"'{name[:40]}' is missing, or of another shape or kind")
     words = known["verdict"].values if "verdict" in known else 0
-    require(
-        bool(np.all((words >= 0) & (words < len(VERDICTS)))), "a verdict on stability is none of the known"
-    )
+    require(bool(np.all((words >= 0) & (words < len(VERDICTS)))), "a verdict on stability is not a known one")
     are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
     require(are_swept, "its axes are not parameters, or are empty")
     return found

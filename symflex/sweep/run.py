@@ -210,7 +210,7 @@ def run_sweep(
                 journal.write(chunk, rows)
             shown.add(len(rows["point_status"]))
     except BrokenExecutor as error:
-        hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
+        hint = "there may be too little memory; with -o, the same command continues where this one stopped"
         message = f"a worker stopped before it was done: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
     rows = {name: _stacked([done[i][name] for i in chunks]) for name in done[0]}

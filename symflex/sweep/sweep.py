@@ -224,7 +224,7 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
     found: list[Named] = [
         ("re", own, re, "rad/s", "real part"),
         ("im", own, im, "rad/s", "imaginary part; not negative, conjugates are left out"),
-        ("radius", own, sorted_by_mode(rows["radius"], np.nan), "rad/s", "the true root is no further away"),
+        ("radius", own, sorted_by_mode(rows["radius"], np.nan), "rad/s", "bound on the distance to the root"),
         ("status", own, sorted_by_mode(rows["status"], RootStatus.ABSENT), "", ROOT_STATUS),
         ("multiplicity", own, sorted_by_mode(rows["multiplicity"], 0), "", "multiplicity"),
         ("link", own, sorted_by_mode(names.link, NameOrigin.ABSENT), "", LINKS),

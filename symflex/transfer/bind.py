@@ -408,7 +408,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
             return _derived_with_numbers(tf, exact, degenerate)
         except ModelError as error:
             message = f"a part of {tf.name} is 0/0 or 0 at every s for these values"
-            hint = f"a limit has its own equations ({error.diagnostics[0].message})"
+            hint = f"write the limit as a model of its own ({error.diagnostics[0].message})"
             raise ModelError(Diagnostic("SF231", message, None, hint)) from None
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
@@ -440,7 +440,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
 
 
 def _vanishing(what: str) -> ModelError:
-    hint = "a rigid or massless limit has its own equations"
+    hint = "write a rigid or massless limit as a model of its own"
     return ModelError(Diagnostic("SF231", f"{what} is zero for these values", None, hint))
 
 

@@ -380,8 +380,8 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
         raise ValueError(message)
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
     if tf.is_distributed:
-        message = f"block '{block.name}' stands for a distributed system, whose kernels cannot be taken over"
-        hint = "bring its elements and fields into this file"
+        message = f"block '{block.name}' stands for a distributed system, which no block can hold"
+        hint = "write its elements and fields into this file"
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio
     images = [ring.generator(name) for name in inner.ring.names]

@@ -123,7 +123,7 @@ class KernelReduction:
         clear denominators.
         """
         if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > KERNEL_TERMS:
-            message = f"the closed form comes from one with more than {KERNEL_TERMS} terms in kernels"
+            message = f"the closed form has more than {KERNEL_TERMS} terms before it is reduced"
             hint = "let equal parts share their parameters, or split the model"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
         # Where parameters follow from the wavenumbers, that alone makes equal functions equal.

@@ -325,7 +325,7 @@ class BoundNested:
         return double_value(lambda bits: partial(self.solved, bits=bits), s, 1)
 
     def bits_at(self, s: complex) -> int:
-        """Return how many bits the value needs to be known; other points need as many, or nearly."""
+        """Return how many bits of precision the value needs; other points need about as many."""
         point = acb(s.real, s.imag)
         for bits in precisions(FIRST_BITS, LAST_BITS // 2):
             if self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:

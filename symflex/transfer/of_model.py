@@ -125,7 +125,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
         terms = _expanded_terms(assemble_sparse(model), wanted[0])
         if terms > MOST_PRODUCTS:
             message = f"the closed form is too large: its determinant would have {_some(terms)} terms"
-            hint = "roots, plots, sweeps, stability and exports do not need it; or split the model"
+            hint = "split the model; roots, plots, sweeps, stability and exports do not need it"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
     return _derive_expanded(model, wanted)
 
@@ -248,7 +248,7 @@ def is_large_network(model: Model) -> bool:
 
 
 def _some(terms: float) -> str:
-    return f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
+    return f"about {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
 
 
 def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:

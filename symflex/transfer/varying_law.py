@@ -144,8 +144,8 @@ class PartedLaw:
             elif not any(degree_in(factor, i) for i in moving):
                 divisor = divisor / piece
             else:
-                message = "a coefficient over what holds s and x together is not available yet"
-                hint = "let the loss time be the same all along x, or divide the member where it changes"
+                message = "a coefficient with both s and x in a denominator is not available yet"
+                hint = "use one loss time all along x, or divide the member where it changes"
                 raise ModelError(Diagnostic("SF910", message, None, hint))
         for power, coefficient in by_powers(ring, mixed.expand()).items():
             yield Summand(power, divisor, along * Factored.polynomial(ring, coefficient))

@@ -58,7 +58,7 @@ class NetworkSides:
         try:
             yield
         except (EssentialSingularityError, UndecidedError) as error:
-            message = f"the determinants of {self.bound.name} are not known as far as its poles"
+            message = f"the determinants of {self.bound.name} are not known as far out as its poles"
             hint = "ask for fewer modes"
             raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
 

@@ -255,7 +255,7 @@ def _by_delays(asked: Asked) -> Plan | Refused:
         return Refused()
     laws = [law for law in asked.bound.kernels.dispersions if law.kind == "exponential"]
     if any(polynomial_in_s(law.shift, 1) is None for law in laws):
-        return Refused("what is late changes its form")
+        return Refused("what is delayed changes its form")
     parts = _taken_apart(asked.bound)
     return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
 
@@ -279,7 +279,7 @@ WAYS = (
     Way("partial fractions", _by_partial_fractions),
     Way("echoes", _by_echoes),
     Way("wave echoes", _by_wave_echoes),
-    Way("parts that come later", _by_delays),
+    Way("delayed parts", _by_delays),
     *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),
     Way("estimated modes", _by_estimate),
 )

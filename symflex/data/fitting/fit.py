@@ -486,8 +486,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
-                    f"{pair} lies outside the band measured, at {place:.4g} Hz: "
-                    "the data show its effect, not itself"
+                    f"{pair} lies outside the band measured, at {place:.4g} Hz: the data show only its effect"
                 )
     for line in fit.problem.lines:
         spacing = line.measured.spacing_hz

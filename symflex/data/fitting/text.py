@@ -333,14 +333,12 @@ def _error(error: float) -> str:
 
 
 def _accuracy(fit: ResonanceFit) -> str:
-    words = []
-    size = sqrt(fit.refined.reduced)
-    if _is_scaled(fit):
-        words.append(f"that is {size:.3g} times what coherence explains")
-    words.append("standard errors are scaled to the residual")
+    errors = "standard errors are scaled to the residual"
     if fit.refined.correlation > 1:
-        words.append(f"count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+        errors += f" and count neighbouring lines as correlated (a mean has {_times(fit)} the variance)"
+    if not _is_scaled(fit):
+        return errors
+    return f"that is {sqrt(fit.refined.reduced):.3g} times what coherence explains; {errors}"
 
 
 def _times(fit: ResonanceFit) -> str:
@@ -366,7 +364,7 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     if test.verdict == "nonminimum":
         return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{own}"
     if test.is_minimum_phase:
-        return f"minimum phase: such a function has both, but fitted to the magnitude alone {parts}"
+        return f"minimum phase: such a function fits magnitude and phase; from the magnitude alone, {parts}"
     if test.with_phase is not None:
         return (
             f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "

@@ -364,7 +364,7 @@ def assembled(
     columns = _over_input(_with_frequency(list(columns), file, header, guesses), guesses)
     crossed = next((c for c in columns if CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
     if crossed is not None and not is_asked:
-        message = f"column '{crossed.name[:40]}' is a cross spectrum by its name, which is no response"
+        message = f"column '{crossed.name[:40]}' is named like a cross spectrum, which is not a response"
         hint = "divide it by the spectrum of the input, or say with --columns what the columns are"
         raise DataError(Diagnostic("SF602", message, crossed.span, hint))
     sections = _sections(columns)
@@ -384,7 +384,7 @@ def assembled(
             with np.errstate(all="ignore"):
                 inverse = next((m for m in same if np.allclose(values * m.values, 1, rtol=1e-3)), None)
             if inverse:  # poles of the one are zeros of the other
-                guesses.append(f"'{label[:30]}' is one over '{inverse.label[:30]}', and is left out")
+                guesses.append(f"'{label[:30]}' is the reciprocal of '{inverse.label[:30]}' and is left out")
             elif not any(np.array_equal(values, m.values, equal_nan=True) for m in same):
                 made.append(Assembled(label, lines, values, shares, unit, kept))
     if not made:

@@ -272,8 +272,8 @@ def _skipped(table: TextTable, blocks: Sequence[NumberBlock]) -> list[str]:
         return []
     first = f"line {within[0] + 1} ('{' '.join(table.lines[within[0]].split())[:30]}')"
     if len(within) == 1:
-        return [f"{first} is no row of numbers, and is skipped"]
-    return [f"{len(within)} lines among the numbers or below them are no rows and are skipped: {first}, ..."]
+        return [f"{first} is not a row of numbers and is skipped"]
+    return [f"{len(within)} lines among the numbers or below them are not rows and are skipped: {first}, ..."]
 
 
 def _columns(

@@ -109,13 +109,13 @@ class MeasuredResponse:
         return np.sqrt(share / (2 * (self.averages or 1.0)))
 
     def misfit_db(self, model: npt.NDArray[np.complex128]) -> float:
-        """Return the root mean square of the model's magnitude over that of the data on the lines [dB]."""
+        """Return the rms error of the model's magnitude on the lines [dB]."""
         with np.errstate(divide="ignore"):
             level = 20 * np.log10(np.abs(model / self.values))
         return float(np.sqrt(np.mean(level**2)))
 
     def misfit_degrees(self, model: npt.NDArray[np.complex128]) -> float:
-        """Return the root mean square of the model's phase less that of the data on the lines [deg]."""
+        """Return the rms error of the model's phase on the lines [deg]."""
         return float(np.degrees(np.sqrt(np.mean(np.angle(model / self.values) ** 2))))
 
     def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:

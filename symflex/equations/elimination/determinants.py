@@ -195,7 +195,7 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
         if self._bytes > MEMORY_LIMIT:
             raise _too_large("the determinant has too many minors or terms")
         if self.most is not None and len(value) > self.most:
-            hint = "roots, plots, sweeps, stability and exports do not need it; or split the model"
+            hint = "split the model; roots, plots, sweeps, stability and exports do not need it"
             raise _too_large(f"its determinant would have more than {self.most} terms", hint)
 
     def _expand(self, entries: Mapping[int, fmpz_mpoly], below: int, columns: int) -> fmpz_mpoly:

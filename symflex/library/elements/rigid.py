@@ -233,7 +233,7 @@ class Fixed(Element):
     """
 
     type_name = "fixed"
-    summary = "Support: the node does not move (planar: y, theta, and x in the plane, are 0)"
+    summary = "Support: the node neither moves nor turns"
     ports = (Port("at", 1, "whole", "node that is held, or a component of it", pair="between"),)
     through = ("f", "tau", "f_x", "i")
     passive = Passivity()
@@ -261,7 +261,7 @@ class Slider(Element):
     """
 
     type_name = "slider"
-    summary = "Support: theta = 0, deflections free"
+    summary = "Support: the node moves but does not turn"
     ports = (Port("at", 1, "planar", "node whose slope is held", pair="between"),)
     through = ("tau",)
     passive = Passivity()
@@ -279,7 +279,7 @@ class Pin(Element):
     """
 
     type_name = "pin"
-    summary = "Support: y = 0, and x in the plane, theta free"
+    summary = "Support: the node turns but does not move"
     ports = (Port("at", 1, "planar", "node whose deflection is held", pair="between"),)
     through = ("f",)
     passive = Passivity()

@@ -213,7 +213,7 @@ def _gains(found: StabilityMap) -> tuple[Block, ...]:
         blocks.append(text(f"With {found.gain} = {float(found.nominal):g}: {', '.join(margins)}."))
     if found.bandwidth is not None:
         shown = bandwidth_text(found.gain, found.bandwidth)
-        blocks.append(text(f"Bandwidth, where the gain may still double (6 dB): {shown}."))
+        blocks.append(text(f"Bandwidth with a gain margin of 6 dB: {shown}."))
     return tuple(blocks)
 
 

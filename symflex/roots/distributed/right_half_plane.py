@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 PASSIVE = "passive, nothing supplies energy"
-COMPRESSED = "compressed members supply energy to slow motion only, which has no pole right of the axis"
+COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"
 PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 ACCUMULATING = "poles accumulate in the right half plane"
-DEGENERATE = "a root where wavenumbers meet may be no pole"
+DEGENERATE = "a root where wavenumbers meet may not be a pole"
 NOT_COUNTED = "the poles right of the imaginary axis could not be counted"
 WAVES = 10.0
 """Largest argument of a kernel up to which poles are counted where no end of them is known."""

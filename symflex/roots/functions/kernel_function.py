@@ -277,7 +277,7 @@ class KernelFunction:
                 return bits, values, value
             bits *= 4
         message = f"a part of {self.bound.name} is 0/0 or 0 at every s for these values"
-        hint = "a rigid or massless limit has its own equations"
+        hint = "write a rigid or massless limit as a model of its own"
         raise ModelError(Diagnostic("SF231", message, None, hint))
 
     def _of_one_value(self) -> tuple[Factored, int]:

@@ -128,7 +128,10 @@ def test_json_of_a_distributed_system_is_certified(beam):
 
 
 def test_the_default_region_of_a_distributed_system_is_explained(beam):
-    assert "by default: a distributed system has infinitely many poles" in beam("roots", "beam.toml").out
+    assert (
+        "this is the default: a distributed system has infinitely many poles"
+        in beam("roots", "beam.toml").out
+    )
 
 
 def test_a_budget_is_for_lumped_systems_too(shell):

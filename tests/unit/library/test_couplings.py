@@ -230,5 +230,5 @@ def test_a_pair_is_of_one_kind_and_of_two_nodes_at_most():
     mixed = MOTOR.replace('type = "dc_motor", terminals', 'type = "transformer", ratio = 2, from').replace(
         'shaft = ["r", "st"], R = 3, L = 0.5, k_t = 0.2', 'to = ["r", "v"]'
     )
-    with pytest.raises(SpecError, match="a pair is of one kind"):
+    with pytest.raises(SpecError, match="a pair must be of one kind"):
         values(mixed, "A/U")

@@ -73,7 +73,7 @@ GUESSES = {
     "spectra.csv": "the response is 'Accel' over 'Force'",
     "without_x.lvm": "the frequencies are those that the header gives",
     "empty_memory.csv": "columns '|Z|(ohm)-mem', 'θz(deg)-mem' not used",
-    "both.mpt": "'(Y)/Ohm-1' is one over 'Z', and is left out",
+    "both.mpt": "'(Y)/Ohm-1' is the reciprocal of 'Z' and is left out",
     "wrdata.data": "'v(out)' twice is read as real and imaginary part",
     "one_longer.csv": "line 2 has 5 cells: the first 3 are read",
     "two_unnamed.csv": "column without a name not used",

@@ -73,7 +73,7 @@ LEFT_OUT = {
     "no number": ("7,nan,4", "left out what holds no number, or zero: line 8"),
     "overload": ("7,OVLD,OVLD", "left out what holds no number, or zero: line 8"),
     "zero": ("7,0,0", "left out what holds no number, or zero: line 8"),
-    "empty": ("7,,", "line 8 ('7,,') is no row of numbers, and is skipped"),
+    "empty": ("7,,", "line 8 ('7,,') is not a row of numbers and is skipped"),
     "below zero": ("-7,2,3", "left out negative frequencies: line 8"),
     "twice": ("6,6,-6", "left out what repeats the line before it: line 8"),
     "not in order": ("30,30,-30", "the lines are not in order of frequency, and are sorted"),
