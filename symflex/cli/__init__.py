@@ -44,6 +44,15 @@ COMMANDS: dict[str, tuple[str, str]] = {
 """The module of each, in which its function has its name, and what it does."""
 
 
+MEANT = {
+    **dict.fromkeys(("pole", "poles", "zeros", "eigenvalues", "frequencies"), "roots SPEC"),
+    **dict.fromkeys(("simulate", "ramp", "response", "time"), "respond SPEC"),
+    **dict.fromkeys(("margin", "margins", "stable", "gain"), "stability SPEC --gain K"),
+    **dict.fromkeys(("tf", "formula", "print", "show", "explain"), "derive SPEC"),
+    **dict.fromkeys(("latex", "tex", "numpy", "c", "matlab", "python"), "export SPEC --to TARGET"),
+    **dict.fromkeys(("help", "commands"), "--help"),
+}
+"""What one command is called elsewhere, and what to write here."""
 NO_CACHE = "--no-cache"
 GONE = "symflex no longer caches derivations on disk: leave this option out."
 """The hint for NO_CACHE and the command ``cache``, which earlier versions had."""
@@ -82,7 +91,10 @@ class LazyGroup(click.Group):
             from symflex.model.analysis import FIGURE_KINDS
 
             figure = f"a figure is drawn by: symflex plot SPEC {name}"
-            hint = GONE if name == "cache" else figure if name in FIGURE_KINDS else nearest(name, COMMANDS)
+            hint = GONE if name == "cache" else f"write: symflex {MEANT[name]}" if name in MEANT else ""
+            hint = figure if name in FIGURE_KINDS else hint or nearest(name, COMMANDS) or ""
+            if name.endswith(".toml"):
+                hint = f"the command comes first: symflex derive {name}"
             ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))
         return super().resolve_command(ctx, args)
 

@@ -25,6 +25,16 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
+TARGETS_MEANT = {
+    "python": "numpy",
+    "octave": "matlab",
+    "simulink": "matlab",
+    "tex": "latex",
+    "c++": "c",
+    "ss": "state-space",
+}
+"""Export targets by other names."""
+
 
 @command_of("check", CheckOptions)
 def check(spec: Specification, given: CheckOptions) -> int:
@@ -200,7 +210,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
     from symflex.files.write import check_folder, check_writable, write_atomically
 
     if given.target not in EXPORTERS:
-        hint = nearest(given.target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
+        meant = TARGETS_MEANT.get(given.target.lower(), given.target)
+        hint = nearest(meant, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         wrong = f"there is no export target '{given.target[:64]}'"
         missing = "what to export to is missing: --to TARGET"
         raise UsageError(Diagnostic("SF902", wrong if given.target else missing, None, hint))

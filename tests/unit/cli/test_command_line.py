@@ -189,3 +189,18 @@ def test_a_reader_that_goes_away_is_no_error(words):
 def test_control_characters_of_a_file_do_not_reach_the_terminal(shell):
     (shell.folder / "evil.toml").write_text('symflex = 1\n[parameters]\nm = "2 \\u001b[31mkg"\n')
     assert "\x1b" not in shell("check", "evil.toml").err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["poles", "axis.toml"], "Write: symflex roots SPEC"),
+        (["help"], "Write: symflex --help"),
+        (["axis.toml"], "The command comes first: symflex derive axis.toml"),
+        (["bode", "axis.toml"], "symflex plot SPEC bode"),
+    ],
+)
+def test_a_command_by_another_name_is_told_its_own(arguments, said, shell):
+    done = shell(*arguments)
+    assert done.code == 2
+    assert said in done.err
