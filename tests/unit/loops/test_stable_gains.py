@@ -331,3 +331,22 @@ def test_two_parallel_leaves_with_losses_are_stable():
     found = model.stability("b")
     assert counts(found) == [(0, 0)]
     assert found.is_stable is True
+
+
+@pytest.mark.slow
+def test_a_damper_at_a_node_of_a_high_mode_is_not_called_stable():
+    # sin(50 pi x/l) vanishes at l/50, where the damper is: this mode, at 2500 Hz, is undamped and seen.
+    string = {"type": "string", "N": "100 N", "rhoA": "10 g/m"}
+    model = symflex.Model(
+        parameters={"K": "0.3 N*s/m"},
+        elements={
+            "short": {**string, "between": ["ground", "p"], "l": "2 cm"},
+            "long": {**string, "between": ["p", "q"], "l": "98 cm"},
+            "loss": {"type": "damper", "between": ["p", "ground"], "b": "K"},
+        },
+        inputs={"Z": {"displacement": "q"}},
+        outputs={"R": "Z.f"},
+    )
+    found = model.stability("K")
+    assert found.is_stable is None
+    assert found.to_json_dict()["verdict"]["right_half_plane"] == 0
