@@ -29,6 +29,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
+from symflex.roots.root import count_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -162,10 +163,11 @@ class DistributedFactors:
     def _without_end(self) -> float:
         return self._function(self.limits[1]).frequency_of(WAVES) if self.up_to is None else self.up_to
 
-    def _product(self, gain: Fraction) -> Factored:
+    def _product(self, gain: Fraction, *, hidden: bool = True) -> Factored:
         total = Factored.number(self.bound.ratio.ring, 1)
         for factor in self.factors:
-            total = total * factor.at(gain) ** factor.multiplicity
+            if hidden or not factor.is_hidden:
+                total = total * factor.at(gain) ** factor.multiplicity
         return total
 
     def _function(self, gain: Fraction) -> KernelFunction:
@@ -202,13 +204,14 @@ class DistributedFactors:
         SF802 when a pole lies on the path of the count.
         """
         side = Side(self.bound, self._product(gain), COUNT_DIGITS)
-        zeros = sum(root.multiplicity for root in side.roots)
-        if not all(root.certified for root in side.roots):
+        # Where wavenumbers vanish, what cancelled may have a root at 0 that is no pole.
+        origin = Side(self.bound, self._product(gain, hidden=False), COUNT_DIGITS)
+        seen = [root for root in origin.roots if root.on_imaginary_axis or not origin.is_finite]
+        zeros = count_roots(seen)
+        if not all(root.certified for root in seen):
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
         if side.is_finite:
-            return PoleCount(
-                count_right(side.roots), sum(r.multiplicity for r in side.roots if r.on_imaginary_axis)
-            )
+            return PoleCount(count_right(side.roots), zeros)
         if self.passive is not None and self.passive.rests:
             return PoleCount(0, zeros)
         for nudge in NUDGES:

@@ -116,8 +116,10 @@ def find_stable_gains(
         is_narrowed=along is not None and along.is_narrowed,
     )
     is_alone = found.nominal_interval is None and (along is None or along.is_narrowed)
-    # Terms that do not outweigh one another for all gains may do so for one.
-    if nominal is not None and (is_alone or NEUTRAL in found.reasons):
+    # Terms that do not outweigh one another for all gains may do so for one; and where a passive loop is
+    # counted up to a frequency, poles beyond it may lie on the axis.
+    is_open = found.is_passive and not is_complete
+    if nominal is not None and (is_alone or is_open or NEUTRAL in found.reasons):
         found = replace(found, at_nominal=closed_loop_roots(loop, nominal).verdict)
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()

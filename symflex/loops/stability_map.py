@@ -199,9 +199,10 @@ class StabilityMap:
         if right:
             return StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
         where = f"{_poles(axis)} on the imaginary axis" if axis else ""
-        if beyond and not self.is_passive:
+        if beyond and not (self.is_passive and axis):
             reason = f"{where}; {beyond}" if where else beyond
-            return self.at_nominal or StabilityVerdict("unknown", None, False, reason)
+            right_of_it = 0 if self.is_passive else None
+            return self.at_nominal or StabilityVerdict("unknown", right_of_it, False, reason)
         return StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
 
     @property

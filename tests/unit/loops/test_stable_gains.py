@@ -310,3 +310,43 @@ spring = { type = "torsion_spring", between = ["phi", "ground"], k = "k_0 - K" }
     found = symflex.loads(text).stability("K", (0, 20)).proved
     assert [i.poles.right for i in found.intervals] == [0, 1]
     assert abs(float(found.boundaries[0].gain.mid()) - 4) < 1e-9
+
+
+@pytest.mark.slow
+def test_two_parallel_leaves_with_losses_are_stable():
+    # What two equal leaves hide is cosh^2 + cos^2 - 2, which is 0 where s is, but no pole is there.
+    leaf = {"type": "beam", "between": ["ground", "x"], "l": "60 mm", "eta": "3 us"}
+    leaf |= {"EI": "2 N*m^2", "rhoA": "0.2 kg/m"}
+    model = symflex.Model(
+        parameters={"b": "3 N*s/m"},
+        elements={
+            "left": leaf,
+            "right": leaf,
+            "guide": {"type": "slider", "at": "x"},
+            "loss": {"type": "damper", "between": ["x", "ground"], "b": "b"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"X": "x"},
+    )
+    found = model.stability("b")
+    assert counts(found) == [(0, 0)]
+    assert found.is_stable is True
+
+
+@pytest.mark.slow
+def test_a_damper_at_a_node_of_a_high_mode_is_not_called_stable():
+    # sin(50 pi x/l) vanishes at l/50, where the damper is: this mode, at 2500 Hz, is undamped and seen.
+    string = {"type": "string", "N": "100 N", "rhoA": "10 g/m"}
+    model = symflex.Model(
+        parameters={"K": "0.3 N*s/m"},
+        elements={
+            "short": {**string, "between": ["ground", "p"], "l": "2 cm"},
+            "long": {**string, "between": ["p", "q"], "l": "98 cm"},
+            "loss": {"type": "damper", "between": ["p", "ground"], "b": "K"},
+        },
+        inputs={"Z": {"displacement": "q"}},
+        outputs={"R": "Z.f"},
+    )
+    found = model.stability("K")
+    assert found.is_stable is None
+    assert found.to_json_dict()["verdict"]["right_half_plane"] == 0
