@@ -132,7 +132,7 @@ def _by_powers(total: Sum, order: Mapping[str, int]) -> Expression:
         return total
     by_powers = []
     for n in sorted(parts, reverse=True):
-        if n:
+        if n or all(isinstance(e, Name) for e in parts[n]):
             parts[n].sort(key=lambda e: [order.get(name.name, 0) for name in names(e)])
         by_powers.append(product_of([_tidied(sum_of(_added(parts[n])), order), power(S, n)]))
     return sum_of([*by_powers, *others])
