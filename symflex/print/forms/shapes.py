@@ -564,7 +564,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
 
 
 def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) -> Fraction:
-    """Return the number that divides a sum so that it is typed, has the numbers wanted, or ``s^n`` in front."""
+    """Return the number that divides a sum to be typed, have the numbers wanted, or ``s^n`` in front."""
     parts = [powers_of(t) for t in total.terms]
     fronts = [abs(f) for f, _ in parts]
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
