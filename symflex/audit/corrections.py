@@ -214,7 +214,9 @@ def _times_monomial(wanted: _Wanted) -> Iterator[Correction]:
     ratio = reading.field.constant_ratio(wanted.value, reading.value(part))
     factor = None if ratio is None else monomial_expression(reading.field, ratio)
     if factor is not None:
-        yield wanted.replaced_by(quotient(product_of([_above(factor), part]), _below(factor)))
+        front, powers = powers_of(product_of([part, factor]))
+        ordered = sorted(powers.items(), key=lambda item: item[0] == Name(LAPLACE))
+        yield wanted.replaced_by(of_powers(front, dict(ordered)))
 
 
 def _other_exponent(wanted: _Wanted) -> Iterator[Correction]:
@@ -480,6 +482,8 @@ def _slips(line: Expression, others: Sequence[Name]) -> Iterator[Expression]:
 
 
 def _raised(base: Expression, exponent: Fraction) -> Expression:
+    if exponent < 0:
+        return quotient(_raised(_below(base), -exponent), _raised(_above(base), -exponent))
     return base if exponent == 1 else Power(base, _rational(exponent))
 
 
@@ -560,11 +564,15 @@ def _replaced(expression: Expression, part: Expression, new: Expression) -> Expr
     match expression:
         case Sum():
             return sum_of(children)
+        case Product() if isinstance(new, Quotient) and new in children:
+            return quotient(product_of(map(_above, children)), product_of(map(_below, children)))
         case Product():
             return product_of(children) if is_number(new, 1) else Product(tuple(_flat(children)))
         case Negative():
             inner = children[0]
             return inner.operand if isinstance(inner, Negative) else Negative(inner)
+        case Quotient(above, below) if isinstance(children[1], Quotient) and children[1] is not below:
+            return quotient(product_of([_below(children[1]), above]), _above(children[1]))
         case Quotient():
             return children[0] if is_number(children[1], 1) else Quotient(children[0], children[1])
         case Power():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
 
-from symflex.algebra import Factored
+from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import full_angles, lowest_terms
 from symflex.audit.field import HOLE, UNIT
 from symflex.expressions import (
@@ -153,7 +153,7 @@ def monomial_expression(field: Arithmetic, value: Factored) -> Expression | None
 def powers_expression(coefficient: Fraction, exponents: dict[str, Fraction]) -> Expression:
     """Return a number times powers of names; half powers stand together under one root."""
     groups: dict[tuple[bool, int], list[Expression]] = {}
-    for name, exponent in exponents.items():
+    for name, exponent in sorted(exponents.items(), key=lambda item: item[0] == LAPLACE):
         base: Expression = number(int(name)) if name.isdigit() else Name(name)
         times, root = abs(exponent.numerator), exponent.denominator
         groups.setdefault((exponent > 0, root), []).append(power(base, times) if times != 1 else base)

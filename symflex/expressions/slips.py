@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 """The functions of the language, each of one argument."""
-RECIPROCALS = {"cot": "tan", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
+RECIPROCALS = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
 """What formulas write for one over a function."""
 
 LONGEST_QUOTE = 24

@@ -42,6 +42,7 @@ from symflex.expressions import (
     measured,
     names,
     names_among,
+    nodes,
     number,
     power,
     product_of,
@@ -67,6 +68,9 @@ PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
 EXTREME_EXPONENT = 10**6
 """Of a unit, larger than any meant in earnest: definitions that square each other reach it after twenty."""
+
+LONGEST_TERM = 32
+"""Characters up to which a message repeats a term of a sum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -464,7 +468,7 @@ class DimensionSystem:
                 self._guesses.append(ratio)
             elif not self._learn(self._reduce(ratio)):
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
-                message = f"terms of a sum disagree: '{there}' and '{here}'"
+                message = f"terms of a sum disagree: {_said(first_term)}'{there}' and {_said(term)}'{here}'"
                 self._note(
                     "SF205", message, term.span or expression.span, _gain_hint(expression, here, there)
                 )
@@ -544,6 +548,12 @@ class DimensionSystem:
                 unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
                 return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
         return None
+
+
+def _said(term: Expression) -> str:
+    """Return ``b*s in `` for a message, nothing where the term is long or has a quantity in it."""
+    text = "" if any(isinstance(n, QuantityLiteral) for n in nodes(term)) else format_expression(term)
+    return f"{text} in " if 0 < len(text) <= LONGEST_TERM else ""
 
 
 def _gain_hint(expression: Expression, found: Dimension, wanted: Dimension) -> str | None:

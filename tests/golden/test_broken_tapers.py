@@ -229,7 +229,7 @@ BROKEN = {
     "x_added_to_a_mass": (
         field("E*I_0*w'''' + (rho*A_0 + «x»)*s^2*w = 0"),
         "SF205",
-        "terms of a sum disagree: 'kg/m' and 'm'",
+        "terms of a sum disagree: rho*A_0 in 'kg/m' and x in 'm'",
     ),
     "exponential_of_a_length": (
         field(f"(E*I_0*exp(«x»)*w'')'' + {MASS}"),

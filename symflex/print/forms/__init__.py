@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import Name, Number, nodes, quotient
+from symflex.expressions import Name, Number, Sum, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
@@ -32,13 +32,14 @@ from symflex.print.forms.printed import (
     forms_of,
     require,
 )
-from symflex.print.forms.shapes import S, shaped
+from symflex.print.forms.shapes import S, powers_of, shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from symflex.expressions import Expression
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 
@@ -92,6 +93,8 @@ CLOSED = 1.1
 """How many times shorter a lumped form has to read with its definitions closed."""
 LOOKED_UP = 1.2
 """How many times as long functions read that have to be looked up, ``K_1`` for ``sinh(q)/gamma``."""
+SHARED = 5
+"""Characters that a factor before a sum is worth which all its terms have."""
 FEW = 60
 """Terms up to which every form is arranged: that takes some hundredths of a second."""
 MORE = 1.25
@@ -286,7 +289,13 @@ def _length(form: PrintedForm) -> float:
     parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
     if form.name == "krylov":
         return LOOKED_UP * length(*parts)
-    return length(*parts) if form.name in KERNELS_ONLY else sum(map(reading, parts))
+    return length(*parts) if form.name in KERNELS_ONLY else sum(map(reading, parts)) + _shared(*parts)
+
+
+def _shared(*parts: Expression) -> int:
+    """Return the characters that ``K*(T*s + 1)`` may take more than ``K*T*s + K``."""
+    sums = {n for e in parts for n in nodes(e) if isinstance(n, Sum)}
+    return SHARED * sum(bool(set.intersection(*({*powers_of(t)[1]} for t in n.terms))) for n in sums)
 
 
 __all__ = [

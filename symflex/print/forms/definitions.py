@@ -43,7 +43,7 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     arranger = Arranger.plain(tf.base, constant_symbols(tf))
 
     def tidied(part: Expression) -> Expression:
-        return _collected(_tidied(part, tf.base.index), arranger)
+        return _collected(tidied_sum(part, tf.base.index), arranger)
 
     num, den = (rebuilt(e, tidied) for e in _rewritten(tf, arranger))
     if tf.closed is not None:
@@ -56,7 +56,7 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     return PrintedForm("definitions", num, den)
 
 
-def _tidied(part: Expression, order: Mapping[str, int]) -> Expression:
+def tidied_sum(part: Expression, order: Mapping[str, int]) -> Expression:
     """Return a sum by powers of s, with what all its terms share in front: ``R*(C*s + 1)``.
 
     In a product, what is no sum stands before the sums.
@@ -132,9 +132,9 @@ def _by_powers(total: Sum, order: Mapping[str, int]) -> Expression:
         return total
     by_powers = []
     for n in sorted(parts, reverse=True):
-        if n:
+        if n or all(isinstance(e, Name) for e in parts[n]):
             parts[n].sort(key=lambda e: [order.get(name.name, 0) for name in names(e)])
-        by_powers.append(product_of([_tidied(sum_of(_added(parts[n])), order), power(S, n)]))
+        by_powers.append(product_of([tidied_sum(sum_of(_added(parts[n])), order), power(S, n)]))
     return sum_of([*by_powers, *others])
 
 

@@ -9,12 +9,14 @@ law.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import count
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.algebra.straight_line import ONE, ZERO, Step
+from symflex.algebra.straight_line import ZERO, Step
 from symflex.budget import spend
 from symflex.expressions import (
     Call,
@@ -28,16 +30,21 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    nodes,
     number,
     power,
+    product_of,
     quotient,
+    sum_of,
 )
+from symflex.print.forms.arrange import length
+from symflex.print.forms.definitions import tidied_sum
 from symflex.print.forms.notation import Naming, names_of, reachable
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, powers_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.transfer import NestedTransferFunction
@@ -50,6 +57,8 @@ SHORT = 3
 """Factors up to which a product of parameters is written out wherever it occurs."""
 LONGEST_SUM = 100
 """Terms beyond which a sum is."""
+BAR = 20
+"""Characters that a fraction within a side may save."""
 STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
 """Names of shared sums, products and quotients; ``w`` and ``Z`` are what the elimination calls so."""
 
@@ -125,6 +134,10 @@ def _is_monomial(tf: NestedTransferFunction, i: int) -> bool:
     kinds, operands = tf.program.kinds, tf.program.operands
     if kinds[i] == Step.POWER:
         return kinds[operands[i][0]] == Step.GENERATOR
+    if kinds[i] == Step.DIVIDE:  # 1/R, and no quotient of functions
+        leaves = [x for x in operands[i] if kinds[x] in (Step.GENERATOR, Step.NUMBER)]
+        is_plain = not any(kinds[x] == Step.GENERATOR and operands[x][0] in tf.wave_of for x in leaves)
+        return is_plain and all(x in leaves or _is_monomial(tf, x) for x in operands[i])
     if kinds[i] != Step.MULTIPLY or len(operands[i]) > SHORT:
         return False
     return all(
@@ -165,7 +178,8 @@ class _Printer:
     def form(self) -> PrintedForm:
         tf = self.tf
         self.symbols = {c.generator: c.expression for c in tf.constants}
-        self.order = {name: n for n, name in enumerate(tf.program.names)}
+        names = sorted(tf.program.names, key=lambda name: not name.startswith("zeta"))  # 2*zeta*omega_n*s
+        self.order = {name: n for n, name in enumerate(names)}
         self.order |= {"pi": -1, LAPLACE: len(self.order)}
         self.sums = 0
         self.functions = _laws(tf)
@@ -174,26 +188,45 @@ class _Printer:
             expression = self._made(i)
             name = self.names.get(i)
             if name is not None:
+                self.order.setdefault(name, len(self.order) + 1)
                 self.lines.append((name, expression))
                 expression = Name(name)
                 self.split.pop(i, None)
             self.known[i] = expression
         num, den = self.known[tf.num], self.known[tf.den]
         laws = tuple(map(self._law, self.functions.values()))
-        where = reachable((num, den, *(law for _, law in laws)), self.lines)
-        if isinstance(den, Negative):
-            num, den = _negated(num), den.operand
-        if tf.den == ONE and isinstance(num, Quotient):
-            return PrintedForm("nested", num.numerator, num.denominator, where, laws)
-        if (
-            isinstance(den, Quotient) or den in powers_of(num)[1]
-        ):  # they share factors, as with imposed motion
-            whole = of_powers(*powers_of(quotient(num, den)))
+        equations, where = [law for _, law in laws], tuple(self.lines)
+        for _ in range(2):  # what cancels may leave one name
+            where = reachable((num, den, *equations), where)
+            lines = dict(where)
+            parts = (num, den, *lines.values(), *equations)
+            used = Counter(n for e in parts for n in nodes(e) if isinstance(n, Name))
             num, den = (
-                (whole.numerator, whole.denominator) if isinstance(whole, Quotient) else (whole, number(1))
+                lines.get(e.name, e) if isinstance(e, Name) and used[e] == 1 else e for e in (num, den)
             )
-            where = reachable((num, den, *(law for _, law in laws)), where)
+            num, den = min(self._cleared(num, den), (num, den), key=_bars)
+        where = reachable((num, den, *equations), where)
         return PrintedForm("nested", num, den, where, laws)
+
+    def _cleared(self, num: Expression, den: Expression) -> tuple[Expression, Expression]:
+        """Return ``A/(Z + B)`` for ``A/Z`` over ``1 + B/Z``."""
+        below = [{b: -n for b, n in powers_of(t)[1].items() if n < 0} for t in (*_terms(num), *_terms(den))]
+        times = of_powers(Fraction(1), {b: max(p.get(b, 0) for p in below) for own in below for b in own})
+
+        def spread(side: Expression) -> Expression:
+            barred = [t for t in _terms(side) if min(powers_of(t)[1].values(), default=0) < 0]
+            plain = sum_of(t for t in _terms(side) if t not in barred)
+            made = [self._ordered(*powers_of(product_of([t, times]))) for t in (plain, *barred)]
+            return sum_of(sorted(made, key=lambda t: isinstance(t, Negative)))
+
+        num = tidied_sum(spread(num), self.order)  # k*T_1*T_2 - k*T_2
+        front, powers = powers_of(quotient(num, spread(den)))
+        num = self._ordered(Fraction(abs(front.numerator)), {b: n for b, n in powers.items() if n > 0})
+        den = self._ordered(Fraction(front.denominator), {b: -n for b, n in powers.items() if n < 0})
+        return _negated(num) if front < 0 else num, den
+
+    def _ordered(self, front: Fraction, powers: Mapping[Expression, int]) -> Expression:
+        return of_powers(front, {b: powers[b] for b in sorted(powers, key=self._place)})
 
     def _law(self, function: tuple[str, Waves]) -> tuple[str, Equation]:
         """Return the differential equation of a fundamental function."""
@@ -211,7 +244,7 @@ class _Printer:
         length = self.known[waves.length]
         if order >= 0:
             return Call(self.functions[waves.coefficients][0], length, order)
-        return Call("exp", _negated(_times(self.known[waves.shift], length)))
+        return Call("exp", _negated(of_powers(*powers_of(Product((length, self.known[waves.shift]))))))
 
     def _made(self, i: int) -> Expression:
         program = self.tf.program
@@ -297,6 +330,16 @@ class _Printer:
         if isinstance(base, Name) and base.name in self.order:
             return 1, self.order[base.name]
         return 2, 0
+
+
+def _terms(side: Expression) -> tuple[Expression, ...]:
+    return side.terms if isinstance(side, Sum) else (side,)
+
+
+def _bars(sides: tuple[Expression, Expression]) -> int:
+    """Return the length of a fraction, and more where it has a bar to spare."""
+    has_bar = any(isinstance(e.operand if isinstance(e, Negative) else e, Quotient) for e in sides)
+    return length(*sides) + BAR * has_bar
 
 
 def _multiplied(factors: Sequence[Expression]) -> Expression:

@@ -519,6 +519,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     if all(x.denominator == 1 for x in written) or any(n.name not in ("exp", "sqrt") for n in calls):
         return num, den
     wanted = {*written, Fraction(1)}
+    typed = {_texts(n.terms) for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum)}
     numbers = [n.value.numerator for e in (num, den) for n in nodes(e) if isinstance(n, Number)]
     longest = max((len(str(n).strip("-0")) for n in numbers), default=0)
     digits = min(max(DIGITS, longest + 1), MOST)
@@ -528,7 +529,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
             return part
         fronts = [powers_of(term)[0] for term in part.terms]
         if powers_of(part.terms[0])[1].keys() == {S}:
-            divisor = _typed_scale(part, wanted)
+            divisor = _typed_scale(part, wanted, typed)
         else:  # what several parts were divided by goes on to the front
             are_whole = all(x.denominator == 1 for x in fronts)
             divisor = Fraction(gcd(*map(int, fronts)) if are_whole else 1)
@@ -539,7 +540,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     scale = above / below
     for parts, side in ((divisors, -1), (powers, 1)):
         for part in [p for p in parts if isinstance(p, Sum)]:
-            divisor = _typed_scale(part, wanted)
+            divisor = _typed_scale(part, wanted, typed)
             if divisor != 1 and (scaled := _scaled(part, divisor, digits)) is not None:
                 scale *= divisor ** (parts[part] * side)
                 ordered = [(scaled if base == part else base, n) for base, n in parts.items()]
@@ -553,7 +554,7 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     # A resonance, s^2 + 2*zeta*omega*s + omega^2, keeps its s^2, and 4*K_0^2 - 1 its whole numbers.
     inside = next((b for b in sums if powers_of(b.terms[0])[1].keys() != {S} or {*names(b)} == {S}), None)
     fronts = [scale, *(powers_of(t)[0] for t in inside.terms)] if inside is not None else []
-    stays = scale == 1 or all(x.denominator == 1 for x in fronts)  # as 6*(3*T*s + 1)
+    stays = scale == 1 or len(sums) > 1 or all(x.denominator == 1 for x in fronts)  # as 6*(3*T*s + 1)
     spread = None if inside is None or stays else _scaled(inside, 1 / abs(scale), digits)
     if inside is not None and spread is not None and ({*names(inside)} == {S} or len({*names(inside)}) > 1):
         whole = product_of([spread if b == inside else power(b, n) for b, n in powers.items()])
@@ -562,9 +563,10 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     return new if length(*new) <= MORE * length(num, den) else (num, den)
 
 
-def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
-    """Return the number that divides a sum so that it has the numbers wanted, or ``s^n`` in front."""
-    fronts = [abs(powers_of(t)[0]) for t in total.terms]
+def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) -> Fraction:
+    """Return the number that divides a sum to be typed, have the numbers wanted, or ``s^n`` in front."""
+    parts = [powers_of(t) for t in total.terms]
+    fronts = [abs(f) for f, _ in parts]
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
     are_whole = all(f.denominator == 1 for f in fronts)
     holds_sums = any(isinstance(base, Sum) for t in total.terms for base in powers_of(t)[1])
@@ -581,12 +583,14 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         is_large &= not any("/" in number_text(x) for x in divided)
         as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
         return (
+            _texts(product_of([number(f / divisor), of_powers(Fraction(1), p)]) for f, p in parts) in typed,
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
             has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5
             0 if are_whole and divisor != 1 and is_odd else sum(is_wanted),
             is_whole[0],
             sum(is_whole),
+            not has_symbols and divided[-1] == 1,
         )
 
     return max(tried, key=rank)

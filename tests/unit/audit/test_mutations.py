@@ -107,8 +107,10 @@ damper = { type = "damper", between = ["x", "y"], b = "b" }
 MODAL = "w = 'sqrt(k/m)', z = 'b/(2*sqrt(k*m))'"
 ISOLATOR_SLIPS = [
     ("(b*s + k)/(k*s^2 + b*s + m)", "", [("denominator", "k", "m"), ("denominator", "m", "k")]),
-    ("(b*s + k)/(m*s^2 + s/b + k)", "", [("denominator", "b", "b^-1")]),
-    ("k/(m*s^2 + b*s + k)", "", [("numerator", "0", "s*b")]),
+    ("(b*s + k)/(m*s^2 + s/b + k)", "", [("denominator", "b", "1/b")]),
+    ("k/(m*s^2 + b*s + k)", "", [("numerator", "0", "b*s")]),
+    ("(b*s + k)/(m*s^2 + b + k)", "", [("denominator", "b", "b*s")]),
+    ("(m + k)/(m*s^2 + b*s + k)", "", [("numerator", "m", "b*s")]),
     ("(1 + 2*z*(s/w))/(1 + 2*z*(s/w) + (s/w)^3)", MODAL, [("denominator", "(s/w)^3", "(s/w)^2")]),
     ("(1 + 2*z*s/w)/(1 + 2*z*s/w + s^2/w)", MODAL, [("denominator", "w", "w^2")]),
     ("(b*s + k)/(k + m*w2 + b*s)", "w2 = '-s^2'", [("denominator", "m*w2", "-m*w2")]),

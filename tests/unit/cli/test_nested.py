@@ -50,7 +50,7 @@ def test_json_has_the_schema_of_other_forms(shell, spec):
     ]
     assert (entry["form"], entry["hidden"], entry["quantity"]) == ("nested", None, "receptance")
     assert [name for name, _ in entry["where"]] == ["w_2", "Z_2", "T_2"]
-    assert (entry["num"], entry["den"]) == ("T_2", "w_1*s^2 + T_2*Z_2")
+    assert (entry["num"], entry["den"]) == ("T_2", "w_1*s^2 + Z_2*T_2")
 
 
 def test_latex_prints_a_sequence_of_named_sub_impedances(shell, spec):

@@ -118,6 +118,7 @@ def test_one_over_a_function_may_have_a_name_of_its_own():
         ("cot(a)", "1/tan(a)"),
         ("-sech(2*a)", "-(1/cosh(2*a))"),
         ("csch(a)*b", "(1/sinh(a))*b"),
+        ("sec(a) - csc(b)", "1/cos(a) - 1/sin(b)"),
     ]:
         assert tree(written) == tree(meant), written
 

@@ -173,7 +173,7 @@ outputs.V = "v"
 unknowns = ["v", "x"]
 equations = ["m*s*v + v/d + k*x = F", "v = s*x"]
 """
-    with pytest.raises(SpecError, match=r"terms of a sum disagree: 'N' and '1/s'"):
+    with pytest.raises(SpecError, match=r"terms of a sum disagree: F in 'N' and v/d in '1/s'"):
         symflex.loads(text)
 
 

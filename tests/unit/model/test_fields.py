@@ -140,7 +140,7 @@ def test_the_mobility_of_a_beam_is_metres_per_newton_second_whatever_w_is():
 
 def test_an_equation_of_terms_in_different_units_is_refused():
     wrong = field(["w'(0) = 0", "w(l) = 0"], ["E*I*w'' + rho*A*s^2*w = 0"])
-    assert problems(wrong) == [("SF205", "terms of a sum disagree: 'N' and 'Pa'")]
+    assert problems(wrong) == [("SF205", "terms of a sum disagree: E*I*w'' in 'N' and rho*A*s^2*w in 'Pa'")]
 
 
 def test_as_many_conditions_as_the_order_are_needed():

@@ -655,3 +655,56 @@ def test_numbers_nobody_can_read_are_printed_as_decimals():
     assert form.name == "zpk"
     # 1/0.123456789012345 and their ratio, to six digits
     assert printed(tf_of(text, "y", "u")) == ("8.1", "(s^2 + 0.333333*s + 0.141421)*(s + 8.1)")
+
+
+def test_a_factor_of_all_terms_stands_in_front_in_the_default_form():
+    # As typed; one symbol more than K*T*s + K, but the gain and the zero are seen.
+    text = """symflex = 1
+parameters = { K = {}, T = { unit = "s" }, m = { unit = "kg" }, alpha = {} }
+blocks.C = { type = "lead_lag", T_1 = "T", T_2 = "alpha*T" }
+blocks.P = { type = "tf", num = "1", den = "m*s^2" }
+inputs.r = {}
+outputs.Y = "P*K*C*r"
+"""
+    assert printed(tf_of(text, "Y", "r")) == ("K*(T*s + 1)", "m*s^2*(alpha*T*s + 1)")
+
+
+def test_sums_with_decimals_are_printed_as_they_are_typed():
+    for typed in (("K*w*(0.2*s + w)", "1"), ("(0.5*s + w)*(0.1*s + w)", "(s + w)^2")):
+        text = f'''symflex = 1
+parameters = {{ K = {{}}, w = {{}} }}
+inputs.u = {{}}
+outputs.y = "{typed[0]}/{typed[1]}*u"
+'''
+        assert printed(tf_of(text, "y", "u")) == typed
+
+
+def test_factors_without_parameters_are_typed_or_end_with_one():
+    text = """symflex = 1
+blocks.C = { type = "pid", k_p = "2.5", k_i = "10", k_d = "0.1", T_f = "0.01" }
+blocks.P = { type = "tf", num = "4", den = "s*(0.5*s + 1)*(0.02*s + 1)" }
+inputs.r = {}
+outputs.Y = "P*C*r"
+"""
+    # 4*(2.5 + 10/s + 0.1*s/(0.01*s + 1)) over one denominator, by hand.
+    den = "s^2*(0.5*s + 1)*(0.02*s + 1)*(0.01*s + 1)"
+    assert printed(tf_of(text, "Y", "r")) == ("0.5*s^2 + 10.4*s + 40", den)
+
+
+def test_constants_of_a_sum_stand_in_declared_order_above_and_below_the_bar():
+    text = """symflex = 1
+parameters = { m = {}, k = {}, k_f = {}, alpha = {}, C = {}, R = {}, K = {}, T = {} }
+inputs.x_r = {}
+outputs.V = "v"
+[blocks]
+I = { type = "pid", k_p = "0", k_i = "K/T" }
+[elements]
+amp = { type = "voltage_source", at = "u", v = "I*(x_r - x)" }
+r = { type = "resistor", between = ["u", "v"], R = "R" }
+stack = { type = "piezo", terminals = ["v", "ground"], between = ["ground", "x"], alpha = "alpha", C = "C", k = "k" }
+stage = { type = "mass", at = "x", m = "m" }
+flexure = { type = "spring", between = ["x", "ground"], k = "k_f" }
+"""  # noqa: E501
+    num, den = printed(tf_of(text, "V", "x_r"))
+    assert num == "K*(m*s^2 + k + k_f)"
+    assert "(m*s^2 + k + k_f)" in den
