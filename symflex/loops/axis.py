@@ -223,8 +223,11 @@ class LoopAtOrigin:
         return parts[0] + arb(0, rest), parts[1] + arb(0, rest_over_omega)
 
 
-def loop_at_origin(function: LoopFunction) -> LoopAtOrigin | None:
-    """Return A and B near 0, ``None`` where their orders or series cannot be told."""
+def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin | None:
+    """Return A and B near 0, ``None`` where their orders or series cannot be told.
+
+    They reach as far as roots next to 0 can be told from it, times a factor.
+    """
     ring = function.bound.ratio.ring
     orders, found = [], []
     for polynomial in (function.a, function.b):
@@ -244,7 +247,7 @@ def loop_at_origin(function: LoopFunction) -> LoopAtOrigin | None:
     if lowest == -inf:
         return None
     with precision(ORIGIN_BITS):
-        reach = arb(exp(lowest))
+        reach = arb(exp(lowest) * times)
         series = []
         for part, _, unit in found:
             own = local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2)

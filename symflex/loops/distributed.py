@@ -44,6 +44,8 @@ HALVINGS = 12
 """Of a range, until its end is known to some hundredths of the gain's own value."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
+WIDER = 16.0
+"""By how much a disc about 0 is widened."""
 NEXT_TO_ZERO = 1e-6
 """Share of the frequency of one wave at which the search for crossings begins, if 0 stays open."""
 WAVES = 30.0
@@ -274,16 +276,27 @@ class DistributedFactors:
         if origin is None:
             self.reasons.append("the motion of poles next to s = 0 is not proved")
             return self.scale * NEXT_TO_ZERO, None
+        radius = self._proved_within(origin)
+        if radius is None:
+            # Several crossings meet at 0: nothing is gained by going closer.
+            self.reasons.append("the motion of poles next to s = 0 is not proved")
+            return float((origin.series[0].reach / 4).lower()), origin
+        times = WIDER
+        # Balls know little next to 0 where wavenumbers vanish, and series reach farther.
+        while function.is_blurred(radius) and (wider := loop_at_origin(function, times)) is not None:
+            larger = self._proved_within(wider)
+            if larger is None or not larger > radius:
+                break
+            origin, radius, times = wider, larger, times * WIDER
+        return float(radius.lower()), origin
+
+    def _proved_within(self, origin: LoopAtOrigin) -> arb | None:
         radius = origin.series[0].reach / 4
         for _ in range(SHRINKINGS):
             if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
-                break
+                return radius
             radius = radius / 2
-        else:
-            # Several crossings meet at 0: nothing is gained by going closer.
-            self.reasons.append("the motion of poles next to s = 0 is not proved")
-            radius = origin.series[0].reach / 4
-        return float(radius.lower()), origin
+        return None
 
     def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
         first, second = origin.orders

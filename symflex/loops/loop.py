@@ -253,6 +253,11 @@ class LoopFunction:
                 LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1]),
             )
 
+    def is_blurred(self, omega: arb, bits: int = 96) -> bool:
+        """Tell whether next to nothing is known of A or B on a hundredth of a frequency."""
+        around, _ = self.on(omega * arb(1, 0.01), bits)
+        return bool(around.a.contains(0)) or bool(around.b.contains(0))
+
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
         with precision(bits):

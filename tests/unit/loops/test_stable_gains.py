@@ -350,3 +350,28 @@ def test_a_damper_at_a_node_of_a_high_mode_is_not_called_stable():
     found = model.stability("K")
     assert found.is_stable is None
     assert found.to_json_dict()["verdict"]["right_half_plane"] == 0
+
+
+@pytest.mark.slow
+def test_a_voice_coil_on_a_leaf_spring_is_searched_from_where_balls_know_its_values():
+    # Far below its first mode a leaf is a spring of 12 E I/l^3, and the loop a polynomial in s.
+    mass, stiff = 0.4, 12 * 110e9 * 2.5e-11 / 0.06**3
+    stage = np.polymul([mass, 8**2 / 4, stiff], np.polymul([1e-3, 1], [1, 0]))
+    for gain in (100, 900):
+        pid = np.polyadd(np.polymul([1e-3, 1], [gain, 2000]), [12, 0, 0])
+        assert max(np.roots(np.polyadd(stage, 8 / 4 * pid)).real) < 0
+    found = symflex.loads("""
+symflex = 1
+parameters.kp = "300 V/m"
+blocks.C = { type = "pid", k_p = "kp", k_i = "2000 V/m/s", k_d = "12 V*s/m", T_f = "1 ms" }
+inputs.r = { unit = "m" }
+outputs.X = "st"
+[elements]
+leaf = { type = "beam", between = ["ground", "st"], EI = 2.75, rhoA = 0.246, l = "60 mm", eta = "3 us" }
+hold = { type = "slider", at = "st" }
+stage = { type = "mass", at = "st", m = "400 g" }
+coil = { type = "voice_coil", terminals = ["u", "ground"], mover = "st", k_f = "8 N/A", R = "4 Ohm" }
+supply = { type = "voltage_source", at = "u", v = "C*(r - st)" }
+""").stability("kp", (100, 900))
+    assert found.certified
+    assert counts(found) == [(0, 0)]
