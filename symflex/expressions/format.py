@@ -164,15 +164,15 @@ def number_text(value: Fraction) -> str:
     >>> [number_text(Fraction(text)) for text in ("3", "21/10000", "4.7e-12", "2/3", "5e17")]
     ['3', '0.0021', '4.7e-12', '2/3', '5e17']
     """
-    # Decimal writes integers of any length; str(int) stops at the interpreter's digit limit.
-    fraction = f"{Decimal(value.numerator)}/{Decimal(value.denominator)}"
     if value.denominator == 1:
-        whole = fraction.removesuffix("/1")
+        # Decimal writes integers of any length; str(int) stops at the interpreter's digit limit.
+        whole = str(Decimal(value.numerator))
         digits = whole.rstrip("0")
         short = f"{digits[:1]}{'.' * (len(digits) > 1)}{digits[1:]}e{len(whole) - 1}"
         is_long = PLAIN < len(whole) <= -SMALLEST_EXPONENT
         return short if is_long and len(short) + FEWER <= len(whole) else whole
-    return _decimal_text(value) or fraction
+    sides = (Fraction(value.numerator), Fraction(value.denominator))
+    return _decimal_text(value) or "/".join(map(number_text, sides))
 
 
 def decimal_exponent(value: Fraction) -> int:
