@@ -90,11 +90,16 @@ class LazyGroup(click.Group):
             from symflex.errors.diagnostic import nearest  # most commands go well
             from symflex.model.analysis import FIGURE_KINDS
 
-            figure = f"a figure is drawn by: symflex plot SPEC {name}"
-            hint = GONE if name == "cache" else f"write: symflex {MEANT[name]}" if name in MEANT else ""
-            hint = figure if name in FIGURE_KINDS else hint or nearest(name, COMMANDS) or ""
-            if name.endswith(".toml"):
+            if name == "cache":
+                hint: str | None = GONE
+            elif name in FIGURE_KINDS:
+                hint = f"a figure is drawn by: symflex plot SPEC {name}"
+            elif name in MEANT:
+                hint = f"write: symflex {MEANT[name]}"
+            elif name.endswith(".toml"):
                 hint = f"the command comes first: symflex derive {name}"
+            else:
+                hint = nearest(name, COMMANDS)
             ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))
         return super().resolve_command(ctx, args)
 

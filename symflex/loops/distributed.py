@@ -41,7 +41,7 @@ BITS = 128
 OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
 """What is said where delayed terms leave poles without a bound."""
 HALVINGS = 12
-"""Of a range, until its end is known to some hundredths of the gain's own value."""
+"""Halvings of a range: its end is then known to a few hundredths of the gain's own value."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
 WIDER = 16.0
@@ -207,7 +207,9 @@ class DistributedFactors:
         """
         side = Side(self.bound, self._product(gain), COUNT_DIGITS)
         # Where wavenumbers vanish, what cancelled may have a root at 0 that is no pole.
-        origin = Side(self.bound, self._product(gain, hidden=False), COUNT_DIGITS)
+        origin = side
+        if any(factor.is_hidden for factor in self.factors):
+            origin = Side(self.bound, self._product(gain, hidden=False), COUNT_DIGITS)
         seen = [root for root in origin.roots if root.on_imaginary_axis or not origin.is_finite]
         zeros = count_roots(seen)
         if not all(root.certified for root in seen):

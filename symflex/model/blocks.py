@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 
 NESTING_LIMIT = 8
 DECLARATION = "symflex"
-RATIO = "tf"
-"""The type of a block that has a numerator, or is written as a formula."""
 ALLOW_HINT = "--allow-outside FOLDER, in Python allow_outside, lets model blocks read another folder"
 BLOCK_LIMIT = 100
 """``model`` blocks with those inside them: files of two blocks each would double them at every level."""
@@ -109,11 +107,11 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
         if formula is None:
             return None
         ratio = (("num", formula), ("den", signed_number(Fraction(1))))
-        return PlacedBlock(entry.key, BLOCKS[RATIO], ratio, span=entry.key_span)
+        return PlacedBlock(entry.key, BLOCKS["tf"], ratio, span=entry.key_span)
     table = reader.table(entry, what, 'for instance { type = "integrator" }')
     if table is None:
         return None
-    block = BLOCKS[RATIO]
+    block = BLOCKS["tf"]  # a numerator needs no type
     if table.get("type") is not None or table.get("num") is None:
         types = ", ".join((*BLOCKS, MODEL_BLOCK))
         kind = reader.needed(table, "type", entry, f"{what} has no type", f"block types: {types}")

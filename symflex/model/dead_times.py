@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 Placed = TypeVar("Placed", "DraftElement", PlacedBlock)
 SIZE_LIMIT = 200
 """Nodes of what is written out: definitions of definitions would double at every level."""
-DELAY, RATIO = BLOCKS["delay"], BLOCKS["tf"]
 
 
 def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
@@ -52,14 +51,15 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
     places = [e for use in draft.elements for _, e in use.values]
     for group in (draft.definitions, draft.signals, draft.outputs):
         places += [x.expression for x in group]
-    ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is RATIO}
+    ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     places += ratios.values()
     times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) is not None}
     if not times:
         return draft
     used = {n.name for e in places for n in names(e)}
     free = (name for i in count(1) if (name := f"delay_{i}") not in taken and name not in used)
-    blocks = {time: _delay(next(free), time, node.span) for node, time in times.items()}
+    spans = {time: node.span for node, time in times.items()}
+    blocks = {time: _delay(next(free), time, span) for time, span in spans.items()}
     mapping = {node: Name(blocks[time].name, span=node.span) for node, time in times.items()}
     late: dict[str, Expression] = {}
     bodies = {d.name: d.expression for d in draft.definitions} | ratios
@@ -96,7 +96,7 @@ def _ratio(block: PlacedBlock) -> Expression:
 
 
 def _delay(name: str, time: Expression, span: Span | None) -> PlacedBlock:
-    return PlacedBlock(name, DELAY, (("T", replace(time, span=span)),), span=span)
+    return PlacedBlock(name, BLOCKS["delay"], (("T", replace(time, span=span)),), span=span)
 
 
 def _dead_time(node: Expression) -> Expression | None:

@@ -701,10 +701,15 @@ I = { type = "pid", k_p = "0", k_i = "K/T" }
 [elements]
 amp = { type = "voltage_source", at = "u", v = "I*(x_r - x)" }
 r = { type = "resistor", between = ["u", "v"], R = "R" }
-stack = { type = "piezo", terminals = ["v", "ground"], between = ["ground", "x"], alpha = "alpha", C = "C", k = "k" }
+stack.type = "piezo"
+stack.terminals = ["v", "ground"]
+stack.between = ["ground", "x"]
+stack.alpha = "alpha"
+stack.C = "C"
+stack.k = "k"
 stage = { type = "mass", at = "x", m = "m" }
 flexure = { type = "spring", between = ["x", "ground"], k = "k_f" }
-"""  # noqa: E501
+"""
     num, den = printed(tf_of(text, "V", "x_r"))
     assert num == "K*(m*s^2 + k + k_f)"
     assert "(m*s^2 + k + k_f)" in den
