@@ -356,11 +356,16 @@ class _Filler:
         """Set a number too long for a line: its digits go on in the next."""
         depth = max(depth, glue.depth)
         edges = left.width + right.width + glue.start_width
-        if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
-            piece = self._writer.number(text)
+        piece = self._writer.number(text)
+        mantissa, _, exponent = text.partition("e")
+        if text[1:2] == "e" or piece.width + edges <= self._rest(0 if exponent else depth):
             width = left.width + piece.width + right.width
             self._force(glue, f"{left.latex}{piece.markup}{right.latex}", width)
             return
+        if exponent:
+            tenth = self._writer.number(f"1e{exponent}")
+            right = Edge(rf" \cdot {tenth.markup}{right.latex}", CDOT + tenth.width + right.width)
+            return self._split_digits(glue, left, mantissa, right, depth)
         count = max(1, int((self._rest(depth) - edges) / DIGIT))
         for start in range(0, len(text), count):
             chunk = text[start : start + count]
