@@ -148,11 +148,11 @@ def _arranged(
 
 def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
     """Return a form with definitions closed, or with them opened where that is much shorter."""
-    from symflex.print.forms.economical import added, economical  # only with beams
+    from symflex.print.forms.economical import added, apart, economical  # only with beams
 
     def shortest(own: TransferFunction) -> PrintedForm:
         each = economical(own)
-        whole = added(each)
+        whole = added(apart(each))
         if form is None:
             made = tuple(_drafted(each, whole, arranged))
         else:

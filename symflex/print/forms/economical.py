@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from itertools import combinations
-from math import isqrt
+from itertools import combinations, product
+from math import isqrt, prod
 from operator import add
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,7 @@ from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_expon
 from symflex.print.forms.notation import angles_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -36,6 +36,8 @@ LARGE = 300
 """Number of terms of a factor from which it is left as it is."""
 MOST = 5
 """Number of lengths of one wavenumber up to which sums of them are tried."""
+HALVES = 4
+"""Multiple of an argument up to which its own kernels read as well: those of a beam and of its middle."""
 TWO = 2
 
 
@@ -54,6 +56,77 @@ def economical(tf: TransferFunction) -> TransferFunction:
             return tf
         tf = found
     return tf
+
+
+def apart(tf: TransferFunction) -> TransferFunction:
+    """Return the same function in kernels of two multiples of a base length where it has fewer terms so.
+
+    A sensor at ``3*l/10`` has kernels of ``l/10`` up to their twentieth power; in those of ``l`` and
+    ``3*l/10`` it is what a person would write. These are not independent, which is for print alone.
+    """
+    if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
+        return tf
+    for angle in angles_of(tf.kernels, tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)):
+        if angle.dispersion.shift.is_zero and (found := _in_two(tf, angle)) is not None:
+            tf = min(tf, found, key=lambda each: _size(each.ratio))
+    return tf
+
+
+def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
+    """Return a function in kernels of two multiples of one angle, None where no two serve."""
+    source = tf.ratio.ring
+    other = {f: f"{g} apart" for f, g in angle.kernels.items()}
+    ring = Ring((*source.names, *other.values()))
+    work = Ring((*ring.names, IMAGINARY))
+    sums = [in_exponentials(work, work.taken_over(f), angle) for f, _ in tf.ratio.factors]
+    real = [{k: x for k, c in each.items() if not (x := real_powers(work, c)).is_zero()} for each, _ in sums]
+    multiples = {abs(n) for coefficients in real for key in coefficients for n in key}
+    pairs = combinations(range(1, max(multiples, default=0) + 1), TWO)
+    ways = {pair: way for pair in pairs if (way := _as_sums(multiples, pair)) is not None}
+    if not ways or max(multiples) <= HALVES:
+        return None
+    below = {n for c, (_, e) in zip(real, tf.ratio.factors, strict=True) if e < 0 for key in c for n in key}
+
+    def rank(pair: tuple[int, int]) -> tuple[bool, bool, int]:
+        """Prefer the denominator's lengths to others, whole lengths, and short sums."""
+        is_other = any(n % pair[1] for n in below)
+        return (
+            is_other,
+            (angle.length * pair[1]).unit != 1,
+            sum(abs(x) + abs(y) for x, y in ways[pair].values()),
+        )
+
+    pair = min(ways, key=rank)
+    way, lengths, j = ways[pair], [angle.length * n for n in pair], work.generator(IMAGINARY)
+    table = [
+        Kernel(g, f, angle.dispersion, angle.wavenumber, length)  # type: ignore[arg-type]
+        for names, length in zip((other, angle.kernels), lengths, strict=True)
+        for f, g in names.items()
+    ]
+    table += [k for k in tf.kernels.kernels if k.generator not in angle.kernels.values()]
+    normal = NormalForm(ring, _over(ring, replace(tf.kernels, kernels=tuple(table))))
+    kernels = [{f: work.generator(g) for f, g in names.items()} for names in (other, angle.kernels)]
+
+    ratio = Factored.number(ring, tf.ratio.unit)
+    for coefficients, (_, halves), (_, exponent) in zip(real, sums, tf.ratio.factors, strict=True):
+        total = work.constant(0)
+        for (a, b), part in coefficients.items():
+            both = zip(kernels, way[a], way[b], strict=True)
+            total = total + prod((_power(k, j, x, y) for k, x, y in both), start=part)
+        plain = real_powers(work, total).compose(*ring.context.gens(), ring.constant(0), ctx=ring.context)
+        ratio = ratio * (normal.reduce(plain) / Factored.number(ring, 2) ** halves) ** exponent
+    return replace(tf, reduced=ratio, kernels=normal.table, parts=None)
+
+
+def _as_sums(multiples: Collection[int], pair: tuple[int, int]) -> dict[int, tuple[int, int]] | None:
+    """Return multiples as sums of few of two numbers, None where one of them is no such sum."""
+    few = sorted(product(range(-TWO, TWO + 1), repeat=2), key=lambda n: abs(n[0]) + abs(n[1]))
+    sums = {x * pair[0] + y * pair[1]: (x, y) for x, y in reversed(few)}
+    if not all(n in sums for n in multiples):
+        return None
+    return {0: (0, 0)} | {
+        sign * n: (sign * sums[n][0], sign * sums[n][1]) for n in multiples for sign in (1, -1)
+    }
 
 
 @dataclass(frozen=True, slots=True, eq=False)

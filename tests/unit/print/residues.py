@@ -20,7 +20,7 @@ PRIME = 2**61 + 294569
 """One more than eight times an odd number; 2, 3, 5 and 7 are of odd order."""
 ODD = (PRIME - 1) // 8
 UNIT = sqrt_mod(-1, PRIME)
-REACH = 6
+REACH = 8
 
 
 class NoRootError(Exception):

@@ -614,3 +614,35 @@ def test_a_member_cut_at_a_node_prints_with_its_whole_length():
     (tf,) = pipeline.derive_all(model)
     assert shown(tf) == ("sinh(q_1)*sinh(q_2)", "N*gamma*sinh(q_3)")
     assert lines(tf, None)[:3] == ["q_1 = gamma*(l - a)", "q_2 = gamma*p", "q_3 = gamma*l"]
+
+
+CANTILEVER = """
+symflex = 1
+parameters = {{ EI = {{}}, mu = {{}}, l = {{}}, x_s = {{}} }}
+[elements]
+arm = {{ type = "beam", between = ["a", "b"], EI = "EI", rhoA = "mu", l = "l" }}
+hold = {{ type = "fixed", at = "a" }}
+[inputs.F]
+force = "b"
+[outputs]
+Y = "arm.y({place})"
+"""
+
+
+@pytest.mark.parametrize("place", ["l/4", "l/8", "3*l/10"])
+def test_a_sensor_at_a_fraction_prints_as_one_at_a_length_with_a_name(place):
+    at_a_fraction, at_a_name = (
+        print_form(pipeline.derive_all(pipeline.loads(CANTILEVER.format(place=p)))[0]) for p in (place, "x_s")
+    )
+    arguments = dict(at_a_name.where)["q_2"], dict(at_a_fraction.where)["q_1"]
+    named, fraction = (format_expression(e) for e in arguments)
+    top, bottom = place.split("*") if "*" in place else ("1", place)
+    front = "" if top == "1" else f"{top}*"
+    assert (named, fraction) == ("mu_1*x_s", f"{front}mu_1*{bottom}")
+
+    def exchanged(expression):
+        text = format_expression(expression)
+        return text.replace("q_1", "q_0").replace("q_2", "q_1").replace("q_0", "q_2")
+
+    assert exchanged(at_a_fraction.num) == format_expression(at_a_name.num)
+    assert exchanged(at_a_fraction.den) == format_expression(at_a_name.den)
