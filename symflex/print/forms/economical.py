@@ -66,7 +66,9 @@ def apart(tf: TransferFunction) -> TransferFunction:
     """
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
-    for angle in angles_of(tf.kernels, tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)):
+    used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
+    for kernels in [angle.kernels for angle in angles_of(tf.kernels, used)]:
+        angle = next(a for a in angles_of(tf.kernels) if a.kernels == kernels)
         if angle.dispersion.shift.is_zero and (found := _in_two(tf, angle)) is not None:
             tf = min(tf, found, key=lambda each: _size(each.ratio))
     return tf

@@ -646,3 +646,14 @@ def test_a_sensor_at_a_fraction_prints_as_one_at_a_length_with_a_name(place):
 
     assert exchanged(at_a_fraction.num) == format_expression(at_a_name.num)
     assert exchanged(at_a_fraction.den) == format_expression(at_a_name.den)
+
+
+def test_sensors_at_fractions_of_two_beams_have_their_own_lengths():
+    other = """arm2 = { type = "beam", between = ["c", "d"], EI = "2*EI", rhoA = "mu", l = "l" }
+hold2 = { type = "fixed", at = "c" }
+link = { type = "spring", between = ["b", "d"], k = 3 }
+[inputs.F]"""
+    text = CANTILEVER.replace(", x_s = {{}}", "").format(place="l/4) - arm2.y(l/4")
+    (tf,) = pipeline.derive_all(pipeline.loads(text.replace("[inputs.F]", other)))
+    arguments = {value for name, value in (line.split(" = ") for line in lines(tf, None)) if name[0] == "q"}
+    assert arguments == {"mu_1*l", "mu_1*l/4", "mu_2*l", "mu_2*l/4"}
