@@ -35,6 +35,7 @@ from symflex.expressions import (
     power,
     product_of,
     quotient,
+    substitute,
     sum_of,
 )
 from symflex.print.forms.arrange import length
@@ -118,7 +119,9 @@ def _plan(tf: NestedTransferFunction) -> dict[int, str]:
             continue
         role = roles.get(i, "")
         is_monomial = role != "Z" and _is_monomial(tf, i)
-        is_shared = uses.get(i, 0) + (i in ends) > 1 and not is_monomial
+        # What one is divided by has a name already.
+        is_inverse = kind == Step.DIVIDE and kinds[inner[0]] == Step.NUMBER and inner[1] in names
+        is_shared = uses.get(i, 0) + (i in ends) > 1 and not (is_monomial or is_inverse)
         is_long = depth[i] >= DEEPEST or length[i] >= LONGEST_PRODUCT
         if role.startswith("=") or is_shared or (is_long and i not in ends):
             if role.startswith("="):
@@ -195,7 +198,7 @@ class _Printer:
             self.known[i] = expression
         num, den = self.known[tf.num], self.known[tf.den]
         laws = tuple(map(self._law, self.functions.values()))
-        equations, where = [law for _, law in laws], tuple(self.lines)
+        equations, where, own = [law for _, law in laws], tuple(self.lines), names_of(tf.model)
         for _ in range(2):  # what cancels may leave one name
             where = reachable((num, den, *equations), where)
             lines = dict(where)
@@ -204,6 +207,10 @@ class _Printer:
             num, den = (
                 lines.get(e.name, e) if isinstance(e, Name) and used[e] == 1 else e for e in (num, den)
             )
+            spared = {n: e for n, e in where if n not in own and used[Name(n)] == 1 and length(e) <= BAR}
+            once = {n: e for n, e in spared.items() if not isinstance(e, Sum)}
+            num, den, *rest = (substitute(e, once) for e in (num, den, *lines.values()))
+            where = tuple(zip(lines, rest, strict=True))
             num, den = min(self._cleared(num, den), (num, den), key=_bars)
         where = reachable((num, den, *equations), where)
         return PrintedForm("nested", num, den, where, laws)
