@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 MULTIPLE_LIMIT = 12
 """Lengths that are longer sums of base lengths keep kernels of their own."""
+SUM_LIMIT = 8
+"""So do lengths of several beams, 3:7, from this sum on, whose common base would give formulas of pages."""
 EXPONENTIAL = -1
 """The order under which ``exp(-shift*length)`` is listed."""
 
@@ -252,7 +254,9 @@ class _Shape:
         self.coordinates = tuple(tuple(int(i == j) for j in range(len(lengths))) for i in range(len(lengths)))
         if law.kind not in ("general", "varying") and lengths and not lengths[0].ring.is_sparse:
             found = length_base(lengths, positive=decays)
-            if max(sum(map(abs, c)) for c in found.coordinates) <= MULTIPLE_LIMIT:
+            multiples = [sum(map(abs, c)) for c in found.coordinates]
+            is_long = law.kind in ("bending", "pair") and sum(multiples) > SUM_LIMIT
+            if max(multiples) <= MULTIPLE_LIMIT and not (is_long and _are_apart(lengths)):
                 self.base, self.coordinates = found.base, found.coordinates
         self.kernels = [k for i, length in enumerate(self.base) for k in self._kernels(i, length)]
 
@@ -339,6 +343,12 @@ class _Shape:
             for _ in range(abs(n)):
                 even, odd = even * c + sign * (odd * s), odd * c + even * s
         return even, odd
+
+
+def _are_apart(lengths: Sequence[Factored]) -> bool:
+    """Tell whether lengths are those of members alone: none is the sum of two, as with a point between."""
+    sums = [x + y - z for x in lengths for y in lengths for z in lengths]
+    return len(lengths) > 1 and not any(total.is_zero for total in sums)
 
 
 SUBSET_LIMIT = 500

@@ -367,6 +367,8 @@ def _share_factors(parts: list[Expression]) -> Expression:
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
+    if isinstance(part, Negative):
+        return number(-1), *_factors(part.operand)
     return part.factors if isinstance(part, Product) else (part,)
 
 

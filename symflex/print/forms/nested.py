@@ -59,7 +59,7 @@ SHORT = 3
 LONGEST_SUM = 100
 """Terms beyond which a sum is."""
 BAR = 20
-"""Characters that a fraction within a side may save."""
+"""Characters that a fraction within a side may save, and of a product that needs no line to be used once."""
 STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
 """Names of shared sums, products and quotients; ``w`` and ``Z`` are what the elimination calls so."""
 
@@ -208,7 +208,7 @@ class _Printer:
                 lines.get(e.name, e) if isinstance(e, Name) and used[e] == 1 else e for e in (num, den)
             )
             spared = {n: e for n, e in where if n not in own and used[Name(n)] == 1 and length(e) <= BAR}
-            once = {n: e for n, e in spared.items() if not isinstance(e, Sum)}
+            once = {n: e for n, e in spared.items() if isinstance(e, Product | Power)}
             num, den, *rest = (substitute(e, once) for e in (num, den, *lines.values()))
             where = tuple(zip(lines, rest, strict=True))
             num, den = min(self._cleared(num, den), (num, den), key=_bars)

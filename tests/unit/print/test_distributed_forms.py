@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -634,18 +635,15 @@ def test_a_sensor_at_a_fraction_prints_as_one_at_a_length_with_a_name(place):
     at_a_fraction, at_a_name = (
         print_form(pipeline.derive_all(pipeline.loads(CANTILEVER.format(place=p)))[0]) for p in (place, "x_s")
     )
-    arguments = dict(at_a_name.where)["q_2"], dict(at_a_fraction.where)["q_1"]
-    named, fraction = (format_expression(e) for e in arguments)
     top, bottom = place.split("*") if "*" in place else ("1", place)
-    front = "" if top == "1" else f"{top}*"
-    assert (named, fraction) == ("mu_1*x_s", f"{front}mu_1*{bottom}")
+    own = f"{top}*mu_1*{bottom}" if top != "1" else f"mu_1*{bottom}"
 
-    def exchanged(expression):
-        text = format_expression(expression)
-        return text.replace("q_1", "q_0").replace("q_2", "q_1").replace("q_0", "q_2")
+    def spelled_out(form):
+        lines = {name: format_expression(e).replace("mu_1*x_s", own) for name, e in form.where}
+        sides = format_expression(form.num), format_expression(form.den)
+        return [re.sub(r"q_\d", lambda found: lines[found[0]], side) for side in sides]
 
-    assert exchanged(at_a_fraction.num) == format_expression(at_a_name.num)
-    assert exchanged(at_a_fraction.den) == format_expression(at_a_name.den)
+    assert spelled_out(at_a_fraction) == spelled_out(at_a_name)
 
 
 def test_sensors_at_fractions_of_two_beams_have_their_own_lengths():
@@ -657,3 +655,23 @@ link = { type = "spring", between = ["b", "d"], k = 3 }
     (tf,) = pipeline.derive_all(pipeline.loads(text.replace("[inputs.F]", other)))
     arguments = {value for name, value in (line.split(" = ") for line in lines(tf, None)) if name[0] == "q"}
     assert arguments == {"mu_1*l", "mu_1*l/4", "mu_2*l", "mu_2*l/4"}
+
+
+def test_beams_in_a_ratio_of_three_to_seven_print_as_those_of_two_lengths():
+    # By hand: below the bar a cantilever's cosh(x) + cos(x) + 2 of x = q_1 + q_2, above it is symmetric in them.
+    beam = '{{ type = "beam", between = ["{}"], EI = "EI", rhoA = "mu", l = "{}" }}'
+    text = f"""symflex = 1
+parameters = {{ EI = {{}}, mu = {{}}, l = {{}} }}
+elements.left = {beam.format('a", "b', "0.3*l")}
+elements.right = {beam.format('b", "c', "0.7*l")}
+elements.hold = {{ type = "fixed", at = "a" }}
+inputs.F = {{ force = "b" }}
+outputs.Y = "b"
+"""
+    (tf,), reason = pipeline.derive_as(model := pipeline.loads(text), model.transfer_functions)
+    assert reason == ""
+    num, den = shown(tf)
+    below = "cosh(q_1)*cosh(q_2) + sinh(q_1)*sinh(q_2) + cos(q_1)*cos(q_2) - sin(q_1)*sin(q_2) + 2"
+    assert den == f"8*EI*mu_1^3*({below})"
+    first, second = (f"(cosh({q}) + cos({q}) {sign} 2)" for q, sign in (("q_1", "-"), ("q_2", "+")))
+    assert num == f"{first}*(sinh(q_2) - sin(q_2)) + {second}*(sinh(q_1) - sin(q_1))"
