@@ -159,7 +159,7 @@ class Budget:
             _ENTERED.reset(token)
 
     def besides(self) -> Budget:
-        """Return this budget with the limits of the one that is entered now in addition."""
+        """Return this budget, limited also by the one that is entered now."""
         both = self._changed(replace(self))
         object.__setattr__(both, "_outer", _ENTERED.get())
         return both

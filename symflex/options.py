@@ -294,8 +294,8 @@ class ShapeOptions:
         choices=SHAPERS,
         **SHOWN,
         help=(
-            "zv: zero vibration; zvd: its derivative is zero too; ei: extra-insensitive, with 5 % "
-            "residual vibration."
+            "zv: zero vibration; zvd: its derivative by frequency is zero too; ei: "
+            "extra-insensitive, with 5 % residual vibration."
         ),
     )
     joint: bool = option(False, "--joint", **JOINT)
@@ -547,7 +547,7 @@ class FitOptions:
         help="Figure to write: data, fit and residual of all responses; .pdf, .svg or .png.",
     )
     order_figure: str | None = option(
-        None, "--plot-order", is_path=True, help="Stabilisation diagram to write: poles over their number."
+        None, "--plot-order", is_path=True, help="Stabilisation diagram to write: poles over model order."
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 and write nothing if the fit is poor.")
     as_json: bool = option(False, "--json", **JSON)

@@ -246,8 +246,8 @@ class Analyses(Plotted):
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         budget : float, optional
-            Time the search may take [s]. When it runs out, the roots proved so far are returned: each is
-            proved, but not that none is missing, and ``certificate.is_exceeded`` is true. Without it, a
+            Time the search may take [s]. When it runs out, the roots proved so far are returned; others
+            may be missing, and ``certificate.is_exceeded`` is true. Without it, a
             fixed amount of work limits the search of a distributed system.
 
         Raises
@@ -356,8 +356,8 @@ class Analyses(Plotted):
     def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
         """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
 
-        Several shapes form a basis: each is 1 at one of as many places and 0 at the others, before it is
-        scaled to a largest displacement of 1. See :meth:`mode_shape`.
+        Several shapes form a basis: n shapes have n places, and each is 1 at one and 0 at the others, before
+        it is scaled to a largest displacement of 1. See :meth:`mode_shape`.
         """
         from symflex.analysis.modes import mode_shapes
 

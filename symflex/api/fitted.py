@@ -179,7 +179,7 @@ def fit(
     gain : bool
         Fit a gain in addition to the base.
     lag : bool or "signed"
-        Fit a lag of the sensor, 1/(1 + T s); it is not negative unless it is ``"signed"``.
+        Fit a lag of the sensor, 1/(1 + T s), with T not negative unless this is ``"signed"``.
     delay : bool
         Fit a dead time, exp(-T s), which is not negative.
     slope : int, optional

@@ -204,9 +204,9 @@ class TransferFunction(_Derived):
     def form(self, name: str | None = None, digits: int = 6) -> Form:
         """Return the function in one of the forms of ``symflex derive``.
 
-        ``polynomial``, ``monic``, ``factored``, ``zpk`` and ``definitions`` for rational functions,
-        ``hyperbolic``, ``krylov``, ``vaughan``, ``factored`` and ``polynomial`` for those of beams, rods and
-        delays, ``frequency`` for all.
+        ``polynomial``, ``monic``, ``constant``, ``factored``, ``zpk`` and ``definitions`` for rational
+        functions; ``hyperbolic``, ``krylov``, ``vaughan``, ``factored`` and ``polynomial`` for those of
+        beams, rods and delays; ``frequency`` for all.
 
         Parameters
         ----------

@@ -42,7 +42,7 @@ SHOWN_PROBLEMS = 20
 """More of one expression than anybody reads."""
 ORDER_LIMIT = 24
 """Of a derivative at a point; what is beyond the field's own order follows from its equations."""
-DELAY_HINT = "a dead time, exp(-s*T) with T free of s, stands in [signals] or is a block of type delay"
+DELAY_HINT = "write a dead time in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
 FUNCTION_HINT = "functions of s enter through [fields], through distributed elements, and as delays"
 NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()

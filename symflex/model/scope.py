@@ -235,8 +235,8 @@ def outside(written: str, described: str, span: Span | None) -> Diagnostic:
     """Return the diagnostic of what may not stand in the equations of a field."""
     return Diagnostic(
         "SF245",
-        f"'{written}' is {described}; the equations of a field hold its own unknowns, parameters, inputs and "
-        "signals",
+        f"'{written}' is {described}; the equations of a field may use only its unknowns, parameters, "
+        "inputs and signals",
         span,
         "what acts at a point belongs in the conditions; a load along x is an input or a signal",
     )

@@ -139,7 +139,7 @@ def _written(
     else:
         sections |= _loop(loop, source_name, expressions, {*used, *parameters, *blocks})
         unit = fit.bases[0].unit if fit.bases[0].path else fit.measured[0].unit
-        doc = f"gain of the loop from {outputs[0]}: symflex stability --gain {loop} tells which are stable"
+        doc = f"gain of the loop from {outputs[0]}: symflex stability --gain {loop} finds its stable values"
         parameters[loop] = {"value": f"1 1/({unit})" if unit not in ("", "1") else 1, "doc": doc}
     if copied is not None:
         sections = _with_copy(sections, copied, Path(fit.bases[0].path).parent, folder)
