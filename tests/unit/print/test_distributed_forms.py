@@ -658,7 +658,7 @@ link = { type = "spring", between = ["b", "d"], k = 3 }
 
 
 def test_beams_in_a_ratio_of_three_to_seven_print_as_those_of_two_lengths():
-    # By hand: below the bar a cantilever's cosh(x) + cos(x) + 2 of x = q_1 + q_2, above it is symmetric in them.
+    # By hand: below the bar a cantilever's cosh(x) + cos(x) + 2 of x = q_1 + q_2, opened.
     beam = '{{ type = "beam", between = ["{}"], EI = "EI", rhoA = "mu", l = "{}" }}'
     text = f"""symflex = 1
 parameters = {{ EI = {{}}, mu = {{}}, l = {{}} }}
