@@ -16,7 +16,7 @@ after rows have been brought to one size, so that balls stay narrow.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from heapq import nsmallest
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from flint import acb
@@ -25,7 +25,7 @@ from symflex.balls.precision import UndecidedError
 from symflex.balls.values import balancing, binary_exponent
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 THRESHOLD = -4
 """log2 of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
@@ -80,8 +80,14 @@ def eliminate(
         sizes = [{j: _size(x) for j, x in row.items() if j < size} for row in rows[:size]]
         scale, _ = balancing(sizes, size, PASSES)
     left, chosen, determinant = set(range(size)), list[tuple[int, int]](), ONE
+    waiting = [(len(columns[j]), j) for j in range(size)]
+    heapify(waiting)
     for number in range(size):
-        i, j = _next_pivot(rows, columns, left, scale, chosen) if order is None else order[number]
+        if order is not None:
+            i, j = order[number]
+        else:
+            few = _fewest(waiting, columns, left)
+            i, j = _next_pivot(rows, columns, few, left, scale, chosen)
         pivot = rows[i].get(j, ZERO)
         if pivot.contains(0) and not number + 1 == size == len(rows):
             raise UndecidedError
@@ -89,19 +95,36 @@ def eliminate(
         left.discard(j)
         determinant = determinant * pivot
         _take_out(rows, columns, i, j)
+        for k in left.intersection(rows[i]):
+            heappush(waiting, (len(columns[k]), k))
     return Eliminated(chosen, determinant * sign_of(chosen), rows)
+
+
+def _fewest(
+    waiting: list[tuple[int, int]], columns: Sequence[set[int]], left: Collection[int]
+) -> Collection[int]:
+    """Return the columns left that have fewest entries; others in the heap have had other numbers of them."""
+    few: dict[int, int] = {}
+    while waiting and len(few) < CANDIDATES:
+        entries, j = heappop(waiting)
+        if j in left and entries == len(columns[j]):
+            few[j] = entries
+    for j, entries in few.items():
+        heappush(waiting, (entries, j))
+    return few
 
 
 def _next_pivot(
     rows: Sequence[Mapping[int, acb]],
     columns: Sequence[set[int]],
-    left: set[int],
+    few: Collection[int],
+    left: Collection[int],
     scale: Sequence[int],
     chosen: Sequence[tuple[int, int]],
 ) -> tuple[int, int]:
-    """Return row and column of the next pivot; where one is left alone, it may vanish."""
+    """Return row and column of the next pivot, in few columns; where one is left alone, it may vanish."""
     best: tuple[int, int, int, int] | None = None
-    for j in nsmallest(CANDIDATES, left, key=lambda j: len(columns[j])):
+    for j in few:
         inside = [i for i in columns[j] if i < len(scale)]
         sizes = {i: _size(rows[i][j]) + scale[i] for i in inside if not rows[i][j].contains(0)}
         largest = max(sizes.values(), default=0)
