@@ -394,8 +394,8 @@ class OpAmp(Element):
         Port("out", 1, "electrical", "node of the output"),
     )
     parameters = (
-        ParameterPort("A", "1", "an open-loop gain, infinite where 0", "0"),
-        ParameterPort("f_u", "rad/s", "a unity-gain frequency, infinite where 0", "0"),
+        ParameterPort("A", "1", "an open-loop gain, infinite if 0", "0"),
+        ParameterPort("f_u", "rad/s", "a unity-gain frequency, infinite if 0", "0"),
     )
     through = ("i",)
 
