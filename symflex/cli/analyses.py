@@ -144,8 +144,8 @@ def colocation(spec: Specification, given: ColocationOptions) -> int:
     """Print the frequency up to which an output of SPEC moves with a colocated one.
 
     Up to this frequency the two outputs are dynamically colocated, although flexible parts lie between them.
-    The band ends where their ratio first leaves the tolerances; it is proved that it does not leave them
-    earlier. Exit code 4: the end could not be determined.
+    The band ends where their ratio first leaves the tolerances; symflex proves that it stays within them
+    below that frequency. Exit code 4: the end could not be determined.
     """
     from symflex.loops import of_model
 

@@ -185,15 +185,15 @@ def export(spec: Specification, given: ExportOptions) -> int:
     """Write the transfer functions of SPEC for another program.
 
     Numeric code is verified against ball arithmetic before it is written; its documentation states the worst
-    error. A target with several files, such as c with its header, writes them next to the file of -o; on
-    standard output it is one file.
+    error. A target with several files, such as c with its header, writes them all beside the file of -o, and
+    as one text to standard output.
 
-    --to latex -o FOLDER/ writes every transfer function, table and figure to a file of its own for a paper to
-    input, and document.tex, which inputs them all.
+    --to latex -o FOLDER/ writes every transfer function, table and figure to a file of its own, which a paper
+    can input, and document.tex, which inputs them all.
 
     --to state-space writes one realisation of all functions; its states are displacements, velocities,
-    currents and so on of the model. Exit code 3: there is none, because beams, rods and delays have
-    infinitely many states, or a function has more zeros than poles.
+    currents and so on of the model. Exit code 3: there is no such realisation, because beams, rods and delays
+    have infinitely many states, or a function has more zeros than poles.
 
     --sample with --to c or numpy writes difference equations: code for a controller or filter that takes one
     step for each sample. Rounding errors are measured. A dead time may be any fraction of a sample.

@@ -227,8 +227,8 @@ class VoiceCoil(ElectricMotor):
 class PlanetaryGear(Element):
     """A planetary gear without losses: ``sun + rho*ring = (1 + rho)*carrier``, of the three angles [rad].
 
-    rho is the teeth of the ring over those of the sun; ``tau`` [N m] is the torque delivered to the sun,
-    while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at
+    rho is the number of teeth of the ring over that of the sun; ``tau`` [N m] is the torque delivered to
+    the sun, while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at
     ``"ground"``, it is a gear with a fixed ratio. Source: Willis 1841, Principles of Mechanism.
     """
 
@@ -379,7 +379,7 @@ class CoupledInductors(Element):
 
 
 class OpAmp(Element):
-    """An operational amplifier: ``out = A(s)*(p - n)``, without input current and output resistance.
+    """An operational amplifier: ``out = A(s)*(p - n)``, with no input current and no output resistance.
 
     Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at one voltage. With a DC gain A
     and a unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``; the term of a parameter that is
@@ -394,8 +394,8 @@ class OpAmp(Element):
         Port("out", 1, "electrical", "node of the output"),
     )
     parameters = (
-        ParameterPort("A", "1", "an open-loop gain, infinite where 0", "0"),
-        ParameterPort("f_u", "rad/s", "a unity-gain frequency, infinite where 0", "0"),
+        ParameterPort("A", "1", "an open-loop gain, infinite if 0", "0"),
+        ParameterPort("f_u", "rad/s", "a unity-gain frequency, infinite if 0", "0"),
     )
     through = ("i",)
 

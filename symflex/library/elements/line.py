@@ -146,9 +146,9 @@ class Shaft(LineElement):
     """A uniform shaft of length l [m] and polar second moment of area J [m^4] in torsion.
 
     ``tau`` [N m] is the torque the shaft delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping,
-    ``c_f`` and ``k_f`` a viscous and an elastic foundation per length. If the section is not circular, give
-    G times the torsion constant over J as G. Source: Timoshenko, Young & Weaver 1974, Vibration Problems in
-    Engineering, chapter 5.
+    ``c_f`` and ``k_f`` a viscous and an elastic foundation per length. If the section is not circular,
+    multiply G by the torsion constant over J. Source: Timoshenko, Young & Weaver 1974, Vibration Problems
+    in Engineering, chapter 5.
     """
 
     type_name = "shaft"

@@ -272,7 +272,7 @@ class Slider(Element):
 
 
 class Pin(Element):
-    """The deflection y is zero, in the plane also x, and the slope is free.
+    """The deflection y is zero (in the plane, x too), and the slope is free.
 
     ``f`` [N] is the reaction along y, ``f_x`` [N] that along x. Between two nodes it is a hinge: their
     deflections are equal, and their slopes are free.
