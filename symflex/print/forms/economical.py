@@ -83,7 +83,7 @@ def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
     sums = [in_exponentials(work, work.taken_over(f), angle) for f, _ in tf.ratio.factors]
     real = [{k: x for k, c in each.items() if not (x := real_powers(work, c)).is_zero()} for each, _ in sums]
     multiples = {abs(n) for coefficients in real for key in coefficients for n in key}
-    pairs = combinations(range(1, max(multiples, default=0) + 1), TWO)
+    pairs = [(x, y) for x in range(1, max(multiples, default=0)) for y in range(x + 1, max(multiples) + 1)]
     ways = {pair: way for pair in pairs if (way := _as_sums(multiples, pair)) is not None}
     if not ways or max(multiples) <= HALVES:
         return None
