@@ -389,15 +389,17 @@ def stability_html(found: StabilityMap) -> str:
 
 def _passages(found: StabilityMap) -> Iterator[Passage]:
     unit = f" [{found.unit}]" if found.unit else ""
-    lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
-    lines += [
-        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons
-    ]
+    lines = [f"{found.gain}{unit}   {_status(found)}", f"examined: {_examined(found)}"]
+    lines += [f"{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons]
     if found.nominal is not None:
-        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
+        lines.append(f"{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
     if found.verdict.hidden:
-        said = f"{found.tf}: {found.verdict.hidden_motion}"
-        lines += wrap(said, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        lines.append(f"{found.tf}: {found.verdict.hidden_motion}")
+    lines = [
+        piece
+        for n, line in enumerate(lines)
+        for piece in wrap(line, WIDTH, initial_indent=INDENT * bool(n), subsequent_indent=2 * INDENT)
+    ]
     yield Passage(lines)
     if not found.intervals:
         return
