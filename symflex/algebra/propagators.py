@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 MULTIPLE_LIMIT = 12
 """Lengths that are longer sums of base lengths keep kernels of their own."""
-SUM_LIMIT = 8
-"""So do lengths of several beams, 3:7, from this sum on, whose common base would give formulas of pages."""
+SUM_LIMIT = 7
+"""So do lengths of several beams whose sum is more, as 3:7: with a common base formulas are of pages."""
 EXPONENTIAL = -1
 """The order under which ``exp(-shift*length)`` is listed."""
 
