@@ -369,6 +369,9 @@ def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandFo
         gain, even, odd = fit
         kept = [_trimmed(part) for part in (even, odd)]
         if all(len(part) <= count - SPARE for part in kept):
+            # All roots of a rational function leave nothing but the gain's rounding.
+            if isinstance(found.region, Everything) and not reason:
+                kept = [(), ()]
             return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
     return None

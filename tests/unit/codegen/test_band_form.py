@@ -114,6 +114,22 @@ def test_what_is_lumped_is_exact_and_needs_no_rest():
     assert not program.parameters
 
 
+def test_what_is_lumped_has_no_end():
+    text = """
+symflex = 1
+inputs = { u = { voltage = "a" } }
+outputs = { i = "u.i" }
+[elements]
+c = { type = "capacitor", between = ["a", "b"], C = "1 pF" }
+r = { type = "resistor", between = ["b", "ground"], R = "3 Ohm" }
+"""
+    s = np.array([1j, 3e5, 2e12j, (-1 + 7j) * 1e11])
+    exact = s * 1e-12 / (1 + 3e-12 * s)
+    code = executed(exported(text, "numpy").text)["i_over_u"]
+    assert "it was measured for" in re.sub(r"\s+", " ", code.__doc__)
+    assert np.all(np.abs(code(s) / exact - 1) < 1e-14)
+
+
 @pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_has_it_where_waves_would_have_to_be_followed(tmp_path):
