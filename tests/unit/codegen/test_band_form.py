@@ -131,6 +131,32 @@ r = { type = "resistor", between = ["b", "ground"], R = "3 Ohm" }
 
 
 @pytest.mark.slow
+def test_a_docstring_says_where_roots_accumulate_and_errors_grow():
+    text = """
+symflex = 1
+inputs = { z = { displacement = "x" } }
+outputs = { T = "y" }
+[elements]
+r = { type = "rod", between = ["x", "y"], EA = "300 kN", rhoA = "0.11 kg/m", l = "0.5 m", eta = "60 us" }
+m = { type = "mass", at = "y", m = "2 kg" }
+"""
+    code = executed(exported(text, "numpy").text)["T_over_z"]
+    said = re.sub(r"\s+", " ", code.__doc__)
+    assert "near the imaginary axis" in said
+    assert "and larger further away" in said
+
+    def exact(s):
+        stiff = 300e3 * (1 + 60e-6 * s)
+        wave = np.sqrt(0.11 * s**2 / stiff + 0j)
+        return 1 / (np.cosh(wave / 2) + 2 * s**2 / (stiff * wave) * np.sinh(wave / 2))
+
+    assert abs(code(3e3j) / exact(3e3j) - 1) < 1e-12
+    # Poles accumulate at -1/eta, where E vanishes.
+    assert abs(code(-16000.0) / exact(-16000.0) - 1) > 0.1
+    assert "infinitely many accumulate about -1.667e+04+0j rad/s" in said
+
+
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_has_it_where_waves_would_have_to_be_followed(tmp_path):
     library, _ = compiled(tmp_path, exported(HANGING, "c"))
