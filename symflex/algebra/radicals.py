@@ -18,7 +18,7 @@ from math import gcd, isqrt
 from random import Random
 from typing import TYPE_CHECKING, TypeVar
 
-from flint import fmpz
+from flint import fmpz, nmod_poly
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.factored import PRIME, Factored, residue
@@ -316,7 +316,7 @@ class Radicals:
         Its leading coefficient in s is free of roots, and it has no content; it is one where there is none.
         """
         one = self.ring.constant(1)
-        if not degree_in(f, 0) or not degree_in(g, 0):
+        if not degree_in(f, 0) or not degree_in(g, 0) or self._are_coprime(f, g):
             return one
         if degree_in(f, 0) < degree_in(g, 0):
             f, g = g, f
@@ -329,6 +329,21 @@ class Radicals:
             if not degree_in(rest, 0):
                 return one
             f, g = g, self.primitive(rest)
+
+    def _are_coprime(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
+        """Return whether a point proves it, where the resultant is not zero: Euclid's steps grow fast."""
+        if (point := self.point()) is None:
+            return False
+        prime, values = point
+        sides = []
+        for side in (f, g):
+            found = {
+                n: residue(Factored.polynomial(self.ring, part), values, prime)
+                for n, part in by_powers(self.ring, side).items()
+            }
+            sides.append(nmod_poly([found.get(n, 0) for n in range(degree_in(side, 0) + 1)], prime))
+        is_kept = all(int(p.degree()) == degree_in(q, 0) for p, q in zip(sides, (f, g), strict=True))
+        return is_kept and int(sides[0].gcd(sides[1]).degree()) == 0
 
     def quotient(self, f: fmpz_mpoly, g: fmpz_mpoly) -> Factored:
         """Return ``f/g`` where g divides f."""

@@ -169,7 +169,7 @@ class DimensionSystem:
         self._coordinate: Measure | None = None
         # What terms with a written number tell, if no such number in the model has a unit.
         self._guesses: list[Measure] = []
-        self._sound_points: set[tuple[str, Expression]] = set()
+        self._sound_points: set[tuple[str, Expression, tuple[Dimension, ...]]] = set()
         self.problems: list[Diagnostic] = []
 
     def _note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
@@ -349,7 +349,9 @@ class DimensionSystem:
 
     def _at_point(self, name: str, place: Expression) -> None:
         """Note a point that is not measured as x is."""
-        if (name, place) in self._sound_points:
+        # Numbers that are equal in SI units are equal, whatever they measure.
+        point = (name, place, tuple(n.quantity.dimension for n in measured(place)))
+        if point in self._sound_points:
             return
         measure = self.measure(place)
         self._read_cycles(measure, None, place.span)
@@ -367,7 +369,7 @@ class DimensionSystem:
                 message = f"the point is in '{found}'; x along {self._scope.along[name]} is in '{wanted}'"
             self._note("SF203", message, place.span)
             return
-        self._sound_points.add((name, place))
+        self._sound_points.add(point)
 
     def _name(self, expression: Name | Attribute) -> Measure:
         if self._coordinate is not None and isinstance(expression, Name):

@@ -221,7 +221,7 @@ class TransferFunction:
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
         if self._large is not None:
-            return parameters_named(self.model, self.constants, self._opened_names(self._large.generators))
+            return self.parameters_below(self._large.generators)
         return self.parameters_in([f for f, _ in self.all_factors])
 
     @property
@@ -238,13 +238,13 @@ class TransferFunction:
         """Return the parameters that polynomials over the function's ring hold."""
         return parameters_named(self.model, self.constants, self.ring.used_in(polynomials))
 
-    def _opened_names(self, found: frozenset[str]) -> set[str]:
-        """Return names with those in definitions among them, and in definitions of these."""
+    def parameters_below(self, found: frozenset[str]) -> tuple[ModelParameter, ...]:
+        """Return the parameters among names, in definitions among them, and in definitions of these."""
         used = set(found)
         for name, value in reversed(self.definitions):
             if name in used:
                 used |= value.ring.used_in(f for f, _ in value.factors)
-        return used
+        return parameters_named(self.model, self.constants, used)
 
     @cached_property
     def probes(self) -> Probes:

@@ -217,7 +217,8 @@ class BandForm:
             else "The poles and zeros in the band and around it are proved, and that there are no others."
         )
         end = f"abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz"
-        holds = f"it holds for {end}, and is NaN beyond" if self.is_limited else f"it was measured for {end}"
+        near = f"it holds near the imaginary axis for {end}, and is NaN beyond"
+        holds = near if self.is_limited else f"it was measured for {end}"
         return (
             formula,
             f"Band form: {holds}. {proof} Numbers are those of the file: no parameter can be changed here.",
@@ -226,7 +227,8 @@ class BandForm:
     def beside(self, part: float, error: str) -> str:
         """Return what a docstring says of values beside the axis, where the error was measured."""
         at = f"abs(re(s)) = {part * self.end:.3g} rad/s"
-        return f"Away from the axis, at {at}, the worst relative error is {error}."
+        rises = ", and larger further away" if self.is_limited else ""
+        return f"Away from the axis, at {at}, the worst relative error is {error}{rises}."
 
     def program(self) -> Piecewise:
         """Return the program."""
@@ -359,7 +361,9 @@ def _two_doubles(x: arb) -> tuple[float, float]:
 def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandForm | None:
     """Return the band form with given roots, None where what they leave is not smooth."""
     (below, poles), (above, zeros) = _split(found.poles), _split(found.zeros)
-    reason = found.certificate.reason or ""
+    reason = found.certificate.reason or "; ".join(
+        f"infinitely many accumulate about {complex(hole.re, hole.im):.4g} rad/s" for hole in found.excluded
+    )
     made = BandForm(values.bound.name, end, 1.0, above - below, zeros, poles, (), (), reason)
     count = FIRST_NODES
     while count <= MOST_NODES:
@@ -369,6 +373,9 @@ def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandFo
         gain, even, odd = fit
         kept = [_trimmed(part) for part in (even, odd)]
         if all(len(part) <= count - SPARE for part in kept):
+            # All roots of a rational function leave nothing but the gain's rounding.
+            if isinstance(found.region, Everything) and not reason:
+                kept = [(), ()]
             return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
     return None

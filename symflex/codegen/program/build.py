@@ -91,7 +91,9 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
         # The closed form would divide away the poles of a definition at run time.
         has_poles = any(value.is_zero or value.denominator().depends_on(LAPLACE) for value in used)
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
-        if not has_poles and sum(terms) <= TERM_LIMIT:
+        # A parameter that cancels where definitions are opened is no argument.
+        has_others = not set(tf.parameters_below(closed.generators)) <= set(tf.parameters)
+        if not has_poles and not has_others and sum(terms) <= TERM_LIMIT:
             forms += ["closed", "closed in s", "nested"]
     if tf.length <= TERM_LIMIT:
         forms.append("factors")

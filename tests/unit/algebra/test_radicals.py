@@ -73,6 +73,19 @@ def test_common_factors_are_those_of_the_numbers():
         assert sum(int(f.degrees()[0]) * e for f, e in shared.factors) == common, str(above / below)
 
 
+def test_what_a_point_proves_coprime_is_not_divided(monkeypatch):
+    # Euclid's steps multiply by conjugates: five degrees and ten names took minutes.
+    def divided(*_):
+        raise AssertionError
+
+    monkeypatch.setattr(Radicals, "_divided", divided)
+    found = radicals()
+    f = (M * S**3 + P * S * K + R).numerator().expand()
+    assert found.gcd(f, f.derivative(0)) == 1
+    with pytest.raises(AssertionError):  # p is the root of k/m: they share s + p
+        found.gcd((S * M + P * M).numerator().expand(), (S**2 * M - K).numerator().expand())
+
+
 def test_polynomials_are_split_by_multiplicity_and_symmetry():
     square = (M * S**2 + Q * S * 2 + K).expand()
     (parts,) = radicals().split([(square, 1)])

@@ -114,6 +114,48 @@ def test_what_is_lumped_is_exact_and_needs_no_rest():
     assert not program.parameters
 
 
+def test_what_is_lumped_has_no_end():
+    text = """
+symflex = 1
+inputs = { u = { voltage = "a" } }
+outputs = { i = "u.i" }
+[elements]
+c = { type = "capacitor", between = ["a", "b"], C = "1 pF" }
+r = { type = "resistor", between = ["b", "ground"], R = "3 Ohm" }
+"""
+    s = np.array([1j, 3e5, 2e12j, (-1 + 7j) * 1e11])
+    exact = s * 1e-12 / (1 + 3e-12 * s)
+    code = executed(exported(text, "numpy").text)["i_over_u"]
+    assert "it was measured for" in re.sub(r"\s+", " ", code.__doc__)
+    assert np.all(np.abs(code(s) / exact - 1) < 1e-14)
+
+
+@pytest.mark.slow
+def test_a_docstring_says_where_roots_accumulate_and_errors_grow():
+    text = """
+symflex = 1
+inputs = { z = { displacement = "x" } }
+outputs = { T = "y" }
+[elements]
+r = { type = "rod", between = ["x", "y"], EA = "300 kN", rhoA = "0.11 kg/m", l = "0.5 m", eta = "60 us" }
+m = { type = "mass", at = "y", m = "2 kg" }
+"""
+    code = executed(exported(text, "numpy").text)["T_over_z"]
+    said = re.sub(r"\s+", " ", code.__doc__)
+    assert "near the imaginary axis" in said
+    assert "and larger further away" in said
+
+    def exact(s):
+        stiff = 300e3 * (1 + 60e-6 * s)
+        wave = np.sqrt(0.11 * s**2 / stiff + 0j)
+        return 1 / (np.cosh(wave / 2) + 2 * s**2 / (stiff * wave) * np.sinh(wave / 2))
+
+    assert abs(code(3e3j) / exact(3e3j) - 1) < 1e-12
+    # Poles accumulate at -1/eta, where E vanishes.
+    assert abs(code(-16000.0) / exact(-16000.0) - 1) > 0.1
+    assert "infinitely many accumulate about -1.667e+04+0j rad/s" in said
+
+
 @pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_has_it_where_waves_would_have_to_be_followed(tmp_path):

@@ -251,3 +251,25 @@ def test_recurrences_give_up_on_a_polynomial_nested_too_deeply(monkeypatch):
     monkeypatch.setattr("symflex.codegen.program.polynomials.DEPTH_LIMIT", 3)
     with pytest.raises(BudgetError, match="structure"):
         build_program(chain(8)[0], "closed")
+
+
+def test_a_parameter_that_cancels_between_definitions_is_no_argument():
+    text = """
+symflex = 1
+parameters = { tau = "1 ms", C_1 = "10 nF", n = 8 }
+definitions = { C_2 = "C_1/n", R_1 = "tau/C_1", R_2 = "2*tau/C_2" }
+inputs = { U = { voltage = "in" } }
+outputs = { Y = "o" }
+[elements]
+r1 = { type = "resistor", between = ["in", "m"], R = "R_1" }
+c1 = { type = "capacitor", between = ["m", "ground"], C = "C_1" }
+r2 = { type = "resistor", between = ["m", "o"], R = "R_2" }
+c2 = { type = "capacitor", between = ["o", "ground"], C = "C_2" }
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    program = build_program(tf)
+    assert set(program.parameters) == {"tau", "n"}
+    s, tau, n = 300 + 700j, 2e-3, 5.0
+    expected = 1 / (1 + s * tau * (3 + 1 / n) + 2 * (s * tau) ** 2)
+    computed = complex(evaluate(program, s, {"tau": tau, "n": n}))
+    assert abs(computed - expected) < 1e-15

@@ -177,6 +177,11 @@ def test_a_point_that_is_none_is_refused():
         assert {d.code for d in caught.value.diagnostics} == {code}, place
 
 
+def test_a_point_is_measured_also_where_another_has_its_value():
+    with pytest.raises(SymflexError, match="the point is in 'kg'"):
+        symflex.loads(CANTILEVER + 'P = "arm.y(0.3 m)"\nQ = "arm.y(0.3 kg)"\n')
+
+
 def test_what_has_no_points_is_told_apart():
     for expression, code, hint in [
         ("arm.y", "SF241", "evaluate it at a point: arm.y(0)"),
