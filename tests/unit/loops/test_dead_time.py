@@ -98,7 +98,7 @@ def test_a_loop_that_cannot_be_proved_has_a_reason():
     found = stability(pipeline.loads(text), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     assert not found.certified
     assert "share the highest power of s" in found.reasons[0]
-    assert f"not proved: {found.reasons[0]}" in stability_text(found)
+    assert f"not proved: {found.reasons[0]}" in " ".join(stability_text(found).split())
 
 
 def test_a_map_that_is_not_complete_cannot_be_without_a_reason():
