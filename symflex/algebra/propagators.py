@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 from math import comb
+from operator import add
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat, fmpz_mat
@@ -256,7 +257,7 @@ class _Shape:
             found = length_base(lengths, positive=decays)
             multiples = [sum(map(abs, c)) for c in found.coordinates]
             is_long = law.kind in ("bending", "pair") and sum(multiples) > SUM_LIMIT
-            if max(multiples) <= MULTIPLE_LIMIT and not (is_long and _are_apart(lengths)):
+            if max(multiples) <= MULTIPLE_LIMIT and not (is_long and _are_apart(found.coordinates)):
                 self.base, self.coordinates = found.base, found.coordinates
         self.kernels = [k for i, length in enumerate(self.base) for k in self._kernels(i, length)]
 
@@ -345,10 +346,10 @@ class _Shape:
         return even, odd
 
 
-def _are_apart(lengths: Sequence[Factored]) -> bool:
+def _are_apart(coordinates: Sequence[tuple[int, ...]]) -> bool:
     """Tell whether lengths are those of members alone: none is the sum of two, as with a point between."""
-    sums = [x + y - z for x in lengths for y in lengths for z in lengths]
-    return len(lengths) > 1 and not any(total.is_zero for total in sums)
+    known, pairs = set(coordinates), product(coordinates, repeat=2)
+    return len(known) > 1 and known.isdisjoint(tuple(map(add, x, y)) for x, y in pairs)
 
 
 SUBSET_LIMIT = 500

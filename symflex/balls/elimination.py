@@ -95,8 +95,9 @@ def eliminate(
         left.discard(j)
         determinant = determinant * pivot
         _take_out(rows, columns, i, j)
-        for k in left.intersection(rows[i]):
-            heappush(waiting, (len(columns[k]), k))
+        if order is None:
+            for k in left.intersection(rows[i]):
+                heappush(waiting, (len(columns[k]), k))
     return Eliminated(chosen, determinant * sign_of(chosen), rows)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import pi
-from textwrap import wrap
 from typing import TYPE_CHECKING, Literal
 
 from flint import arb
@@ -377,7 +376,7 @@ SHORT_DIGITS = 6
 
 def stability_text(found: StabilityMap) -> str:
     """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-    return passages_text(_passages(found))
+    return passages_text(_passages(found), WIDTH)
 
 
 def stability_html(found: StabilityMap) -> str:
@@ -389,17 +388,14 @@ def stability_html(found: StabilityMap) -> str:
 
 def _passages(found: StabilityMap) -> Iterator[Passage]:
     unit = f" [{found.unit}]" if found.unit else ""
-    lines = [f"{found.gain}{unit}   {_status(found)}", f"examined: {_examined(found)}"]
-    lines += [f"{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons]
-    if found.nominal is not None:
-        lines.append(f"{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
-    if found.verdict.hidden:
-        lines.append(f"{found.tf}: {found.verdict.hidden_motion}")
-    lines = [
-        piece
-        for n, line in enumerate(lines)
-        for piece in wrap(line, WIDTH, initial_indent=INDENT * bool(n), subsequent_indent=2 * INDENT)
+    lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
+    lines += [
+        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons
     ]
+    if found.nominal is not None:
+        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
+    if found.verdict.hidden:
+        lines.append(f"{INDENT}{found.tf}: {found.verdict.hidden_motion}")
     yield Passage(lines)
     if not found.intervals:
         return

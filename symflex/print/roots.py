@@ -12,12 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 from flint import arb
 
-from symflex.print.text import INDENT, WIDTH, aligned
+from symflex.print.text import INDENT, WIDTH, aligned, broken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -207,13 +206,13 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     word = found.verdict.brief
     lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
     if found.verdict.sentence != word:
-        lines += wrap(found.verdict.sentence, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        lines += broken(INDENT + found.verdict.sentence, width)
     if found.verdict.hidden:
-        lines += wrap(found.verdict.hidden_motion, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        lines += broken(INDENT + found.verdict.hidden_motion, width)
     if shown := region_text(found.region):
         if found.verdict.word == "unstable" and not found.unstable:
             shown += "; all known poles in the right half plane"
-        lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        lines += broken(f"{INDENT}shown: {shown}", width)
     if found.is_default_region:
         lines.append(f"{INDENT}this is the default: a distributed system has infinitely many poles")
     for part in found.excluded:

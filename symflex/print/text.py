@@ -238,12 +238,13 @@ def passages_text(passages: Iterable[Passage], width: int | None = None) -> str:
 
 def _passage_lines(passage: Passage, width: int | None) -> Iterator[str]:
     for line in passage.lines:
-        yield from (_broken(line, width) if width else [line])
+        yield from (broken(line, width) if width else [line])
     if passage.rows:
         yield from aligned(passage.rows)
 
 
-def _broken(line: str, width: int) -> list[str]:
+def broken(line: str, width: int = WIDTH) -> list[str]:
+    """Return a line in several, those after the first further in."""
     indent = line[: len(line) - len(line.lstrip())]
     return wrap(
         line.lstrip(),

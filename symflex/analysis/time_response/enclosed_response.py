@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from operator import sub
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import arb
 
 from symflex.errors import Diagnostic, UsageError
-from symflex.print.text import INDENT, WIDTH, aligned
+from symflex.print.text import aligned, broken
 from symflex.roots.root import RootDecimals, decimals
 
 if TYPE_CHECKING:
@@ -174,10 +173,8 @@ def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     """Return a response as the command line prints it, with notes between its head and its table."""
     unit = f" [{found.unit}]" if found.unit else ""
     trust = "certified" if found.certified else f"NOT CERTIFIED: {found.reason}"
-    lines = wrap(f"{found.tf}   {found.title}{unit}, {trust}", WIDTH, subsequent_indent=2 * INDENT)
-    for why in found.refused:
-        lines += wrap(f"not by {why}", WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
-    lines.append("")
+    head = [f"{found.tf}   {found.title}{unit}, {trust}", *(f"  not by {why}" for why in found.refused)]
+    lines = [*(piece for line in head for piece in broken(line)), ""]
     if found.impulses:
         lines += [f"  {_impulse(found, impulse)}" for impulse in found.impulses[:ROWS]]
         lines += _more(found.impulses)

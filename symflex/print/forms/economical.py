@@ -100,12 +100,13 @@ def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
 
     pair = min(ways, key=rank)
     way, lengths, j = ways[pair], [angle.length * n for n in pair], work.generator(IMAGINARY)
-    table = [
-        Kernel(g, f, angle.dispersion, angle.wavenumber, length)  # type: ignore[arg-type]
-        for names, length in zip((other, angle.kernels), lengths, strict=True)
-        for f, g in names.items()
-    ]
-    table += [k for k in tf.kernels.kernels if k.generator not in angle.kernels.values()]
+    table = list[Kernel]()
+    for kernel in tf.kernels.kernels:
+        if kernel.generator not in angle.kernels.values():
+            table.append(kernel)
+            continue
+        for names, length in zip((other, angle.kernels), lengths, strict=True):
+            table.append(replace(kernel, generator=names[kernel.function], length=length))
     normal = NormalForm(ring, _over(ring, replace(tf.kernels, kernels=tuple(table))))
     kernels = [{f: work.generator(g) for f, g in names.items()} for names in (other, angle.kernels)]
 
@@ -177,10 +178,8 @@ def added(tf: TransferFunction) -> TransferFunction:
                 if _terms(total) < max(map(_terms, parts)):
                     angle = own[wave, parts[0]]
                     names = {f: f"{f}[{wave},sum {len(sums)}]" for f in angle.kernels}
-                    found += [
-                        Kernel(g, f, angle.dispersion, wave, total)  # type: ignore[arg-type]
-                        for f, g in names.items()
-                    ]
+                    own_kernels = (k for k in tf.kernels.kernels if k.generator in angle.kernels.values())
+                    found += [replace(k, generator=names[k.function], length=total) for k in own_kernels]
                     sums.append(_Sum(names, tuple(own[wave, part].kernels for part in parts)))
     if not sums:
         return tf
