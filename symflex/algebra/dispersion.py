@@ -135,17 +135,17 @@ class Dispersion:
 
         Every branch of the square root serves, because functions are symmetric in them.
         """
-        found: tuple[Value, ...] = ()
+        wavenumbers: tuple[Value, ...] = ()
         match self.kind:
             case "wave":
-                found = (square_root(-c[0]),)
+                wavenumbers = (square_root(-c[0]),)
             case "bending":
-                found = (square_root(square_root(c[0] / 4)),)
+                wavenumbers = (square_root(square_root(c[0] / 4)),)
             case "pair":
                 middle = -c[2] / 2
                 root = square_root(middle * middle - c[0])
-                found = (square_root(middle + root), square_root(middle - root))
-        return dict(zip(self.wavenumbers, found, strict=True))
+                wavenumbers = (square_root(middle + root), square_root(middle - root))
+        return dict(zip(self.wavenumbers, wavenumbers, strict=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -238,12 +238,13 @@ class KernelTable:
 
     def embedded(self, images: Iterable[tuple[Factored, Factored]]) -> KernelTable:
         """Return the table with its values replaced, by identity."""
-        found = dict(images)
-        dispersions = {d: d.replaced(found.__getitem__) for d in self.dispersions}
+        mapped = dict(images)
+        dispersions = {d: d.replaced(mapped.__getitem__) for d in self.dispersions}
         return KernelTable(
             tuple(dispersions.values()),
             tuple(
-                replace(k, dispersion=dispersions[k.dispersion], length=found[k.length]) for k in self.kernels
+                replace(k, dispersion=dispersions[k.dispersion], length=mapped[k.length])
+                for k in self.kernels
             ),
         )
 

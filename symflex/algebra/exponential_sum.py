@@ -57,10 +57,10 @@ def times(a: tuple[Part, Part], b: tuple[Part, Part]) -> tuple[Part, Part]:
 def power(a: tuple[Part, Part], n: int) -> tuple[Part, Part]:
     """Return a power that is not negative."""
     kind = type(a[0])
-    found = (kind(1), kind(0))
+    raised = (kind(1), kind(0))
     for _ in range(n):
-        found = times(found, a)
-    return found
+        raised = times(raised, a)
+    return raised
 
 
 def _add(amplitude: Amplitude, monomial: Monomial, value: Gaussian) -> None:
@@ -130,12 +130,12 @@ class ExponentialSum:
 
     def mapped(self, image: Callable[[Monomial], Monomial]) -> ExponentialSum:
         """Return the sum with other monomials in place of its own; where two become equal, they are added."""
-        found: dict[Exponent, Amplitude] = {}
+        amplitudes: dict[Exponent, Amplitude] = {}
         for exponent, amplitude in self.terms.items():
-            own = found.setdefault(exponent, {})
+            own = amplitudes.setdefault(exponent, {})
             for monomial, value in parts(amplitude):
                 _add(own, image(monomial), value)
-        return ExponentialSum(found, self.halvings)
+        return ExponentialSum(amplitudes, self.halvings)
 
     def turned(self, unit: Gaussian, degrees: Sequence[int]) -> ExponentialSum:
         """Return the sum with a multiple of the first generator in its place.
@@ -143,13 +143,13 @@ class ExponentialSum:
         ``unit`` is what it is multiplied with; ``degrees`` says of every argument to which power of the
         generator it is proportional.
         """
-        found: dict[Exponent, Amplitude] = {}
+        amplitudes: dict[Exponent, Amplitude] = {}
         for exponent, amplitude in self.terms.items():
             moved = tuple((i, *times((a, b), power(unit, degrees[i]))) for i, a, b in exponent)
-            own = found.setdefault(moved, {})
+            own = amplitudes.setdefault(moved, {})
             for monomial, value in amplitude.items():
                 own[monomial] = times(value, power(unit, _degree(monomial)))
-        return ExponentialSum(found, self.halvings)
+        return ExponentialSum(amplitudes, self.halvings)
 
     def waves(self, arguments: int) -> tuple[AxisWave, ...] | None:
         """Return real terms for real arguments, if all terms times one number come in conjugate pairs.
@@ -165,7 +165,7 @@ class ExponentialSum:
             for monomial, value in amplitude.items():
                 _add(own, monomial, value)
         unit = _unit_that_makes_real(pairs)
-        found = []
+        waves = []
         done: set[tuple[Multiples, Multiples]] = set()
         for (growing, turning), own in pairs.items():
             if (growing, turning) in done:
@@ -179,8 +179,8 @@ class ExponentialSum:
                 return None
             wave = _wave(growing, turning, here)
             if wave.even or wave.odd:
-                found.append(wave)
-        return tuple(found)
+                waves.append(wave)
+        return tuple(waves)
 
 
 def combination(exponent: Exponent, less: Exponent = REAL) -> Combination:
@@ -193,13 +193,13 @@ def combination(exponent: Exponent, less: Exponent = REAL) -> Combination:
 
 def arguments_of(table: KernelTable) -> tuple[Argument, ...] | None:
     """Return the arguments of all kernels, ``None`` where some have no formula."""
-    found: list[Argument] = []
+    arguments: list[Argument] = []
     for kernel in table.kernels:
         if kernel.function in ("fundamental", "entry"):
             return None
-        if not any(argument.is_of(kernel) for argument in found):
-            found.append(Argument(kernel.wavenumber, kernel.dispersion.shift, kernel.length))
-    return tuple(found)
+        if not any(argument.is_of(kernel) for argument in arguments):
+            arguments.append(Argument(kernel.wavenumber, kernel.dispersion.shift, kernel.length))
+    return tuple(arguments)
 
 
 def exponential_sum(
@@ -241,11 +241,11 @@ def exponential_sum(
         if len(collected) > MOST_EXPONENTIALS:
             return None
     # Descending, as in the ring, so that sums of balls are the same on every way here.
-    found = {
+    amplitudes = {
         exponent: {_sparse(m): terms[m] for m in sorted(terms, reverse=True) if any(terms[m])}
         for exponent, terms in collected.items()
     }
-    return ExponentialSum({exponent: own for exponent, own in found.items() if own}, degree)
+    return ExponentialSum({exponent: own for exponent, own in amplitudes.items() if own}, degree)
 
 
 def expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
@@ -271,12 +271,12 @@ def spread(even: int, odd: int) -> dict[int, int]:
     >>> spread(1, 2)
     {3: 1, 1: -1, -1: -1, -3: 1}
     """
-    found: dict[int, int] = {}
+    binomials: dict[int, int] = {}
     for i in range(even + 1):
         for k in range(odd + 1):
             exponent = even - 2 * i + odd - 2 * k
-            found[exponent] = found.get(exponent, 0) + comb(even, i) * comb(odd, k) * (-1) ** k
-    return {exponent: number for exponent, number in found.items() if number}
+            binomials[exponent] = binomials.get(exponent, 0) + comb(even, i) * comb(odd, k) * (-1) ** k
+    return {exponent: number for exponent, number in binomials.items() if number}
 
 
 def _degree(monomial: Monomial) -> int:

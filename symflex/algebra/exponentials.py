@@ -46,14 +46,14 @@ class Exponentials:
     @cached_property
     def angles(self) -> tuple[KernelPair, ...]:
         """The pairs of kernels."""
-        found = []
+        pairs = []
         for even, odd in self.table.pairs:
             tail = even.generator.partition("[")[2]
             if even.function == "cosh":
-                found.append(KernelPair("hyperbolic", even, odd, (f"E[{tail}",)))
+                pairs.append(KernelPair("hyperbolic", even, odd, (f"E[{tail}",)))
             else:
-                found.append(KernelPair("circular", even, odd, (f"t[{tail}", f"u[{tail}")))
-        return tuple(found)
+                pairs.append(KernelPair("circular", even, odd, (f"t[{tail}", f"u[{tail}")))
+        return tuple(pairs)
 
     @cached_property
     def _kept(self) -> tuple[str, ...]:

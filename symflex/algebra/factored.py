@@ -264,16 +264,16 @@ def composed(value: Factored, images: Mapping[str, Factored]) -> Factored:
 
 
 def _composed(ring: Ring, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
-    found = Factored.polynomial(ring, factor)
+    composition = Factored.polynomial(ring, factor)
     for name, image in images.items():
-        if not found.depends_on(name):
+        if not composition.depends_on(name):
             continue
         total = Factored.number(ring, 0)
-        above = found.numerator().expand()
+        above = composition.numerator().expand()
         for power, part in by_powers(ring, above, ring.index[name]).items():
             total = total + Factored.polynomial(ring, part) * image**power
-        found = total / found.denominator()
-    return found
+        composition = total / composition.denominator()
+    return composition
 
 
 def _merge(

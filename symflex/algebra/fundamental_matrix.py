@@ -110,7 +110,7 @@ class PowerExpansion:
 
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
-        found, size = [], abs(u).upper()
+        coefficients, size = [], abs(u).upper()
         with precision(self.precision):
             cut = self._cut(rows, columns, size)
             # On the real axis arithmetic is a third of the work.
@@ -119,8 +119,8 @@ class PowerExpansion:
                 rest = self._rest(rows, columns, size, k)
                 if cut.left > 0:
                     rest = (rest + cut.left / (size * ASIDE) ** k).abs_upper()
-                found.append(acb(value) + acb(arb(0, rest), arb(0, rest)))
-        return [+x for x in found]
+                coefficients.append(acb(value) + acb(arb(0, rest), arb(0, rest)))
+        return [+x for x in coefficients]
 
     def _cut(self, rows: Lines, columns: Lines, size: arb) -> DiscPolynomial:
         """Return what matters of a polynomial for abs(u) up to a size at the current precision."""
@@ -156,7 +156,7 @@ class PowerExpansion:
             starts, ends = growth.weights
             whole = growth.size * ends[lines.index(rows)] / starts[lines.index(columns)]
             self._wholes[rows, columns] = bits_of(whole)
-        found, largest, reach = inf, float(self.largest), float(self.reach)
+        exponent, largest, reach = inf, float(self.largest), float(self.reach)
         way = max(float(size), largest * TINY)
         # Of circles about a point a small one is better for the first derivatives.
         for share in (ASIDE, 1) if k else (0,):
@@ -164,19 +164,19 @@ class PowerExpansion:
             room = (way + apart) / reach
             if room < 1:
                 left = self.terms * log2(room) - log2(1 - room) - (k * log2(apart) if k else 0)
-                found = min(found, self._wholes[rows, columns] + left)
+                exponent = min(exponent, self._wholes[rows, columns] + left)
         # One bit more makes up for rounding.
-        return arb(2) ** ceil(found + 1) if found < inf else arb("inf")
+        return arb(2) ** ceil(exponent + 1) if exponent < inf else arb("inf")
 
     def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
         if (rows, columns) not in self._made:
             lines = self._lines(len(rows))
-            found: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in lines}
+            polynomials: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in lines}
             with precision(self.precision):
                 for step in self._steps:
                     spend()
-                    found = {line: _combined(step, line, found, self.terms) for line in lines}
-            self._made.update(((line, columns), x) for line, x in found.items())
+                    polynomials = {line: _combined(step, line, polynomials, self.terms) for line in lines}
+            self._made.update(((line, columns), x) for line, x in polynomials.items())
         return self._made[rows, columns]
 
     def _lines(self, order: int) -> tuple[Lines, ...]:
@@ -216,7 +216,7 @@ class PowerExpansion:
     @cached_property
     def _steps(self) -> Sequence[dict[tuple[Lines, Lines], Polynomial]]:
         """The fundamental matrix of every step, by rows and columns."""
-        found: list[dict[tuple[Lines, Lines], Polynomial]] = []
+        steps: list[dict[tuple[Lines, Lines], Polynomial]] = []
         last = len(self.legs) - 1
         taken = len(self.legs) * self.system.size**2 * self.terms * self.precision / 8
         if taken > MOST_MEMORY:
@@ -233,8 +233,8 @@ class PowerExpansion:
                 else:
                     made = _stepped(self.system, exact, discs, self.terms)
                 rows = enumerate(made)
-                found.append({((i,), (j,)): x for i, row in rows for j, x in enumerate(row)})
-        return found
+                steps.append({((i,), (j,)): x for i, row in rows for j, x in enumerate(row)})
+        return steps
 
     @property
     def reach(self) -> arb:
@@ -269,12 +269,12 @@ class DiscPolynomial:
             if count >= terms and not left > moved * SMALL:
                 break
         about, off = polynomial_of(known), u - middle
-        found = []
+        coefficients = []
         for k in range(terms):
             value = about(off)
-            found.append(value + around((left * comb(count, k) / radius**k).abs_upper(), value))
+            coefficients.append(value + around((left * comb(count, k) / radius**k).abs_upper(), value))
             about = about.derivative() * (1 / arb(k + 1))
-        return found
+        return coefficients
 
     def _derivative(self, k: int) -> Polynomial:
         if not self._derived:
@@ -530,13 +530,13 @@ def _reached(
 
     Edges are the row and the column of an entry, with a power of u that it holds.
     """
-    found, pending = set[tuple[int, int]](), list(starts)
+    visited, pending = set[tuple[int, int]](), list(starts)
     while pending:
         state, order = pending.pop()
-        if order < terms and (state, order) not in found:
-            found.add((state, order))
+        if order < terms and (state, order) not in visited:
+            visited.add((state, order))
             pending += [(row, order + q) for row, column, q in edges if column == state]
-    return found
+    return visited
 
 
 def _by_quadrature(

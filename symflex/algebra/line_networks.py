@@ -159,9 +159,9 @@ def doubled_relation(relation: Values) -> Values:
         flat[places] = rows[k, k:]
         factor = rows[k + 1 :, k] * (1.0 / top[0])
         rows[k + 1 :, k + 1 :] -= factor[:, None] * top[1:]
-    found = rows[n:, n:]
-    size = np.max(size_of(found), axis=1)
-    return found * np.exp2(-np.rint(np.log2(size)))[:, None]
+    ends = rows[n:, n:]
+    size = np.max(size_of(ends), axis=1)
+    return ends * np.exp2(-np.rint(np.log2(size)))[:, None]
 
 
 def equilibrated(size: int, rows: Values, columns: Values, coefficients: Values) -> Values:
@@ -194,14 +194,14 @@ def solved_value(size: int, height: int, rows: Values, columns: Values, coeffici
     count = coefficients.shape[1]
     starts = np.searchsorted(rows, np.arange(size + 2)).tolist()
     steps = eliminated(size, height, starts, columns, coefficients)
-    found = np.zeros((size + 1, count), dtype=coefficients.dtype)
-    found[size] = 1.0
+    solution = np.zeros((size + 1, count), dtype=coefficients.dtype)
+    solution[size] = 1.0
     for _ in range(2):
-        terms = coefficients * found[columns]
-        found[:size] -= substituted(
+        terms = coefficients * solution[columns]
+        solution[:size] -= substituted(
             height, steps, np.add.reduceat(terms[: starts[size]], starts[:size], axis=0)
         )
-    return np.sum(coefficients[starts[size] :] * found[columns[starts[size] :]], axis=0)
+    return np.sum(coefficients[starts[size] :] * solution[columns[starts[size] :]], axis=0)
 
 
 def eliminated(size: int, height: int, starts: Values, columns: Values, coefficients: Values) -> Values:
@@ -244,14 +244,14 @@ def substituted(height: int, steps: Values, right: Values) -> Values:
     """Return the solution for a right side, from the steps of the elimination."""
     every = np.arange(right.shape[1])
     window = np.zeros((height, right.shape[1]), dtype=right.dtype)
-    found = np.empty_like(right)
+    solution = np.empty_like(right)
     for k, (entering, high, pivot, factor, _, _) in enumerate(steps):
         window[high + 1 - (entering.stop - entering.start) : high + 1] = right[entering]
         driven = window[pivot, every]
         window[pivot, every] = window[high]
         window[:high] -= factor * driven
-        found[k] = driven
+        solution[k] = driven
     for k in range(len(steps) - 1, -1, -1):
         inverse, top = steps[k][4:]
-        found[k] = (found[k] - np.sum(top * found[k + 1 : k + 1 + len(top)], axis=0)) * inverse
-    return found
+        solution[k] = (solution[k] - np.sum(top * solution[k + 1 : k + 1 + len(top)], axis=0)) * inverse
+    return solution

@@ -51,8 +51,8 @@ class MinorSums:
     @cached_property
     def matrices(self) -> tuple[tuple[Dispersion, Factored], ...]:
         """The law and the length of every matrix."""
-        found = {(k.dispersion, k.length): None for k in self.table.kernels if k.function == "entry"}
-        return tuple(found)
+        laws = {(k.dispersion, k.length): None for k in self.table.kernels if k.function == "entry"}
+        return tuple(laws)
 
     @cached_property
     def entries(self) -> Mapping[int, Minor]:
@@ -92,7 +92,7 @@ class MinorSums:
 def _joined(terms: Mapping[Product, fmpz_mpoly], matrix: int) -> dict[Product, fmpz_mpoly]:
     """Return terms with the signed sums of products of entries of a matrix as its minors."""
     left = dict(terms)
-    found: dict[Product, fmpz_mpoly] = {}
+    products: dict[Product, fmpz_mpoly] = {}
     while left:
         product, part = next(iter(left.items()))
         own = [m for m in product if m.matrix == matrix]
@@ -110,11 +110,11 @@ def _joined(terms: Mapping[Product, fmpz_mpoly], matrix: int) -> dict[Product, f
             # Rows ascend, as factors are sorted.
             ranks = [sorted(columns).index(c) for c in columns]
             joint = Minor(matrix, tuple(rows), tuple(sorted(columns)))
-            found[tuple(sorted((*others, joint)))] = part * _sign(ranks)
+            products[tuple(sorted((*others, joint)))] = part * _sign(ranks)
             continue
         del left[product]
-        found[product] = part
-    return found
+        products[product] = part
+    return products
 
 
 def _sign(order: Sequence[int]) -> int:

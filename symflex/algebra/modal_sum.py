@@ -93,7 +93,7 @@ def modal_amplitudes(modes: Any, coefficients: Any, frames: Any) -> list[tuple[A
     Mode m is a pair: the exponents of its roots, and per root the values of
     x^k/chi'(x) for k = 0, 1, ... They may be numbers, arrays or balls.
     """
-    found = []
+    amplitudes = []
     for slots, terms, keys in frames:
         # One slot after the other; keys are sorted, so that what they begin with is summed once.
         path = [((), {orders: coefficients[i] for orders, i in terms})]
@@ -108,8 +108,8 @@ def modal_amplitudes(modes: Any, coefficients: Any, frames: Any) -> list[tuple[A
                     left[orders[1:]] = left[orders[1:]] + term if orders[1:] in left else term
                 path.append((key[: at + 1], left))
             exponent = sum(modes[slot][0][root] for slot, root in zip(slots, key, strict=True))
-            found.append((path[-1][1][()] / divisor, exponent))
-    return found
+            amplitudes.append((path[-1][1][()] / divisor, exponent))
+    return amplitudes
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,25 +196,25 @@ class ModalSums:
         ]
         algebra = _RootAlgebra(self.ring, self.modes)
         kept: dict[Key, bool] = {}
-        found = []
+        keys = []
         for chosen in product(*choices):
             key = tuple(root for part in chosen for root in part)
             pattern = self._pattern(slots, key)
             if pattern not in kept:
                 kept[pattern] = not algebra.vanishes(slots, pattern, terms)
             if kept[pattern]:
-                found.append((key, _repetitions(slots, key)))
-        return tuple(sorted(found))
+                keys.append((key, _repetitions(slots, key)))
+        return tuple(sorted(keys))
 
     def _pattern(self, slots: tuple[int, ...], key: Key) -> Key:
         """Return the key with the roots of every dispersion numbered in the order they come in."""
         labels: dict[tuple[Dispersion, bool], dict[int, int]] = {}
-        found = []
+        pattern = []
         for slot, root in zip(slots, key, strict=True):
             mode = self.modes[slot]
             own = labels.setdefault((mode.dispersion, mode.is_decay), {})
-            found.append(own.setdefault(root, len(own)))
-        return tuple(found)
+            pattern.append(own.setdefault(root, len(own)))
+        return tuple(pattern)
 
 
 def _key(kernel: Kernel) -> tuple[Dispersion, Factored, bool]:

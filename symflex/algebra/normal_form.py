@@ -43,12 +43,12 @@ class NormalForm:
     @cached_property
     def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
         """Positions of sinh and sin, and of constants, with what their squares are."""
-        found = list(self._squares_of_constants())
+        squares = list(self._squares_of_constants())
         for even, odd in self.table.pairs:
             c = self.ring.generator(even.generator)
             square = c * c - 1 if even.function == "cosh" else 1 - c * c
-            found.append((self.ring.index[odd.generator], square))
-        return tuple(found)
+            squares.append((self.ring.index[odd.generator], square))
+        return tuple(squares)
 
     def _squares_of_constants(self) -> Iterator[tuple[int, fmpz_mpoly]]:
         """Yield what squares of functions of constants are, whose names in the ring are what they mean."""
@@ -133,7 +133,7 @@ class NormalForm:
             law = k.dispersion
             if k.function == "entry" and law.order == TWO_STATES and law.singular is None:
                 matrices.setdefault((law, k.length), {})[k.order] = k.generator
-        found = []
+        determinants = []
         for (law, _), entries in matrices.items():
             if len(entries) == TWO_STATES**2 and (law.matrix[0][0] + law.matrix[1][1]).is_zero:
                 first, second = entries[0], entries[3]
@@ -141,8 +141,8 @@ class NormalForm:
                 context = fmpz_mpoly_ctx.get([first, second, *rest], Ordering.lex)
                 a, b, c, d = (self.ring.generator(entries[i]).project_to_context(context) for i in range(4))
                 place = self.ring.index[first], self.ring.index[second]
-                found.append((context, a * d - b * c - 1, place))
-        return tuple(found)
+                determinants.append((context, a * d - b * c - 1, place))
+        return tuple(determinants)
 
     def _without_determinants(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the polynomial with 1 in place of determinants that are always 1."""

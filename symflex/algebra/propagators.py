@@ -112,11 +112,11 @@ class Propagation:
             return tuple(plain)
         minus = -self.embed(law.shift)
         decay = self._known[dispersion, position, EXPONENTIAL]
-        found = []
+        functions = []
         for k in range(n):
             total = sum((plain[j] * minus ** (k - j) * comb(k, j) for j in range(k + 1)), one * 0)
-            found.append(total * decay)
-        return tuple(found)
+            functions.append(total * decay)
+        return tuple(functions)
 
     def _entries(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
         law = self.table.dispersions[dispersion]
@@ -127,13 +127,13 @@ class Propagation:
                 return tuple(self.embed(x) for row in law.singular.at_start() for x in row)
             return tuple(one * int(i == j) for i in range(n) for j in range(n))
         position = self._places[dispersion][residue(length, self._point)]
-        found = []
+        entries = []
         for i, reached in enumerate(reachable(law)):
             for j in range(n):
                 known = self._known.get((dispersion, position, i * n + j))
                 stays = i == j and i not in reached and j in free
-                found.append(known if known is not None else one * int(stays))
-        return tuple(found)
+                entries.append(known if known is not None else one * int(stays))
+        return tuple(entries)
 
 
 def reachable(law: Dispersion) -> list[set[int]]:
@@ -142,10 +142,10 @@ def reachable(law: Dispersion) -> list[set[int]]:
     An entry of the fundamental matrix is 0 elsewhere, or 1 on the diagonal.
     """
     n = law.order
-    found = [{j for j in range(n) if not law.matrix[i][j].is_zero} for i in range(n)]
+    reach = [{j for j in range(n) if not law.matrix[i][j].is_zero} for i in range(n)]
     for _ in range(n):
-        found = [set.union(own, *(found[j] for j in own)) for own in found]
-    return found
+        reach = [set.union(own, *(reach[j] for j in own)) for own in reach]
+    return reach
 
 
 def distinct(lengths: Sequence[Factored]) -> tuple[Factored, ...]:
@@ -153,11 +153,11 @@ def distinct(lengths: Sequence[Factored]) -> tuple[Factored, ...]:
     if not lengths:
         return ()
     point = random_point(lengths[0].ring.names)
-    found: dict[int, Factored] = {}
+    by_residue: dict[int, Factored] = {}
     for length in lengths:
         if not length.is_zero:
-            found.setdefault(residue(length, point), length)
-    return tuple(found.values())
+            by_residue.setdefault(residue(length, point), length)
+    return tuple(by_residue.values())
 
 
 def _denominators(law: Dispersion, ring: Ring) -> tuple[Factored, ...]:
@@ -192,17 +192,17 @@ def _repeated(plain: list[Factored], kappa: Factored, x: Factored, multiplicity:
     With g for one power less, ``h^(n-1) = x g/(n (m - 1))`` and ``h^(n) - kappa h = g``: the inverse Laplace
     transforms of a derivative with respect to lambda, and of the definition.
     """
-    n, found = len(plain), plain
+    n, functions = len(plain), plain
     for m in range(1, multiplicity):
         # The next derivative of g follows from its equation, whose coefficients are binomial.
-        known = [found[n * i] * (-kappa) ** (m - i) * comb(m, i) for i in range(m) if not kappa.is_zero]
-        beyond = [*found, -sum(known, x * 0)]
+        known = [functions[n * i] * (-kappa) ** (m - i) * comb(m, i) for i in range(m) if not kappa.is_zero]
+        beyond = [*functions, -sum(known, x * 0)]
         # ``(x g)^(k) = x g^(k) + k g^(k-1)``
         product = [x * g + (beyond[k - 1] * k if k else x * 0) for k, g in enumerate(beyond)]
         high = [p / (n * m) for p in product]
         low = [(product[k + 1] / (n * m) - beyond[k]) / kappa for k in range(n - 1)]
-        found = [*low, *high]
-    return found
+        functions = [*low, *high]
+    return functions
 
 
 WAVENUMBER_NAMES = {"wave": ("gamma",), "bending": ("mu",), "pair": ("lambda_1", "lambda_2")}
@@ -254,11 +254,11 @@ class _Shape:
         self.base = lengths
         self.coordinates = tuple(tuple(int(i == j) for j in range(len(lengths))) for i in range(len(lengths)))
         if law.kind not in ("general", "varying") and lengths and not lengths[0].ring.is_sparse:
-            found = length_base(lengths, positive=decays)
-            multiples = [sum(map(abs, c)) for c in found.coordinates]
+            shared = length_base(lengths, positive=decays)
+            multiples = [sum(map(abs, c)) for c in shared.coordinates]
             is_long = law.kind in ("bending", "pair") and sum(multiples) > SUM_LIMIT
-            if max(multiples) <= MULTIPLE_LIMIT and not (is_long and _are_apart(found.coordinates)):
-                self.base, self.coordinates = found.base, found.coordinates
+            if max(multiples) <= MULTIPLE_LIMIT and not (is_long and _are_apart(shared.coordinates)):
+                self.base, self.coordinates = shared.base, shared.coordinates
         self.kernels = [k for i, length in enumerate(self.base) for k in self._kernels(i, length)]
 
     @property
@@ -269,58 +269,58 @@ class _Shape:
         return [i * n + j for i, reached in enumerate(reachable(self.law)) for j in sorted(reached & free)]
 
     def _kernels(self, i: int, length: Factored) -> list[Kernel]:
-        law, found = self.law, []
+        law, kernels = self.law, []
         if law.kind == "varying":
             return [Kernel(f"T{k}[{self.number},{i}]", "entry", law, "", length, k) for k in self._entries]
         if law.kind == "general":
             for k in range(law.order):
                 name = f"h{k}[{self.number},{i}]"
-                found.append(Kernel(name, "fundamental", law, "", length, k))
+                kernels.append(Kernel(name, "fundamental", law, "", length, k))
         functions = ("cosh", "sinh", "cos", "sin") if law.kind == "bending" else ("cosh", "sinh")
         for wavenumber in law.wavenumbers:
             for function in functions:
                 name = f"{function}[{wavenumber},{i}]"
-                found.append(Kernel(name, function, law, wavenumber, length))  # type: ignore[arg-type]
+                kernels.append(Kernel(name, function, law, wavenumber, length))  # type: ignore[arg-type]
         if law.kind == "exponential" or not law.shift.is_zero:
-            found.append(Kernel(f"exp[{self.number},{i}]", "exp", law, "", length))
-        return found
+            kernels.append(Kernel(f"exp[{self.number},{i}]", "exp", law, "", length))
+        return kernels
 
     def propagators(self, ring: Ring) -> list[Propagator]:
         """Return the propagators at every length."""
-        found = []
+        propagators = []
         for position, coordinates in enumerate(self.coordinates):
             for order, image in self._images(ring, position, coordinates):
                 name = f"H{order}[{self.number},{position}]" if order >= 0 else f"D[{self.number},{position}]"
-                found.append(Propagator(name, self.number, position, order, image))
-        return found
+                propagators.append(Propagator(name, self.number, position, order, image))
+        return propagators
 
     def _images(self, ring: Ring, position: int, multiples: tuple[int, ...]) -> list[tuple[int, fmpz_mpoly]]:
         law = self.law
-        found: list[tuple[int, fmpz_mpoly]] = []
+        images: list[tuple[int, fmpz_mpoly]] = []
         if law.kind == "varying":
             return [(k, ring.generator(f"T{k}[{self.number},{position}]")) for k in self._entries]
         if law.kind == "general":
-            found += [(k, ring.generator(f"h{k}[{self.number},{position}]")) for k in range(law.order)]
+            images += [(k, ring.generator(f"h{k}[{self.number},{position}]")) for k in range(law.order)]
         elif law.kind == "wave":
             c, s = self._hyperbolic(ring, law.wavenumbers[0], multiples)
-            found += [(0, s), (1, c)]
+            images += [(0, s), (1, c)]
         elif law.kind == "bending":
             ch, sh = self._hyperbolic(ring, law.wavenumbers[0], multiples)
             co, si = self._added(ring, ("cos", "sin"), law.wavenumbers[0], multiples, -1)
-            found += [(0, ch * si - sh * co), (1, sh * si), (2, ch * si + sh * co), (3, ch * co)]
+            images += [(0, ch * si - sh * co), (1, sh * si), (2, ch * si + sh * co), (3, ch * co)]
         elif law.kind == "pair":
             c1, s1 = self._hyperbolic(ring, law.wavenumbers[0], multiples)
             c2, s2 = self._hyperbolic(ring, law.wavenumbers[1], multiples)
             w1, w2 = (ring.generator(w) for w in law.wavenumbers)
-            found += [
+            images += [
                 (0, w2 * s1 - w1 * s2),
                 (1, c1 - c2),
                 (2, w1 * s1 - w2 * s2),
                 (3, w1 * w1 * c1 - w2 * w2 * c2),
             ]
         if law.kind == "exponential" or not law.shift.is_zero:
-            found.append((EXPONENTIAL, self._decay(ring, multiples)))
-        return found
+            images.append((EXPONENTIAL, self._decay(ring, multiples)))
+        return images
 
     def _decay(self, ring: Ring, multiples: tuple[int, ...]) -> fmpz_mpoly:
         product = ring.constant(1)
@@ -400,9 +400,9 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
 
 def _vectors(lengths: Sequence[fmpz_mpoly]) -> tuple[list[list[int]], list[Monomial]]:
     """Return every length as a vector over the monomials that occur."""
-    found = [{tuple(int(e) for e in m): int(c) for m, c in length.terms()} for length in lengths]
-    order = sorted({m for terms in found for m in terms}, reverse=True)
-    return [[terms.get(m, 0) for m in order] for terms in found], order
+    coefficients = [{tuple(int(e) for e in m): int(c) for m, c in length.terms()} for length in lengths]
+    order = sorted({m for terms in coefficients for m in terms}, reverse=True)
+    return [[terms.get(m, 0) for m in order] for terms in coefficients], order
 
 
 def _lattice(vectors: list[list[int]]) -> list[list[int]]:

@@ -77,11 +77,11 @@ class Radicals:
         plain = {
             i: a for i, a in radicands.items() if not any(a.depends_on(ring.names[j]) for j in radicands)
         }
-        found = replace(_independent(ring, plain, frozenset(positive)), radicands=plain)
+        radicals = replace(_independent(ring, plain, frozenset(positive)), radicands=plain)
         for i, radicand in radicands.items():
             if i not in plain:
-                found = found.with_nested(i, found.reduced(radicand))
-        return replace(found, radicands=radicands)
+                radicals = radicals.with_nested(i, radicals.reduced(radicand))
+        return replace(radicals, radicands=radicands)
 
     def root(self, value: Factored) -> Factored | None:
         """Return the root of a rational function in terms of the others, ``None`` when it is none."""
@@ -337,11 +337,11 @@ class Radicals:
         prime, values = point
         sides = []
         for side in (f, g):
-            found = {
+            coefficients = {
                 n: residue(Factored.polynomial(self.ring, part), values, prime)
                 for n, part in by_powers(self.ring, side).items()
             }
-            sides.append(nmod_poly([found.get(n, 0) for n in range(degree_in(side, 0) + 1)], prime))
+            sides.append(nmod_poly([coefficients.get(n, 0) for n in range(degree_in(side, 0) + 1)], prime))
         is_kept = all(int(p.degree()) == degree_in(q, 0) for p, q in zip(sides, (f, g), strict=True))
         return is_kept and int(sides[0].gcd(sides[1]).degree()) == 0
 
@@ -415,11 +415,11 @@ class Radicals:
             if degree_in(factor, 0):
                 for part, times in self._square_free(factor):
                     base = self._inserted(base, part, times * exponent)
-        found = []
+        parts = []
         for element, times in base:
             even = self.gcd(element, self.primitive(_conjugate(self.ring, element, 0)))
-            found += [(p, times) for p in (even, self._over(element, even)) if degree_in(p, 0)]
-        return found
+            parts += [(p, times) for p in (even, self._over(element, even)) if degree_in(p, 0)]
+        return parts
 
     def with_powers(self, value: Factored) -> Factored:
         """Return a product whose polynomials in roots are powers of square-free ones."""
@@ -438,15 +438,15 @@ class Radicals:
 
     def _square_free(self, f: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]]:
         """Return the parts of every multiplicity (Musser 1971)."""
-        found, times, f = [], 1, self.primitive(f)
+        parts, times, f = [], 1, self.primitive(f)
         repeated = self.gcd(f, f.derivative(0))
         simple = self._over(f, repeated)
         while degree_in(simple, 0):
             common = self.gcd(simple, repeated)
             if degree_in(part := self._over(simple, common), 0):
-                found.append((part, times))
+                parts.append((part, times))
             simple, repeated, times = common, self._over(repeated, common), times + 1
-        return found
+        return parts
 
     def _inserted(
         self, base: Sequence[tuple[fmpz_mpoly, int]], element: fmpz_mpoly, times: int

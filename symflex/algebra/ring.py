@@ -123,8 +123,8 @@ class Ring:
 
     def coefficients(self, polynomial: fmpz_mpoly, generator: int = 0) -> list[fmpz_mpoly]:
         """Return the coefficients of ascending powers of one generator, over the same ring."""
-        found = by_powers(self, polynomial, generator)
-        return [found.get(n, self.constant(0)) for n in range(degree_in(polynomial, generator) + 1)]
+        powers = by_powers(self, polynomial, generator)
+        return [powers.get(n, self.constant(0)) for n in range(degree_in(polynomial, generator) + 1)]
 
 
 def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:

@@ -78,14 +78,14 @@ class StraightLine:
 
     def steps_of(self, *roots: int) -> list[int]:
         """Return the steps that some values are made of, in order; numbers and generators among them."""
-        found = set(roots)
+        steps = set(roots)
         pending = list(roots)
         while pending:
             for operand in self.inner(pending.pop()):
-                if operand not in found:
-                    found.add(operand)
+                if operand not in steps:
+                    steps.add(operand)
                     pending.append(operand)
-        return sorted(found)
+        return sorted(steps)
 
     def operations(self, steps: Iterable[int]) -> list[Operation]:
         """Return steps as :meth:`values` takes them."""

@@ -78,10 +78,10 @@ class Vanishing:
         values[moving] = field.power(1, int(values[meeting][0]) if meeting else 0)
         if meeting is not None:
             for name, formula in solved:
-                found = field.rational(formula, names, values)
-                if found is None:
+                residue = field.rational(formula, names, values)
+                if residue is None:
                     return None
-                values[name] = found
+                values[name] = residue
         lengths: dict[Factored, int] = {}
         for kernel in self.table.kernels:
             if not kernel.wavenumber or kernel.wavenumber not in (moving, meeting):
@@ -227,10 +227,10 @@ class TaylorField:
 @cache
 def _reciprocals(count: int, prime: int) -> tuple[int, ...]:
     """Return 0 and the reciprocals of the numbers below ``count`` modulo a larger prime."""
-    found = [0, 1]
+    reciprocals = [0, 1]
     for n in range(2, count):
-        found.append(-(prime // n) * found[prime % n] % prime)
-    return tuple(found)
+        reciprocals.append(-(prime // n) * reciprocals[prime % n] % prime)
+    return tuple(reciprocals)
 
 
 def square_root(value: int, prime: int) -> int | None:
@@ -323,8 +323,8 @@ def find_point(
         for _ in range(TRIALS):
             values = random_values(ring.names, random, field)
             if prepare(values, field) and all(_place(d, ring, values, field) for d in table.dispersions):
-                found = _with_kernels(ring, table, values, field)
-                return None if found is None else (field, found)
+                generators = _with_kernels(ring, table, values, field)
+                return None if generators is None else (field, generators)
     return None
 
 
@@ -358,9 +358,9 @@ def _with_kernels(
 
 def _place(law: Dispersion, ring: Ring, values: dict[str, nmod_poly], field: TaylorField) -> bool:
     """Put the wavenumbers' series into the values; False where a root does not exist."""
-    found = [field.rational(x, ring.names, values) for x in law.characteristic]
-    c = [x for x in found if x is not None]
-    if len(c) < len(found):
+    coefficients = [field.rational(x, ring.names, values) for x in law.characteristic]
+    c = [x for x in coefficients if x is not None]
+    if len(c) < len(coefficients):
         return False
     roots: list[nmod_poly | None] = []
     match law.kind:

@@ -142,23 +142,23 @@ def growth_on(system: VaryingSystem, leg: Leg, reach: arb) -> Growth:
 
 def growth_of(system: MinorsAlong, legs: Sequence[Leg], reach: arb) -> Growth:
     """Return how minors grow along all legs. States are scaled anew on every part of a leg."""
-    found, size = list[Weights](), arb(1)
+    weights, size = list[Weights](), arb(1)
     for leg in legs:
         if leg.is_first and system.whole.beginning is not None:
             begun, reached = growth_begun(system.whole.beginning, leg, reach)
             size *= reached**system.order * factorial(system.order)
             states = begun.weights[1]
-            found.append(tuple(prod((states[i] for i in rows), start=arb(1)) for rows in system.lines))
+            weights.append(tuple(prod((states[i] for i in rows), start=arb(1)) for rows in system.lines))
             continue
         part = leg.length / BOUNDED
         for j in range(BOUNDED):
             middle = leg.start + part * (j + 0.5)
             bounds = system.bounds(acb(middle + arb(0, (part / 2).abs_upper())), reach)
-            found.append(_levelled(bounds, abs(part), len(system.lines), found[-1] if found else ()))
-            size *= (_norm_of(bounds, found[-1]) * abs(part)).exp()
-    for before, after in pairwise(found):
+            weights.append(_levelled(bounds, abs(part), len(system.lines), weights[-1] if weights else ()))
+            size *= (_norm_of(bounds, weights[-1]) * abs(part)).exp()
+    for before, after in pairwise(weights):
         size *= max(x / y for x, y in zip(before, after, strict=True))
-    return Growth(reach, size.abs_upper(), (found[0], found[-1]))
+    return Growth(reach, size.abs_upper(), (weights[0], weights[-1]))
 
 
 def least_growth(system: VaryingSystem, order: int, largest: arb) -> float:
@@ -188,18 +188,18 @@ def _levelled(sizes: Mapping[Place, arb], way: arb, count: int, start: Sequence[
     for (i, j), x in sizes.items():
         if 0 < (size := float((x * way).upper())) < inf:
             rows.setdefault(i, []).append((j, log2(size)))
-    found = [log2(float(x)) for x in start] or [0.0] * count
+    levels = [log2(float(x)) for x in start] or [0.0] * count
     for _ in range(BALANCINGS if rows else 0):
         sums = {
-            i: log2(sum(2.0 ** max(-HIGHEST, min(x + found[j] - found[i], HIGHEST)) for j, x in row))
+            i: log2(sum(2.0 ** max(-HIGHEST, min(x + levels[j] - levels[i], HIGHEST)) for j, x in row))
             for i, row in rows.items()
         }
-        found = [x + sums.get(i, 0.0) / 2 for i, x in enumerate(found)]
-        highest = max(found)
-        found = [max(x - highest, -APART) for x in found]
+        levels = [x + sums.get(i, 0.0) / 2 for i, x in enumerate(levels)]
+        highest = max(levels)
+        levels = [max(x - highest, -APART) for x in levels]
         if max(sums.values()) - min(sums.values()) < BALANCED:
             break
-    return tuple(arb(2.0**x) for x in found)
+    return tuple(arb(2.0**x) for x in levels)
 
 
 def legs_along(system: VaryingSystem, largest: arb, reach: arb, bits: int) -> list[Leg]:
@@ -228,17 +228,17 @@ def balanced(sizes: Mapping[Place, float], count: int, rounds: int, enough: floa
 
     It is found in so many rounds, or fewer where one changes w by less than ``enough``.
     """
-    found = [0.0] * count
+    exponents = [0.0] * count
     for _ in range(rounds):
-        before = list(found)
+        before = list(exponents)
         for i in range(count):
-            row = [x + found[k] for (j, k), x in sizes.items() if j == i]
-            column = [x - found[j] for (j, k), x in sizes.items() if k == i]
+            row = [x + exponents[k] for (j, k), x in sizes.items() if j == i]
+            column = [x - exponents[j] for (j, k), x in sizes.items() if k == i]
             if row and column:
-                found[i] = (max(row) - max(column)) / 2
-        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < enough:
+                exponents[i] = (max(row) - max(column)) / 2
+        if max(abs(x - y) for x, y in zip(exponents, before, strict=True)) < enough:
             break
-    return found
+    return exponents
 
 
 def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> arb:
@@ -255,9 +255,9 @@ def _norm_of(sizes: Mapping[Place, arb], weights: Sequence[arb]) -> arb:
 
 def _steps(system: VaryingSystem, start: arb, end: arb, largest: arb, bits: int) -> list[Leg]:
     """Return steps of which each costs few terms over its length."""
-    whole, at, found = end - start, start, list[Leg]()
+    whole, at, legs = end - start, start, list[Leg]()
     while at is not end:
-        if len(found) == MOST_STEPS:
+        if len(legs) == MOST_STEPS:
             raise SingularCoefficientError(float(at.mid()), is_steep=True)
         best: tuple[float, arb] | None = None
         weights = _weights(system, acb(at), largest)
@@ -277,9 +277,9 @@ def _steps(system: VaryingSystem, start: arb, end: arb, largest: arb, bits: int)
         _, radius = best
         length, left = (radius / SHARE).mid(), end - at
         following = end if abs(left) <= length * LAST else (at + (length if left > 0 else -length)).mid()
-        found.append(Leg(at, following, radius))
+        legs.append(Leg(at, following, radius))
         at = following
-    return found
+    return legs
 
 
 def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> Leg:
@@ -304,10 +304,10 @@ def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> tuple[Gr
     That is on the radius of the first step; and their size at its end.
     Raises SingularCoefficientError where that takes too many terms.
     """
-    found = _begun_along(beginning, leg, reach, BOUND_BITS)
-    if found is None:
+    begun = _begun_along(beginning, leg, reach, BOUND_BITS)
+    if begun is None:
         raise SingularCoefficientError(float(leg.start.mid()))
-    return found
+    return begun
 
 
 def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) -> tuple[Growth, arb] | None:
@@ -315,13 +315,13 @@ def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) 
     hull = acb(leg.start + square, square)
     weights = _weights(beginning.matrix, hull, reach)
     norm, way = _norm(beginning.matrix, hull, reach, weights), abs(leg.length)
-    found = None
+    bound = None
     if norm < MOST_TERMS:
-        found = _bounded(beginning, leg.start, reach, weights, (norm, leg.radius, way), bits)
-    if found is None:
+        bound = _bounded(beginning, leg.start, reach, weights, (norm, leg.radius, way), bits)
+    if bound is None:
         return None
     scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
-    return Growth(reach, found[0], (scaled, scaled)), found[1]
+    return Growth(reach, bound[0], (scaled, scaled)), bound[1]
 
 
 def _bounded(
@@ -375,13 +375,13 @@ def _bounded(
 
 def _by_powers(system: VaryingSystem, start: arb, count: int, reach: arb) -> list[list[tuple[int, int, arb]]]:
     """Return bounds on the coefficients of every power of the way from a start, for abs(u) up to a reach."""
-    found: list[dict[Place, arb]] = [{} for _ in range(count)]
+    powers: list[dict[Place, arb]] = [{} for _ in range(count)]
     for order, coefficients in enumerate(system.series(start, count)):
         for place, polynomial in coefficients.items():
             for p, x in enumerate(acb_poly(polynomial).coeffs()):
                 if (size := abs(x).upper()) > 0:
-                    found[p][place] = found[p].get(place, arb(0)) + size * reach**order
-    return [[(*place, x) for place, x in each.items()] for each in found]
+                    powers[p][place] = powers[p].get(place, arb(0)) + size * reach**order
+    return [[(*place, x) for place, x in each.items()] for each in powers]
 
 
 def _no_step(

@@ -68,7 +68,7 @@ def minors_by_octaves(
 
     What an element is does not depend on what others there are.
     """
-    found = np.full((len(wanted) + size, len(bases[0])), np.nan, dtype=complex)
+    minors = np.full((len(wanted) + size, len(bases[0])), np.nan, dtype=complex)
     with np.errstate(all="ignore"):
         # Frequencies within a factor of four share their pieces.
         octaves = [np.where(b == 0.0, -250.0, np.ceil(np.log2(np.abs(b)) / 4.0)) for b in bases]
@@ -87,8 +87,8 @@ def minors_by_octaves(
             part = slice(first, first + block)
             own = [b[where[part]] / limit for b, limit in zip(bases, limits, strict=True)]
             own = own if is_complex[where[0]] else [np.real(b) for b in own]
-            found[:, where[part]] = minors_through(pieces, own, part, wanted)
-    return list(found)
+            minors[:, where[part]] = minors_through(pieces, own, part, wanted)
+    return list(minors)
 
 
 def polynomials_along(
@@ -269,9 +269,9 @@ def parts_at(
 ) -> list[Values]:
     """Return parts for bases at their limits, at shares of the length; elements come last."""
     x = start + length * shares.reshape(-1, 1)
-    found = [np.broadcast_to(c, np.broadcast(c, x).shape) for c in along(x)]
-    found = [c[:, where] if c.shape[1] > 1 else c for c in found]
-    return [scale * c.reshape(*shares.shape, c.shape[1]) for scale, c in zip(scales, found, strict=True)]
+    parts = [np.broadcast_to(c, np.broadcast(c, x).shape) for c in along(x)]
+    parts = [c[:, where] if c.shape[1] > 1 else c for c in parts]
+    return [scale * c.reshape(*shares.shape, c.shape[1]) for scale, c in zip(scales, parts, strict=True)]
 
 
 def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted: Sequence[Values]) -> Values:
@@ -282,7 +282,7 @@ def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted:
     powers, coefficients = pieces
     n, count = coefficients.shape[2], len(bases[0])
     monomials = np.array([np.prod([b**e for b, e in zip(bases, p, strict=True)], axis=0) for p in powers])
-    found: Any = np.zeros((len(wanted) + n, count), dtype=complex)
+    minors: Any = np.zeros((len(wanted) + n, count), dtype=complex)
     for order in sorted({len(rows) for rows, _ in wanted}):
         lines = lines_of(n, order)
         own = [k for k, (rows, _) in enumerate(wanted) if len(rows) == order]
@@ -301,19 +301,19 @@ def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted:
             largest = np.max(np.abs(state), axis=(0, 1))
             state = state / largest
             scale = scale + np.log(largest)
-        found[len(wanted) + order - 1] = scale
+        minors[len(wanted) + order - 1] = scale
         for k in own:
             rows, columns = wanted[k]
-            found[k] = state[starts.index(tuple(columns)), lines.index(tuple(rows))]
-    return found
+            minors[k] = state[starts.index(tuple(columns)), lines.index(tuple(rows))]
+    return minors
 
 
 def lines_of(n: int, order: int) -> list[tuple[int, ...]]:
     """Return all choices of so many of n lines."""
-    found: list[tuple[int, ...]] = [(i,) for i in range(n)]
+    lines: list[tuple[int, ...]] = [(i,) for i in range(n)]
     for _ in range(order - 1):
-        found = [(*chosen, i) for chosen in found for i in range(chosen[-1] + 1, n)]
-    return found
+        lines = [(*chosen, i) for chosen in lines for i in range(chosen[-1] + 1, n)]
+    return lines
 
 
 def compound(z: Values, order: int) -> Values:

@@ -100,23 +100,23 @@ class MinorsAlong:
 
     def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
         """Return the sizes of entries on a ball of x for abs(u) <= ``largest``; not finite near a pole."""
-        found: dict[Place, arb] = {}
+        sizes: dict[Place, arb] = {}
         for place, size in self.whole.bounds(x, largest).items():
             for own in self._places.get(place, ()):
-                found[own] = found.get(own, arb(0)) + size
-        return found
+                sizes[own] = sizes.get(own, arb(0)) + size
+        return sizes
 
     @cached_property
     def _places(self) -> Mapping[Place, Sequence[Place]]:
         """The places in these equations of every entry of the whole."""
         numbers = {line: k for k, line in enumerate(self.lines)}
-        found: dict[Place, list[Place]] = {}
+        sources: dict[Place, list[Place]] = {}
         for line, row in numbers.items():
             for i in line:
                 rest = set(line) - {i}
                 for j in set(range(self.whole.size)) - rest:
-                    found.setdefault((i, j), []).append((row, numbers[tuple(sorted(rest | {j}))]))
-        return found
+                    sources.setdefault((i, j), []).append((row, numbers[tuple(sorted(rest | {j}))]))
+        return sources
 
 
 def polynomial_of(coefficients: Sequence[Number]) -> Polynomial:
@@ -133,12 +133,12 @@ def sequence_of(coefficients: Coefficients, n: int) -> list[int]:
     >>> sequence_of({(0, 1): acb_poly([1]), (1, 2): acb_poly([1])}, 3)
     [2, 1, 0]
     """
-    found: list[int] = []
-    while len(found) < n:
+    order: list[int] = []
+    while len(order) < n:
         ready = [
-            i for i in range(n) if i not in found and all(k in found for (row, k) in coefficients if row == i)
+            i for i in range(n) if i not in order and all(k in order for (row, k) in coefficients if row == i)
         ]
         if not ready:
             return []
-        found += ready
-    return found
+        order += ready
+    return order

@@ -143,10 +143,10 @@ class Analyses(Plotted):
 
         checked_digits(digits)
         if times is None:
-            (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
+            (response,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
-            found = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
-        return face_of(TimeResponse, found)
+            response = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
+        return face_of(TimeResponse, response)
 
     def poles(
         self,
@@ -202,8 +202,8 @@ class Analyses(Plotted):
         >>> [round(float(p.im), 6) for p in poles]
         [1.570796, -1.570796, 4.712389, -4.712389]
         """
-        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return RootTable(Root(r) for r in found.all_poles)
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        return RootTable(Root(r) for r in located.all_poles)
 
     def zeros(
         self,
@@ -215,8 +215,8 @@ class Analyses(Plotted):
         budget: float | None = None,
     ) -> tuple[Root, ...]:
         """Return the zeros; see :meth:`poles`."""
-        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return RootTable(Root(r) for r in found.zeros)
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        return RootTable(Root(r) for r in located.zeros)
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
@@ -361,8 +361,8 @@ class Analyses(Plotted):
         """
         from symflex.analysis.modes import mode_shapes
 
-        found = mode_shapes(self.bound, plain_mode(mode), checked_digits(digits))
-        return tuple(ModeShape(shape, self.bound.source.model) for shape in found)
+        shapes = mode_shapes(self.bound, plain_mode(mode), checked_digits(digits))
+        return tuple(ModeShape(shape, self.bound.source.model) for shape in shapes)
 
 
 def budget_of(seconds: float | None) -> Budget:

@@ -11,6 +11,6 @@ if TYPE_CHECKING:
 Face = TypeVar("Face", bound="DataclassInstance")
 
 
-def face_of(face: type[Face], found: DataclassInstance) -> Face:
+def face_of(face: type[Face], inner: DataclassInstance) -> Face:
     """Return a dataclass as one of its subclasses, which adds methods and no fields."""
-    return face(**{field.name: getattr(found, field.name) for field in fields(found)})
+    return face(**{field.name: getattr(inner, field.name) for field in fields(inner)})

@@ -115,9 +115,9 @@ class ModeShape:
 
     def domain(self, part: str) -> tuple[float, float]:
         """Return the ends of a part along x [m]; an element begins at 0."""
-        found = self.enclosed.along(part)
-        with precision(found.bits):
-            return float(found.start.mid()), float((found.start + found.length).mid())
+        part_along = self.enclosed.along(part)
+        with precision(part_along.bits):
+            return float(part_along.start.mid()), float((part_along.start + part_along.length).mid())
 
     def along(
         self, part: str, x: ArrayLike, quantity: str | None = None
@@ -153,8 +153,8 @@ class ModeShape:
         import numpy as np
 
         places = np.asarray(x, dtype=float)
-        found = [float(radius_of(ball)) for ball in self._balls(part, places, quantity)]
-        return np.array(found, dtype=float).reshape(places.shape)
+        radii = [float(radius_of(ball)) for ball in self._balls(part, places, quantity)]
+        return np.array(radii, dtype=float).reshape(places.shape)
 
     def plot(
         self, *, width: float | str | None = None, font: str | None = None, ax: AxesGiven | None = None
@@ -192,15 +192,15 @@ class ModeShape:
         )
 
     def _balls(self, part: str, places: NDArray[np.float64], quantity: str | None) -> list[acb]:
-        found = self.enclosed.along(part)
-        position = found.position(quantity)
+        part_along = self.enclosed.along(part)
+        position = part_along.position(quantity)
         start, end = self.domain(part)
         slack = END_TOLERANCE * (end - start)
         for place in places.ravel():
             if not start - slack <= place <= end + slack:
                 message = f"x = {place:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
                 raise UsageError(Diagnostic("SF240", message))
-        return [found.at(Fraction(float(place)))[position] for place in places.ravel()]
+        return [part_along.at(Fraction(float(place)))[position] for place in places.ravel()]
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]] | None:
         from symflex.figures import picture_of_shape  # only notebooks ask

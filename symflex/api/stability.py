@@ -124,12 +124,12 @@ class Stability:
         gain is below one at the lowest frequencies or never, or if the loop is closed in several places. If
         the stable gains end with the range examined, it is the bandwidth at half of the largest one.
         """
-        found = self.proved.bandwidth
-        if found is not None and found.gain is None:
+        bandwidth = self.proved.bandwidth
+        if bandwidth is not None and bandwidth.gain is None:
             return float("inf")
-        if found is None or found.frequency is None:
+        if bandwidth is None or bandwidth.frequency is None:
             return float("nan")
-        return float(hertz(found.frequency).mid())
+        return float(hertz(bandwidth.frequency).mid())
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.stability/1``."""

@@ -67,8 +67,8 @@ class StateSpace:
     @staticmethod
     def of(model: Model, pairs: Sequence[tuple[str, str]], *, minimal: bool) -> StateSpace:
         """Return a realisation with the outputs and inputs of the given pairs."""
-        found = state_space_room.realise(model, pairs)
-        return StateSpace(state_space_room.minimal(found) if minimal else found)
+        realised = state_space_room.realise(model, pairs)
+        return StateSpace(state_space_room.minimal(realised) if minimal else realised)
 
     @property
     def states(self) -> tuple[str, ...]:

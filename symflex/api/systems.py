@@ -276,8 +276,8 @@ def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression 
 
 def _symbols(entries: Sequence[Any]) -> dict[str, object]:
     """Return the symbols of entries as parameters without value."""
-    found = {str(x): x for e in entries for x in getattr(e, "free_symbols", ())}
-    told = [(name, x) for name, x in sorted(found.items()) if name not in RESERVED]
+    symbols = {str(x): x for e in entries for x in getattr(e, "free_symbols", ())}
+    told = [(name, x) for name, x in sorted(symbols.items()) if name not in RESERVED]
     return {
         name: {} if x.is_positive else {"assume": "nonnegative" if x.is_nonnegative else "real"}
         for name, x in told
@@ -300,11 +300,11 @@ class _FreeNames:
         """Return the nearest name to a label that nothing has yet."""
         name = re.sub(r"\W+", "_", str(label), flags=re.ASCII).strip("_")[:SHOWN]
         name = name if name[:1].isalpha() else f"x_{name}"
-        found, number = name, 2
-        while found in self._taken:
-            found, number = f"{name}_{number}", number + 1
-        self._taken.add(found)
-        return found
+        unique, number = name, 2
+        while unique in self._taken:
+            unique, number = f"{name}_{number}", number + 1
+        self._taken.add(unique)
+        return unique
 
 
 def _refused(message: str, hint: str | None) -> UsageError:

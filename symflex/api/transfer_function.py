@@ -348,8 +348,8 @@ class NestedTransferFunction(_Derived):
         UsageError
             SF902 for an unknown parameter.
         """
-        found = bind_nested(self.exact, values)
-        return BoundNestedTransferFunction(found.source, found.values)
+        bound = bind_nested(self.exact, values)
+        return BoundNestedTransferFunction(bound.source, bound.values)
 
     def __repr__(self) -> str:
         return f"<NestedTransferFunction {self.name}, {self.size} operations>"
@@ -431,8 +431,8 @@ class BoundTransferFunction(Toolboxes, Analyses):
         instants = SampleTimes.of(times)
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
-        found = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
-        return face_of(TimeResponse, found)
+        response = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
+        return face_of(TimeResponse, response)
 
     def sensitivities(
         self,
@@ -464,10 +464,10 @@ class BoundTransferFunction(Toolboxes, Analyses):
         """
         from symflex.analysis.sensitivity.sensitivity import sensitivities  # not needed for roots
 
-        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         model = self.bound.source.model
         return SensitivityTable(
-            Sensitivity(m) for m in sensitivities(model, self.bound, found, parameters, digits)
+            Sensitivity(m) for m in sensitivities(model, self.bound, located, parameters, digits)
         )
 
     def explain_zeros(
@@ -485,8 +485,8 @@ class BoundTransferFunction(Toolboxes, Analyses):
         """
         from symflex.analysis.explanation import explain_zeros  # not needed for roots
 
-        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return explain_zeros(self.bound.source.model, self.bound, found)
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        return explain_zeros(self.bound.source.model, self.bound, located)
 
 
 @dataclass(frozen=True, repr=False)

@@ -47,18 +47,18 @@ class Eliminated:
     def unknowns(self, column: int) -> list[acb]:
         """Return x where A x + b = 0, with b in a column of the border. UndecidedError: A may be singular."""
         size = len(self.order)
-        found = [ZERO] * size
+        values = [ZERO] * size
         for i, j in reversed(self.order):
             row = self.rows[i]
             total = row.get(column, ZERO)
             for k, x in row.items():
                 if k < size and k != j:
-                    total = total + x * found[k]
+                    total = total + x * values[k]
             pivot = row.get(j, ZERO)
             if pivot.contains(0):
                 raise UndecidedError
-            found[j] = -total / pivot
-        return found
+            values[j] = -total / pivot
+        return values
 
 
 def eliminate(

@@ -89,13 +89,13 @@ def raised(base: Arithmetic, exponent: int) -> Arithmetic:
     """
     if isinstance(base, acb | arb):
         return base**exponent
-    found: Arithmetic = base**0 if exponent == 0 else base
+    power: Arithmetic = base**0 if exponent == 0 else base
     for _ in range(abs(exponent) - 1):
-        found = found * base
+        power = power * base
     if exponent < 0:
         # Balls are not finite then by themselves; series of them raise an error.
-        return found * arb("nan") if found[0].contains(0) else 1 / found
-    return found
+        return power * arb("nan") if power[0].contains(0) else 1 / power
+    return power
 
 
 def binary_exponent(value: acb) -> int | None:
@@ -145,8 +145,8 @@ def series_quotient(above: Sequence[acb], below: Sequence[acb], count: int) -> l
     [(1+0j), (2+0j), (4+0j)]
     """
     with series_terms(count):
-        found = acb_series(above, count) / acb_series(below, count)
-    return [found[i] for i in range(count)]
+        quotient = acb_series(above, count) / acb_series(below, count)
+    return [quotient[i] for i in range(count)]
 
 
 Step = tuple[int, tuple[int, ...], int]

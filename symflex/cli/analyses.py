@@ -54,10 +54,10 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=is_explained, is_named=is_explained)
     with ProgressBar() as bar, entered_budget().told(bar).entered():
-        found = pipeline.roots(bound, chosen, shown)
+        located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
-    wanted, is_over = bool(given.sensitivity), found.certificate.is_exceeded
+    wanted, is_over = bool(given.sensitivity), located.certificate.is_exceeded
     try:
         if isinstance(bound, BoundNested):
             if wanted or given.explain:
@@ -66,11 +66,11 @@ def roots(spec: Specification, given: RootsOptions) -> int:
             from symflex.analysis.sensitivity.sensitivity import sensitivities  # most calls need none of it
 
             names = () if "" in given.sensitivity else given.sensitivity
-            moved = sensitivities(model, bound, found, names, shown)
+            moved = sensitivities(model, bound, located, names, shown)
         if given.explain and not isinstance(bound, BoundNested):
             from symflex.analysis.explanation import explain_zeros
 
-            explained = explain_zeros(model, bound, found)
+            explained = explain_zeros(model, bound, located)
     except BudgetError as error:
         show_error(error)
         wanted, is_over = False, True
@@ -80,9 +80,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
         if explained is not None:
             more["explanation"] = explained.to_json_dict()
-        emit_json({**found.to_json_dict(), **more})
+        emit_json({**located.to_json_dict(), **more})
     else:
-        say(roots_text(found, shown, terminal_width()))
+        say(roots_text(located, shown, terminal_width()))
         if wanted:
             from symflex.analysis.sensitivity.text import sensitivity_text  # most calls need none of it
 
@@ -95,7 +95,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         return 5
     if any(m.status == "undecided" for m in moved):
         return 4
-    return 0 if found.certificate.certified and not (given.strict and found.excluded) else 4
+    return 0 if located.certificate.certified and not (given.strict and located.excluded) else 4
 
 
 @command_of("rational", RationalOptions)
@@ -113,8 +113,8 @@ def rational(spec: Specification, given: RationalOptions) -> None:
 
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
-    found = approximate(bound, given.modes, given.form)
-    answer(given.as_json, lambda: rational_json(found), lambda: rational_text(found))
+    approximation = approximate(bound, given.modes, given.form)
+    answer(given.as_json, lambda: rational_json(approximation), lambda: rational_text(approximation))
 
 
 @command_of("stability", StabilityOptions)
@@ -134,9 +134,9 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
 
     model = spec.load()
     with ProgressBar() as bar, entered_budget().told(bar).entered():
-        found = of_model.stability(model, given)
-    answer(given.as_json, found.to_json_dict, lambda: stability_text(found))
-    return 0 if found.certified else 4
+        stable = of_model.stability(model, given)
+    answer(given.as_json, stable.to_json_dict, lambda: stability_text(stable))
+    return 0 if stable.certified else 4
 
 
 @command_of("colocation", ColocationOptions)
@@ -149,9 +149,9 @@ def colocation(spec: Specification, given: ColocationOptions) -> int:
     """
     from symflex.loops import of_model
 
-    found = of_model.colocation(spec.load(), given)
-    answer(given.as_json, found.to_json_dict, lambda: str(found))
-    return 0 if found.is_decided else 4
+    band = of_model.colocation(spec.load(), given)
+    answer(given.as_json, band.to_json_dict, lambda: str(band))
+    return 0 if band.is_decided else 4
 
 
 BUDGET_CODE = "SF5"
@@ -190,13 +190,13 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     if given.of != "margins":
         first_pair(model, given.tf, "sweeping")
     with ProgressBar() as bar, run.open_executor(given.workers, given.scheduler) as (executor, size):
-        found = run.sweep(task, design, given, executor, workers=size, progress=bar)
+        swept = run.sweep(task, design, given, executor, workers=size, progress=bar)
     if given.output:
         note(f"wrote {Path(given.output)}")
-    answer(given.as_json, lambda: sweep_json(found), lambda: sweep_text(found, terminal_width()))
-    if found.is_certified:
+    answer(given.as_json, lambda: sweep_json(swept), lambda: sweep_text(swept, terminal_width()))
+    if swept.is_certified:
         return 0
-    return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4
+    return 5 if any(code.startswith(BUDGET_CODE) for code in swept["code"].reshape(-1).tolist()) else 4
 
 
 def _check(given: SweepOptions) -> None:

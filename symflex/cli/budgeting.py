@@ -71,8 +71,8 @@ class Memory(click.ParamType[int]):
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> int:
         """Return bytes."""
-        found = SIZE.fullmatch(str(value))
-        size = min(int(float(found[1]) * UNITS[found[2].upper()]), sys.maxsize) if found else 0
+        match = SIZE.fullmatch(str(value))
+        size = min(int(float(match[1]) * UNITS[match[2].upper()]), sys.maxsize) if match else 0
         if size < SMALLEST_MEMORY:
             message = f"'{str(value)[:40]}' is not an amount of memory such as '4 GB', of 250 MB or more"
             self.fail(message, param, ctx)

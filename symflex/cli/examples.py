@@ -115,18 +115,18 @@ def _needed_by(model: Path) -> dict[str, Path]:
     from symflex.model.spec import parse, read  # a list parses nothing
 
     folder, waiting = model.parent, [model.name]
-    found: dict[str, Path] = {}
+    needed: dict[str, Path] = {}
     while waiting:
         name = waiting.pop()
-        if name not in found:
-            found[name] = folder / name
-            source = read(found[name])
+        if name not in needed:
+            needed[name] = folder / name
+            source = read(needed[name])
             parse(source)  # says what is wrong where somebody has changed the file
             nested, shows_data = _reads(tomllib.loads(source.text))
             waiting += nested
             if shows_data:
-                found |= {n: p for n, p in _all_in(folder).items() if p.suffix not in (".toml", ".md")}
-    return found
+                needed |= {n: p for n, p in _all_in(folder).items() if p.suffix not in (".toml", ".md")}
+    return needed
 
 
 def _reads(value: object) -> tuple[list[str], bool]:

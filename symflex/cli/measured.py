@@ -69,16 +69,16 @@ def fit(given: FitOptions) -> int:
         given = replace(given, tfs=(given.driving,))
     budget = entered_budget()
     with ProgressBar() as bar, budget.told(bar).entered():
-        found = fitted(every, given)
-    shapes = mode_shapes(found, every) if given.driving else None
-    whole = found
+        resonances = fitted(every, given)
+    shapes = mode_shapes(resonances, every) if given.driving else None
+    whole = resonances
     if given.driving and len(every) > 1 and (given.output or given.figure):
         driven_first = sorted(every, key=lambda response: response.name != given.driving)
         with ProgressBar() as bar, budget.told(bar).entered():
-            whole = fitted(driven_first, replace(given, tfs=(), modes=int(found.modes.sum()) or None))
+            whole = fitted(driven_first, replace(given, tfs=(), modes=int(resonances.modes.sum()) or None))
         why = "".join(f" (poor: {reason})" for reason in whole.poor)
         note(f"files and figures have all responses, fitted with the same poles{why}")
-    if given.strict and (poor := found.poor + whole.poor):
+    if given.strict and (poor := resonances.poor + whole.poor):
         hint = "leave out --strict to print it anyway"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {poor[0]}", None, hint))
     if given.output:
@@ -90,12 +90,16 @@ def fit(given: FitOptions) -> int:
         except SymflexError:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
             note(f"its base reads other folders: give {folders} to the commands that read it")
-    answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
+    answer(
+        given.as_json,
+        lambda: fit_json(resonances, shapes),
+        lambda: fit_text(resonances, terminal_width(), shapes),
+    )
     _draw(whole, given)
     return 0
 
 
-def _draw(found: ResonanceFit, given: FitOptions) -> None:
+def _draw(resonances: ResonanceFit, given: FitOptions) -> None:
     """Draw what figures are asked for."""
     if not (given.figure or given.order_figure):
         return
@@ -103,10 +107,10 @@ def _draw(found: ResonanceFit, given: FitOptions) -> None:
     from symflex.figures import draw_fit, draw_orders, save  # imports matplotlib
 
     if given.figure:
-        save(draw_fit(found), Path(given.figure))
+        save(draw_fit(resonances), Path(given.figure))
         note(f"wrote {given.figure}")
     if given.order_figure:
-        save(draw_orders(stabilisation(found), found), Path(given.order_figure))
+        save(draw_orders(stabilisation(resonances), resonances), Path(given.order_figure))
         note(f"wrote {given.order_figure}")
 
 

@@ -76,32 +76,32 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         known = roots_if_found(bound) if until is None or not bound.is_distributed else None
         last = until or Fraction(f"{default_until(bound, known):.2g}")
         times = SampleTimes.evenly(last, given.points or POINTS)
-        found = time_response(bound, given.to, times, given.digits, shaper)
+        response = time_response(bound, given.to, times, given.digits, shaper)
     else:
         wanted = signal.times
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
         whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
         forced = forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
-        found = replace(forced, input=Path(given.to).name)
+        response = replace(forced, input=Path(given.to).name)
     if given.output and Path(given.output).suffix.lower() == TABLE:
         from symflex.files.write import write_atomically
 
-        write_atomically(Path(given.output), found.to_csv().encode())
+        write_atomically(Path(given.output), response.to_csv().encode())
         note(f"wrote {given.output}")
     elif given.output:
-        _draw(found, given, Path(given.output))
+        _draw(response, given, Path(given.output))
         note(f"wrote {given.output}")
     else:
-        is_told = given.to == "step" and shaper is None and found.certified and _may_rest(known)
-        info = find_step_info(bound, given.digits, found.modes) if is_told else None
+        is_told = given.to == "step" and shaper is None and response.certified and _may_rest(known)
+        info = find_step_info(bound, given.digits, response.modes) if is_told else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
-            emit_json({**found.to_json_dict(), **told})
+            emit_json({**response.to_json_dict(), **told})
         else:
-            say(response_text(found, info.lines(found.unit) if info else _growth(known)))
-    if given.strict and not found.certified:
-        raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {found.reason}"))
+            say(response_text(response, info.lines(response.unit) if info else _growth(known)))
+    if given.strict and not response.certified:
+        raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {response.reason}"))
     return 0
 
 
@@ -130,7 +130,7 @@ def _check_place(given: RespondOptions) -> None:
         raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
 
 
-def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
+def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:
     """Write a figure as options ask for it."""
     from symflex.cli.plot import checked_font
     from symflex.figures import draw_in_time, save
@@ -139,7 +139,7 @@ def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
 
     font = checked_font(given.font, path)
     frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
-    save(draw_in_time(found, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
+    save(draw_in_time(response, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
 
 
 @command_of("shape", ShapeOptions)
@@ -160,11 +160,11 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
         check_place(given.output, PICTURES)
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "shaping")], is_explained=True)
-    found = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
-    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    shaper = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
+    answer(given.as_json, shaper.to_json_dict, lambda: str(shaper))
     if given.output:
         from symflex.figures import draw_residual, save
 
-        save(draw_residual(found), Path(given.output))
+        save(draw_residual(shaper), Path(given.output))
         note(f"wrote {given.output}")
     return 0

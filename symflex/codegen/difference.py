@@ -71,10 +71,10 @@ class FilterSection:
         """Return the statements of one step, of x and the states from ``w[first]`` on; C and Python alike."""
         count = len(self.below)
         states = [f"w[{first + i}]" for i in range(count)]
-        found = [f"y = {_sum([(self.above[0], 'x')], states[:1])}"]
+        statements = [f"y = {_sum([(self.above[0], 'x')], states[:1])}"]
         for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
-            found.append(f"{states[i]} = {_sum([(b, 'x'), (-a, 'y')], states[i + 1 : i + 2])}")
-        return found
+            statements.append(f"{states[i]} = {_sum([(b, 'x'), (-a, 'y')], states[i + 1 : i + 2])}")
+        return statements
 
     def step(self, x: float, w: list[float], first: int) -> float:
         """Do what :meth:`lines` say, in doubles."""
@@ -106,7 +106,7 @@ class DifferenceEquation:
     def run(self, u: Sequence[float]) -> list[float]:
         """Return the output in doubles, from rest, as generated code computes it."""
         w, past = [0.0] * self.order, [0.0] * self.sampled.late
-        found = []
+        outputs = []
         for k, value in enumerate(u):
             x, first = value, 0
             if past:
@@ -114,21 +114,21 @@ class DifferenceEquation:
             for section in self.sections:
                 x = section.step(x, w, first)
                 first += len(section.below)
-            found.append(x)
-        return found
+            outputs.append(x)
+        return outputs
 
     def error_of_output(self) -> float:
         """Return how far a run is off an exact one, over the largest value; infinite on overflow."""
         random = Random(1)
         u = [random.choice((1.0, -1.0)) for _ in range(SAMPLES)]
-        found, exact = self.run(u), _exact_run(self.sampled, u)
+        computed, exact = self.run(u), _exact_run(self.sampled, u)
         largest = max(abs(y) for y in exact)
         if largest == 0:
             return 0.0
-        if not all(map(isfinite, found)):
+        if not all(map(isfinite, computed)):
             return float("inf")
         with precision(MEASURE_BITS):
-            return max(float(abs(y - x) / largest) for x, y in zip(found, exact, strict=True))
+            return max(float(abs(y - x) / largest) for x, y in zip(computed, exact, strict=True))
 
     def error_of_response(self) -> float:
         """Return how far rounding of coefficients takes the frequency response off, over its value."""
@@ -137,10 +137,10 @@ class DifferenceEquation:
             for i in range(FREQUENCIES):
                 angle = pi * 0.999 * 10 ** (-4 * i / (FREQUENCIES - 1))
                 z = acb(0, angle).exp()
-                exact, found = self.sampled.enclosed(z), z**-self.sampled.late
+                exact, computed = self.sampled.enclosed(z), z**-self.sampled.late
                 for section in self.sections:
-                    found = found * section.enclosed(z)
-                error = float((abs(found - exact) / abs(exact)).mid()) if exact.is_finite() else 0.0
+                    computed = computed * section.enclosed(z)
+                error = float((abs(computed - exact) / abs(exact)).mid()) if exact.is_finite() else 0.0
                 worst = max(worst, error) if isfinite(error) else worst
         return worst
 
@@ -247,21 +247,21 @@ def _exact_run(sampled: SampledTransferFunction, u: Sequence[float]) -> list[arb
         above = [c.mid() for c in sampled.numerator]
         below = [c.mid() for c in sampled.denominator[1:]]
         late = [arb(0)] * sampled.late + [arb(v) for v in u[: len(u) - sampled.late]]
-        found: list[arb] = []
+        outputs: list[arb] = []
         for k in range(len(u)):
             value = sum((above[i] * late[k - i] for i in range(min(order, k) + 1)), arb(0))
-            value -= sum((below[i] * found[k - 1 - i] for i in range(min(order, k))), arb(0))
-            found.append(value.mid())
-        return found
+            value -= sum((below[i] * outputs[k - 1 - i] for i in range(min(order, k))), arb(0))
+            outputs.append(value.mid())
+        return outputs
 
 
 def _double(value: arb, name: str) -> float:
-    found = float(value.mid())
-    if not isfinite(found) or (value != 0 and abs(found) < float_info.min):
-        size = "large" if abs(found) > 1 else "small"
+    double = float(value.mid())
+    if not isfinite(double) or (value != 0 and abs(double) < float_info.min):
+        size = "large" if abs(double) > 1 else "small"
         message = f"a coefficient of {name} from sample to sample is too {size} for double precision"
         raise ModelError(Diagnostic("SF233", message, None, "choose other units, or another sampling time"))
-    return found
+    return double
 
 
 def _sum(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
@@ -324,8 +324,8 @@ class _StepCode:
 
     def names(self, reserved: Sequence[str]) -> list[str]:
         wanted = {tf.name: f"{tf.output.name}_over_{tf.input.name}" for tf, _, _ in self.made}
-        found = identifiers(wanted, reserved)
-        return [found[tf.name] for tf, _, _ in self.made]
+        by_wanted = identifiers(wanted, reserved)
+        return [by_wanted[tf.name] for tf, _, _ in self.made]
 
     def introduction(self, width: int) -> list[str]:
         sampling = self.sampling

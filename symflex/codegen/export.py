@@ -203,19 +203,21 @@ class Language:
         return replace(made, warnings=warnings, verified=contents.verified)
 
     def _members(self, tfs: Sequence[AnyTransferFunction], samples: int) -> tuple[Member, ...]:
-        found: list[Member] = []
+        members: list[Member] = []
         for tf in {tf.name: tf for tf in tfs}.values():
             wanted = f"{tf.output.name}_over_{tf.input.name}"
             if self.form == BAND or not (self.is_open or is_closed(tf)):
                 program, verification, formula = choose_band(tf, self.up_to, samples)
-                found.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
+                members.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
                 continue
             own, response = choose_programs(tf, samples, has_real=self.has_real)
             formula = formula_of(tf)
-            found.append(Member(tf, own[0], wanted, own[1], formula))
+            members.append(Member(tf, own[0], wanted, own[1], formula))
             if response is not None:
-                found.append(Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True))
-        return tuple(found)
+                members.append(
+                    Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True)
+                )
+        return tuple(members)
 
 
 def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:
@@ -262,12 +264,12 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
     }
     if not dialect:
         return parts
-    found: dict[tuple[str, ...], str] = {}
+    texts: dict[tuple[str, ...], str] = {}
     others = parts_of(dialect)
     for names, text in parts.items():
         own = next((other for other in others if not set(other).isdisjoint(names)), names)
-        found.setdefault(own, others.get(own, text))
-    return found
+        texts.setdefault(own, others.get(own, text))
+    return texts
 
 
 def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterable[str] = ()) -> list[str]:

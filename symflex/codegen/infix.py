@@ -227,8 +227,8 @@ class PrivateFunctions(ABC):
         own = {f"{word} of the code": word for word in words}
         taken = {*self.reserved, *self.parameters.values()}
         names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, self.longest)
-        found = [names[key] for key in own]
-        return self.printer(self.parameters, names, found[0], found[-1]), found
+        arguments = [names[key] for key in own]
+        return self.printer(self.parameters, names, arguments[0], arguments[-1]), arguments
 
     def assigned(
         self, assignments: Sequence[tree.Assignment], printer: InfixPrinter, depth: int = 1

@@ -527,5 +527,5 @@ def _descending(tf: TransferFunction, polynomial: fmpz_mpoly) -> tuple[Expressio
     """Return the coefficients of all powers of s, the highest first."""
     ring = tf.ratio.ring
     arranger = Arranger.plain(ring, constant_symbols(tf))
-    found = reversed(ring.coefficients(polynomial))
-    return tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in found)
+    coefficients = reversed(ring.coefficients(polynomial))
+    return tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in coefficients)

@@ -155,19 +155,19 @@ def identifiers(
     >>> dict(identifiers({"a": "stiffness_1", "b": "stiffness_2"}, {}, longest=9))
     {'a': 'stiffness', 'b': 'stiffnes_'}
     """
-    found: dict[str, str] = {}
+    chosen: dict[str, str] = {}
     taken = set(reserved)
     for key, text in wanted.items():
         if _PLAIN.fullmatch(text) and text not in taken and text == text[:longest]:
-            found[key] = text
+            chosen[key] = text
             taken.add(text)
     for key, text in wanted.items():
-        if key not in found:
+        if key not in chosen:
             plain = _OUTSIDE.sub("_", text)
             plain = plain if plain[:1].isalpha() else f"p_{plain.lstrip('_')}"
-            found[key] = _free(plain, taken, longest)
-            taken.add(found[key])
-    return {key: found[key] for key in wanted}
+            chosen[key] = _free(plain, taken, longest)
+            taken.add(chosen[key])
+    return {key: chosen[key] for key in wanted}
 
 
 def _free(text: str, taken: Collection[str], longest: int | None) -> str:

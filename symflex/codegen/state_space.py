@@ -141,14 +141,14 @@ class StateEquations:
     def divisors(self) -> tuple[Expression, ...]:
         """What entries are divided by: the equations hold where none of it is zero."""
         system = self.system
-        found: dict[str, fmpz_mpoly] = {}
+        factors: dict[str, fmpz_mpoly] = {}
         for _, rows, _ in system.matrices:
             for row in rows:
                 for value in row.values():
                     if not value.den.is_constant():
                         for factor, _ in irreducible_factors(value.den)[1]:
-                            found.setdefault(str(factor), factor)
-        return tuple(self._arranger.coefficient(factor) for factor in found.values())
+                            factors.setdefault(str(factor), factor)
+        return tuple(self._arranger.coefficient(factor) for factor in factors.values())
 
 
 PI = "pi"
@@ -441,7 +441,7 @@ def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> s
     Raises ModelError: SF229 for parameters without value, SF233 where an entry does not fit in a double.
     """
     valued = tuple(p for p in system.model.parameters if p.value is not None)
-    found = sampled_state_space(system, dict(read_values(valued, {})), sampling, delay)
+    stepped = sampled_state_space(system, dict(read_values(valued, {})), sampling, delay)
     lines = ["One step of a linear system from a sample to the next, with its inputs held in between.", ""]
     lines += origin(system.model, "")
     lines += ["Written by symflex. With w the states, u the inputs and y the outputs, in every step", ""]
@@ -456,12 +456,12 @@ def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> s
     header = docstring(lines, "")
     units = {x.name: x.unit for x in system.states}
     blocks = [
-        f"SAMPLE_TIME = {found.dt!r}  # [s]\n",
-        _table("STATES", [(name, units.get(name, ""), "") for name in found.states]),
+        f"SAMPLE_TIME = {stepped.dt!r}  # [s]\n",
+        _table("STATES", [(name, units.get(name, ""), "") for name in stepped.states]),
         _table("INPUTS", [(x.name, x.unit, "") for x in system.inputs]),
         _table("OUTPUTS", [(x.name, x.unit, "") for x in system.outputs]),
     ]
-    for letter, array in zip(LETTERS, (found.A, found.B, found.C, found.D), strict=True):
+    for letter, array in zip(LETTERS, (stepped.A, stepped.B, stepped.C, stepped.D), strict=True):
         rows = [f"    [{', '.join(map(repr, row))}]," for row in array.tolist()]
         shape = f".reshape({array.shape})"
         blocks.append("\n".join([f"{letter}: NDArray[np.float64] = np.array([", *rows, f"]){shape}"]) + "\n")

@@ -39,11 +39,11 @@ class AlongX:
     @cached_property
     def _slopes(self) -> Mapping[str, Factored]:
         one = self.evaluator.s**0
-        found = {COORDINATE: one}
+        slopes = {COORDINATE: one}
         for name, call in self.functions:
             slope = slope_along_x(call)
-            found[name] = one * 0 if slope is None else self.evaluator.constant(slope)
-        return found
+            slopes[name] = one * 0 if slope is None else self.evaluator.constant(slope)
+        return slopes
 
     def varies(self, value: Factored) -> bool:
         """Tell whether a value varies along x."""

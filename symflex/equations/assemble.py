@@ -134,7 +134,7 @@ def _too_large(message: str, hint: str) -> BudgetError:
 
 
 def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
-    found: dict[str, ConstantFunction] = {}
+    functions: dict[str, ConstantFunction] = {}
     for part in _with_submodels(model):
         opener = Opener({d.name: d.expression for d in part.definitions})
         for _, expression in part.expressions():
@@ -142,10 +142,10 @@ def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
                 if isinstance(call, Call) and call.name in FUNCTIONS:
                     opened = opener.open(call)
                     text = format_expression(opened)
-                    found.setdefault(text, ConstantFunction(text, opened))
+                    functions.setdefault(text, ConstantFunction(text, opened))
     if is_tapered(model):
-        found |= _of_the_coordinate(model, found)
-    return tuple(found.values())
+        functions |= _of_the_coordinate(model, functions)
+    return tuple(functions.values())
 
 
 def _of_the_coordinate(model: Model, known: Mapping[str, ConstantFunction]) -> dict[str, ConstantFunction]:
@@ -165,13 +165,13 @@ def _of_the_coordinate(model: Model, known: Mapping[str, ConstantFunction]) -> d
     for use in model.elements:
         if isinstance(use.element, LineElement) and any(varies_along_x(e) for _, e in use.all_values):
             ends += [Number(Fraction(0)), dict(use.all_values)[use.element.length]]
-    found: dict[str, ConstantFunction] = {}
+    functions: dict[str, ConstantFunction] = {}
     for call in calls:
         for put_in in (call, *(substitute(call, {COORDINATE: p}) for p in (*points, *ends))):
             opened = opener.open(put_in) if isinstance(put_in, Call) else call
             text = format_expression(opened)
-            found.setdefault(text, ConstantFunction(text, opened))
-    return found
+            functions.setdefault(text, ConstantFunction(text, opened))
+    return functions
 
 
 def _with_submodels(model: Model) -> Iterable[Model]:
@@ -367,13 +367,13 @@ class _Assembly:
         """Take a field's state at its start as unknowns, and its conditions as rows."""
         self.unknowns += [v for v in solution.initial if v is not None]
         if self.distributed is not None:
-            found, start = solution.field, solution.origin
-            ends = map(self.distributed.evaluator.constant, (found.start, found.end))
+            problem, start = solution.field, solution.origin
+            ends = map(self.distributed.evaluator.constant, (problem.start, problem.end))
             length = sum((end - start for end in ends), start * 0)
             system, initial = solution.medium.system, solution.initial
             self.continua.append(
                 Continuum(
-                    found.name,
+                    problem.name,
                     "field",
                     system,
                     start,
@@ -414,7 +414,7 @@ class _Assembly:
 
     def _define(self, evaluator: ExactEvaluator, point: dict[str, int]) -> tuple[tuple[str, Factored], ...]:
         """Return the definitions' values, each placed at the random point for those after it."""
-        found = []
+        definitions = []
         for definition in self.model.definitions:
             try:
                 value = evaluator.constant(definition.expression)
@@ -424,8 +424,8 @@ class _Assembly:
             except (ZeroDivisionError, KeyError):
                 continue  # what it uses is reported where it stands
             else:
-                found.append((definition.name, value))
-        return tuple(found)
+                definitions.append((definition.name, value))
+        return tuple(definitions)
 
     def _check_blocks(self, blocks: Mapping[str, Factored], point: Mapping[str, int], prime: int) -> None:
         """Note every block that divides by zero once its definitions are opened."""
@@ -438,12 +438,14 @@ class _Assembly:
                 continue
 
     def _blocks(self) -> Mapping[str, Factored]:
-        found: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
+        transfers: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
-        evaluator = ExactEvaluator(self.ring, scope, found, {}, self._definitions, radicals=self._radicals)
+        evaluator = ExactEvaluator(
+            self.ring, scope, transfers, {}, self._definitions, radicals=self._radicals
+        )
         s = Factored.generator(self.ring, LAPLACE)
         for block in self._ordered_blocks():
-            if block.name in found:
+            if block.name in transfers:
                 continue
             if self.distributed is None and block.name in self._delayed:
                 continue  # over the ring without kernels there is no value for it
@@ -451,28 +453,28 @@ class _Assembly:
                 values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
                 hidden = Factored.number(self.ring, 1)
                 if block.block is not None:
-                    found[block.name] = self._radicals.tidy(transfer_of(block, values))
+                    transfers[block.name] = self._radicals.tidy(transfer_of(block, values))
                 elif self.nested is not None:
                     ratio, hidden = self.nested(block, self.ring)
-                    found[block.name] = self._radicals.tidy(ratio)
-                if block.name in found:
+                    transfers[block.name] = self._radicals.tidy(ratio)
+                if block.name in transfers:
                     self.poles[block.name] = written_poles(block, values, evaluator, self.poles) * hidden
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
-                found[block.name] = Factored.number(self.ring, 1)
+                transfers[block.name] = Factored.number(self.ring, 1)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
-                found[block.name] = Factored.number(self.ring, 1)
-        return found
+                transfers[block.name] = Factored.number(self.ring, 1)
+        return transfers
 
     @property
     def _delayed(self) -> set[str]:
         """The delay blocks, and the blocks made of them."""
-        found = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
+        delayed = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
         for block in self._ordered_blocks():
-            if any(names_among(e, found) for _, e in block.values):
-                found.add(block.name)
-        return found
+            if any(names_among(e, delayed) for _, e in block.values):
+                delayed.add(block.name)
+        return delayed
 
     def _ordered_blocks(self) -> list[PlacedBlock]:
         """Return the blocks so that each uses only earlier ones, directly or through definitions.
@@ -483,8 +485,8 @@ class _Assembly:
         expressions = {d.name: [d.expression] for d in self.model.definitions}
         expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}
         graph = {
-            name: [n for e in found for n in names_among(e, expressions)]
-            for name, found in expressions.items()
+            name: [n for e in expression_list for n in names_among(e, expressions)]
+            for name, expression_list in expressions.items()
         }
         try:
             order = list(TopologicalSorter(graph).static_order())

@@ -194,11 +194,11 @@ def guess(value: Factored, numbers: Mapping[str, ExactValue | None]) -> float:
     """
     known = {n: float(v.rational) * pi**v.pi_power for n, v in numbers.items() if v is not None} | {"pi": pi}
     names = value.ring.names
-    found = float(value.unit)
+    product = float(value.unit)
     for factor, exponent in value.factors:
         terms = (int(c) * prod(known.get(names[i], 1.0) ** e for i, e in m) for m, c in terms_of(factor))
-        found *= sum(terms) ** exponent
-    return found
+        product *= sum(terms) ** exponent
+    return product
 
 
 def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
@@ -236,9 +236,9 @@ class Distributed:
             medium, length = self.lines[owner]
             unknown, order = self.along[call.name], call.order
             return AlongPoint(owner, medium, (), (), length, at, unknown, order, call.argument)
-        found = self.solutions[call.name]
-        at, name = at - found.origin, found.field.name
-        own = found.medium, found.initial, found.inputs
+        solution = self.solutions[call.name]
+        at, name = at - solution.origin, solution.field.name
+        own = solution.medium, solution.initial, solution.inputs
         return AlongPoint(name, *own, at, at, call.name, call.order, call.argument)
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
@@ -252,9 +252,9 @@ class Distributed:
             medium, _ = self.lines[owner]
             initial, name, length = states[owner], self.along[call.name], medium.way(at)
         else:
-            found = self.solutions[call.name]
-            medium, initial, inputs = found.medium, found.initial, found.inputs
-            name, length = call.name, at - found.origin
+            solution = self.solutions[call.name]
+            medium, initial, inputs = solution.medium, solution.initial, solution.inputs
+            name, length = call.name, at - solution.origin
         return _value(medium, initial, inputs, name, call.order, length, self.propagation, call.argument)
 
 
@@ -288,11 +288,11 @@ class _Demands:
         key = tuple(text(x) for row in system.matrix for x in row)
         try:
             # Members of one material and section have equal equations, mostly.
-            found = self.found.get(key) or components(system, self.settled)
+            components_of = self.found.get(key) or components(system, self.settled)
         except BudgetError as error:
             raise BudgetError(*(replace(d, span=span) for d in error.diagnostics)) from None
-        self.found[key] = found
-        for part in found:
+        self.found[key] = components_of
+        for part in components_of:
             law = part.characteristic
             if law.kind == "polynomial":
                 parts.append((part, POLYNOMIAL))
@@ -316,13 +316,13 @@ class _Demands:
             hint = "cut it into uniform pieces, or model its bending as a beam"
             raise ModelError(Diagnostic("SF910", message, span, hint))
         components = varying_components(system)
-        found = [[_singular(part, along, end, name, span) for part in components] for end in ends]
-        singular = [any(own) for own in found]
+        singular_parts = [[_singular(part, along, end, name, span) for part in components] for end in ends]
+        singular = [any(own) for own in singular_parts]
         if all(singular):
             message = f"stiffnesses vanish at both ends of '{name}'"
             hint = "cut it in two between them, so that each part has one such end"
             raise ModelError(Diagnostic("SF910", message, span, hint))
-        own, origin = found[singular[1]], along.evaluator.constant(ends[singular[1]])
+        own, origin = singular_parts[singular[1]], along.evaluator.constant(ends[singular[1]])
         parts, held = [], set[str]()
         for part, start in zip(components, own, strict=True):
             law = Dispersion(name, "varying", (), origin * 0, (), part.matrix, (origin,), start, span)
@@ -568,11 +568,11 @@ def _fundamental(
     """Return ``h, ..., h^(n-1)`` of a part at a length."""
     n = len(part.coefficients)
     if number != POLYNOMIAL:
-        found = propagation.fundamental(number, part.scaled(length), part.multiplicity)
+        functions = propagation.fundamental(number, part.scaled(length), part.multiplicity)
         if part.scale is None:
-            return found
+            return functions
         scale = propagation.embed(part.scale)
-        return tuple(h * scale ** (k + 1 - n) for k, h in enumerate(found))
+        return tuple(h * scale ** (k + 1 - n) for k, h in enumerate(functions))
     x = propagation.embed(length)
     return tuple(_monomial(x, n - 1 - k) for k in range(n))
 

@@ -367,13 +367,13 @@ def measured(expression: Expression) -> tuple[Measured, ...]:
 
 def nodes(expression: Expression) -> list[Expression]:
     """Return an expression and all its parts, in order of appearance, each before its own parts."""
-    found: list[Expression] = []
+    visited: list[Expression] = []
     pending = [expression]
     while pending:
         node = pending.pop()
-        found.append(node)
+        visited.append(node)
         pending.extend(reversed(node.children))
-    return found
+    return visited
 
 
 def fold(

@@ -82,13 +82,13 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     >>> str(tree.terms[1].span), tree.terms[1].span.text
     ('robot.toml:1:7', '2.5e-3')
     """
-    found = _read(text, limits, "sum").node
-    if bracket := next((n for n in nodes(found) if isinstance(n, Differentiated)), None):
+    expression = _read(text, limits, "sum").node
+    if bracket := next((n for n in nodes(expression) if isinstance(n, Differentiated)), None):
         message = "a derivative of a bracket along x belongs in the equations and conditions of [fields]"
         raise SpecError(
             Diagnostic("SF223", message, bracket.span, "a derivative in time is written with s: s*x")
         )
-    return found
+    return expression
 
 
 def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:

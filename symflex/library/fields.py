@@ -61,17 +61,17 @@ class Axes:
         Every pair of states that :data:`VECTORS` lists turns, the others stay.
         """
         size = len(matrix)
-        found = [list(row) for row in matrix]
+        rows = [list(row) for row in matrix]
         partner = {i: j for pair in VECTORS for i, j in (pair, pair[::-1])}
         for u, v in VECTORS:
             for p in range(size):
                 if p not in partner:
-                    found[u][p], found[v][p] = self._components(matrix[u][p], matrix[v][p])
-                    found[p][u], found[p][v] = self._components(matrix[p][u], matrix[p][v])
+                    rows[u][p], rows[v][p] = self._components(matrix[u][p], matrix[v][p])
+                    rows[p][u], rows[p][v] = self._components(matrix[p][u], matrix[p][v])
             for p, q in VECTORS:
                 block = (matrix[u][p], matrix[u][q], matrix[v][p], matrix[v][q])
-                found[u][p], found[u][q], found[v][p], found[v][q] = self._block(*block)
-        return tuple(map(tuple, found))
+                rows[u][p], rows[u][q], rows[v][p], rows[v][q] = self._block(*block)
+        return tuple(map(tuple, rows))
 
     def _components(self, u: Factored, v: Factored) -> tuple[Factored, Factored]:
         return self.cos * u - self.sin * v, self.sin * u + self.cos * v
@@ -87,13 +87,13 @@ class Axes:
     def readings(self) -> Mapping[str, tuple[Factored, ...]]:
         """Return what the member's own states are in those along the plane's axes, by their names."""
         zero = self.cos * 0
-        found: dict[str, tuple[Factored, ...]] = {}
+        readings: dict[str, tuple[Factored, ...]] = {}
         for u, v in VECTORS:
             along, across = [zero] * len(self.own.states), [zero] * len(self.own.states)
             along[u], along[v] = self.cos, self.sin
             across[u], across[v] = -self.sin, self.cos
-            found[self.own.states[u]], found[self.own.states[v]] = tuple(along), tuple(across)
-        return found
+            readings[self.own.states[u]], readings[self.own.states[v]] = tuple(along), tuple(across)
+        return readings
 
 
 class FieldTheory(Protocol):
@@ -349,12 +349,12 @@ def varying_components(system: FieldSystem) -> tuple[Component, ...]:
     """Return the uncoupled parts of equations whose coefficients vary along x."""
     n, zero = len(system.states), system.matrix[0][0] * 0
     places = {(i, j) for i in range(n) for j in range(n) if not system.matrix[i][j].is_zero}
-    found = []
+    components_found = []
     for own in coupled_states(n, places):
         rows = [(*(system.matrix[i][j] for j in own), *(load[i] for load in system.loads)) for i in own]
         rows += [(zero,) * len(rows[0]) for _ in system.loads]
-        found.append(Component(own, Characteristic("varying", (), zero), (), (), tuple(rows)))
-    return tuple(found)
+        components_found.append(Component(own, Characteristic("varying", (), zero), (), (), tuple(rows)))
+    return tuple(components_found)
 
 
 def components(
@@ -365,7 +365,7 @@ def components(
     With ``settled``, which returns a value with all that is known of its generators put in, polynomials that
     factor into such whose roots have a formula, and squares of these, give one part per factor.
     """
-    found = []
+    parts = []
     axes = system.axes
     whole = system.matrix if axes is None else axes.own.matrix
     size = len(whole)
@@ -380,28 +380,28 @@ def components(
                 adjugate = tuple(axes.turned(_spread(b, own, whole[0][0] * 0, len(whole))) for b in adjugate)
                 states = tuple(range(len(whole)))
             law, m = classify(share.factor), share.multiplicity
-            found.append(
+            parts.append(
                 Component(states, law, share.coefficients, adjugate, (), m, share is not plain, share.meets)
             )
-    return tuple(found)
+    return tuple(parts)
 
 
 def _split(plain: Share, matrix: Matrix, settled: Callable[[Factored], Factored]) -> Sequence[Share]:
     """Return the shares of the factors of a characteristic polynomial, all of whose roots have formulas."""
     c, kind = plain.factor, classify(plain.factor).kind
     if kind == "pair" and settled(c[2] ** 2 - c[0] * 4).is_zero:
-        found = [(squared(c), 2)]
+        factored = [(squared(c), 2)]
     elif kind in ("pair", "general"):
-        found = factors([settled(x) for x in c])
+        factored = factors([settled(x) for x in c])
     else:
         return (plain,)
-    if len(found) == 1 and found[0][1] == 1:
+    if len(factored) == 1 and factored[0][1] == 1:
         return (plain,)
-    kinds = [classify(p).kind for p, _ in found]
-    if "general" in kinds or any(k == "pair" and m > 1 for k, (_, m) in zip(kinds, found, strict=True)):
+    kinds = [classify(p).kind for p, _ in factored]
+    if "general" in kinds or any(k == "pair" and m > 1 for k, (_, m) in zip(kinds, factored, strict=True)):
         return (plain,)
     known = [f for row in matrix for x in row for f, e in x.factors if e < 0]
-    return shares(found, plain.adjugate, known) or (plain,)
+    return shares(factored, plain.adjugate, known) or (plain,)
 
 
 def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) -> Matrix:
@@ -415,7 +415,7 @@ def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) ->
 
 def coupled_states(count: int, places: Collection[tuple[int, int]]) -> list[tuple[int, ...]]:
     """Return the connected parts of the states of a matrix that has entries at some places, in order."""
-    left, found = list(range(count)), []
+    left, groups = list(range(count)), []
     while left:
         part, pending = set(), [left[0]]
         while pending:
@@ -424,9 +424,9 @@ def coupled_states(count: int, places: Collection[tuple[int, int]]) -> list[tupl
                 continue
             part.add(i)
             pending += [j for j in left if (i, j) in places or (j, i) in places]
-        found.append(tuple(i for i in left if i in part))
+        groups.append(tuple(i for i in left if i in part))
         left = [i for i in left if i not in part]
-    return found
+    return groups
 
 
 def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matrix, ...]]:
@@ -512,8 +512,8 @@ def _shifted(coefficients: Sequence[Factored], shift: Factored) -> tuple[Factore
     n = len(coefficients)
     one = shift**0
     full = (*coefficients, one)
-    found = []
+    shifted = []
     for j in range(n):
         total = sum((full[k] * (-shift) ** (k - j) * comb(k, j) for k in range(j, n + 1)), one * 0)
-        found.append(total)
-    return tuple(found)
+        shifted.append(total)
+    return tuple(shifted)

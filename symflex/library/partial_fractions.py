@@ -74,7 +74,7 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
     if sum(map(len, polynomials)) > FACTORED_TERMS:
         return [(tuple(coefficients), 1)]
     images = [*ring.context.gens(), ring.constant(0)]
-    found = []
+    parts = []
     for polynomial, exponent in total.factors:
         if exponent < 0 or not degree_in(polynomial, position):
             continue
@@ -83,8 +83,8 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
             if (degree := max(powers)) > 0:
                 plain = {k: c.compose(*images, ctx=ring.context) for k, c in powers.items()}
                 own = (_quotient(ring, plain.get(k), plain[degree]) for k in range(degree))
-                found.append((tuple(own), times * exponent))
-    return found
+                parts.append((tuple(own), times * exponent))
+    return parts
 
 
 def _lifted(value: Factored, ring: Ring) -> Factored:
@@ -115,7 +115,7 @@ def lowest(value: Factored) -> Factored:
 
 
 def shares(
-    found: Sequence[tuple[tuple[Factored, ...], int]],
+    factors_found: Sequence[tuple[tuple[Factored, ...], int]],
     adjugate: Sequence[Matrix],
     known: Collection[fmpz_mpoly],
 ) -> tuple[Share, ...] | None:
@@ -126,13 +126,13 @@ def shares(
     """
     one = adjugate[0][0][0] ** 0
     powers = []
-    for p, m in found:
+    for p, m in factors_found:
         power = [one]
         for _ in range(m):
             power = _multiplied(power, [*p, one])
         powers.append(power)
     result = []
-    for n, ((p, m), own) in enumerate(zip(found, powers, strict=True)):
+    for n, ((p, m), own) in enumerate(zip(factors_found, powers, strict=True)):
         other = [one]
         for k, power in enumerate(powers):
             other = other if k == n else _remainder(_multiplied(other, power), own)
@@ -140,7 +140,7 @@ def shares(
         if inverse is None:
             return None
         matrices = _reduced(adjugate, inverse, own)
-        meets = _poles(matrices, known) if len(found) > 1 else []
+        meets = _poles(matrices, known) if len(factors_found) > 1 else []
         if any(degree_in(f, 0) and 1 not in map(int, f.degrees()) for f in meets):
             return None
         meeting = tuple(Factored.polynomial(one.ring, f) for f in meets)
@@ -150,12 +150,12 @@ def shares(
 
 def _poles(matrices: Sequence[Matrix], known: Collection[fmpz_mpoly]) -> list[fmpz_mpoly]:
     """Return the factors below entries, but for s and those known."""
-    found: list[fmpz_mpoly] = []
+    poles: list[fmpz_mpoly] = []
     for value in (x for b in matrices for row in b for x in row):
         for f, e in value.factors:
-            if e < 0 and f != value.ring.context.gen(0) and f not in known and f not in found:
-                found.append(f)
-    return found
+            if e < 0 and f != value.ring.context.gen(0) and f not in known and f not in poles:
+                poles.append(f)
+    return poles
 
 
 def _multiplied(left: Row, right: Row) -> Row:
@@ -191,10 +191,12 @@ def _inverse(polynomial: Row, divisor: Row) -> Row | None:
 def _reduced(adjugate: Sequence[Matrix], inverse: Row, divisor: Row) -> tuple[Matrix, ...]:
     """Return the coefficients of ``adj*inverse`` modulo a divisor."""
     size = range(len(adjugate[0]))
-    found = [
+    remainders = [
         [_remainder(_multiplied([b[i][j] for b in adjugate], inverse), divisor) for j in size] for i in size
     ]
-    return tuple(tuple(tuple(found[i][j][k] for j in size) for i in size) for k in range(len(divisor) - 1))
+    return tuple(
+        tuple(tuple(remainders[i][j][k] for j in size) for i in size) for k in range(len(divisor) - 1)
+    )
 
 
 def solve(matrix: list[Row], right: list[Row]) -> list[Row] | None:

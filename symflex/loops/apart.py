@@ -66,7 +66,7 @@ def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial])
         parts=None if is_plain else (one, den),
         is_of_model=False,
     )
-    found = locate(apart, None if is_plain else Modes(1))
-    every = (*found.all_poles, *(h.root for h in found.hidden))
-    on_axis = [r for r in found.poles if r.on_imaginary_axis]
-    return PolesApart(found.verdict, count_right(every), sum(r.multiplicity for r in on_axis))
+    located = locate(apart, None if is_plain else Modes(1))
+    every = (*located.all_poles, *(h.root for h in located.hidden))
+    on_axis = [r for r in located.poles if r.on_imaginary_axis]
+    return PolesApart(located.verdict, count_right(every), sum(r.multiplicity for r in on_axis))

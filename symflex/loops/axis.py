@@ -131,13 +131,13 @@ def _refined(
 
 def _joined(intervals: list[arb]) -> tuple[arb, ...]:
     """Return intervals, neighbours as one."""
-    found: list[arb] = []
+    joined: list[arb] = []
     for interval in intervals:
-        if found and found[-1].overlaps(interval):
-            found[-1] = found[-1].union(interval)
+        if joined and joined[-1].overlaps(interval):
+            joined[-1] = joined[-1].union(interval)
         else:
-            found.append(interval)
-    return tuple(found)
+            joined.append(interval)
+    return tuple(joined)
 
 
 ORIGIN_BITS = 320
@@ -229,7 +229,7 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
     They reach as far as roots next to 0 can be told from it, times a factor.
     """
     ring = function.bound.ratio.ring
-    orders, found = [], []
+    orders, lowest_terms = [], []
     for polynomial in (function.a, function.b):
         whole = Factored.polynomial(ring, polynomial)
         try:
@@ -242,14 +242,14 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             spend()
             return None
         orders.append(order)
-        found.append((part, lowest, whole.unit))
-    lowest = min(low for _, low, _ in found)
+        lowest_terms.append((part, lowest, whole.unit))
+    lowest = min(low for _, low, _ in lowest_terms)
     if lowest == -inf:
         return None
     with precision(ORIGIN_BITS):
         reach = arb(exp(lowest) * times)
         series = []
-        for part, _, unit in found:
+        for part, _, unit in lowest_terms:
             own = local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2)
             if own is None:
                 return None

@@ -82,7 +82,7 @@ class DistributedFactors:
         """
         if not any(tail in OUTWEIGHED for tail in self._tails):
             return self
-        found, good, bad = self, Fraction(0), Fraction(1)
+        largest, good, bad = self, Fraction(0), Fraction(1)
         for _ in range(HALVINGS):
             share = (good + bad) / 2
             low, high = self.limits
@@ -90,8 +90,8 @@ class DistributedFactors:
             if part.is_endless:
                 bad = share
             else:
-                found, good = part, share
-        return found
+                largest, good = part, share
+        return largest
 
     @cached_property
     def with_gain(self) -> tuple[LoopFunction, ...]:
@@ -105,14 +105,14 @@ class DistributedFactors:
     @cached_property
     def _tails(self) -> list[float | str]:
         low, high = (ball(x) for x in self.limits)
-        found = []
+        tails = []
         for factor in self.factors:
             if factor.multiplicity > 0:
                 b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
                 function = LoopFunction.of(self.bound, factor.coefficients[0], b)
                 weights = (acb(1), acb(low.union(high)))
-                found.append(right_tail(self.bound, (function.a, function.b), weights, self.scale))
-        return found
+                tails.append(right_tail(self.bound, (function.a, function.b), weights, self.scale))
+        return tails
 
     @cached_property
     def radius(self) -> tuple[float, bool]:
@@ -234,12 +234,12 @@ class DistributedFactors:
         return [c for function in self.with_gain for c in self._crossings(function, digits)]
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
-        found: list[Crossing] = []
+        crossings: list[Crossing] = []
         first, origin = self.next_to_zero(function)
         if origin is not None:
             gain = origin.gain()
             if gain is not None and self._may_be_in_range(gain):
-                found.append(Crossing(gain, (arb(0),)))
+                crossings.append(Crossing(gain, (arb(0),)))
         result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.bits())
@@ -253,8 +253,8 @@ class DistributedFactors:
                     continue
                 gain = around.gain()
             if self._may_be_in_range(gain):
-                found.append(Crossing(gain, (omega,)))
-        return found
+                crossings.append(Crossing(gain, (omega,)))
+        return crossings
 
     def on_axis(
         self,

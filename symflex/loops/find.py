@@ -98,7 +98,7 @@ def find_stable_gains(
     reasons = [] if along is None else along.reasons
     radius = None if along is None else along.radius[0]
     is_complete = along is None or along.radius[1]
-    found = StabilityMap(
+    stability = StabilityMap(
         loop.gain.name,
         loop.gain.unit,
         (low, high),
@@ -115,17 +115,17 @@ def find_stable_gains(
         is_passive=along is not None and along.passive is not None,
         is_narrowed=along is not None and along.is_narrowed,
     )
-    is_alone = found.nominal_interval is None and (along is None or along.is_narrowed)
+    is_alone = stability.nominal_interval is None and (along is None or along.is_narrowed)
     # Terms that do not outweigh one another for all gains may do so for one; and where a passive loop is
     # counted up to a frequency, poles beyond it may lie on the axis.
-    is_open = found.is_passive and not is_complete
-    if nominal is not None and (is_alone or is_open or NEUTRAL in found.reasons):
-        found = replace(found, at_nominal=closed_loop_roots(loop, nominal).verdict)
+    is_open = stability.is_passive and not is_complete
+    if nominal is not None and (is_alone or is_open or NEUTRAL in stability.reasons):
+        stability = replace(stability, at_nominal=closed_loop_roots(loop, nominal).verdict)
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = beyond = None
     if loop_gain is not None:
-        interval = found.nominal_interval
+        interval = stability.nominal_interval
         if nominal and interval is not None and interval.poles.is_stable:
             phase_margins = loop_gain.margins(nominal)
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
@@ -134,8 +134,8 @@ def find_stable_gains(
             if not _holds_smallest(phase_margins, bandwidth, beyond):
                 reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
     return replace(
-        found,
-        gain_margins=_gain_margins(found),
+        stability,
+        gain_margins=_gain_margins(stability),
         phase_margins=phase_margins,
         bandwidth=bandwidth,
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
@@ -338,13 +338,13 @@ def _short(value: Fraction, low: Fraction | None, high: Fraction | None) -> Frac
     return value
 
 
-def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
-    interval, nominal = found.nominal_interval, found.nominal
+def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
+    interval, nominal = stability.nominal_interval, stability.nominal
     if interval is None or not nominal or not interval.poles.is_stable:
         return ()
     margins = []
     for end in (interval.low, interval.high):
-        boundary = next((b for b in found.boundaries if end is not None and b.gain is end), None)
+        boundary = next((b for b in stability.boundaries if end is not None and b.gain is end), None)
         if boundary is None:
             continue
         with precision(max(BITS, boundary.gain.bits())):
@@ -379,12 +379,12 @@ class LoopGain:
             crossovers = distributed_crossovers(self.along, gain, self.digits)
         else:
             crossovers = lumped_crossovers(self.function, gain, self.digits)
-        found = []
+        margins = []
         for omega, ratio in sorted(crossovers, key=lambda pair: float(pair[0].mid())):
             with precision(max(BITS, 2 * omega.bits())):
                 # The loop gain is K B/A; its angle beyond that of -1.
-                found.append(PhaseMargin((-ratio * acb(_ball(gain))).arg(), omega))
-        return tuple(found)
+                margins.append(PhaseMargin((-ratio * acb(_ball(gain))).arg(), omega))
+        return tuple(margins)
 
 
 def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
@@ -440,8 +440,8 @@ def distributed_crossovers(
             first = start
     last = along.last_crossover(function, gain)
     result = along.on_axis(function, equation, lambda value: False, (first, last), digits)
-    found = [(omega, _ratio(function, omega, max(BITS, 2 * omega.bits()))) for omega in result.roots]
-    return [(omega, ratio) for omega, ratio in found if ratio.is_finite()]
+    crossovers = [(omega, _ratio(function, omega, max(BITS, 2 * omega.bits()))) for omega in result.roots]
+    return [(omega, ratio) for omega, ratio in crossovers if ratio.is_finite()]
 
 
 MARGIN: Final = 2
@@ -465,12 +465,12 @@ def allowed_bandwidth(
     is_limited = begin is not intervals[-1]
     end = Fraction(float(begin.high.mid())) if is_limited or limit is None else limit
     gain = end / MARGIN
-    found = loop_gain.margins(gain)
+    margins = loop_gain.margins(gain)
     with precision(BITS):
-        before = _ratio(loop_gain.function, found[0].frequency.mid() / 2 if found else arb(1), BITS)
+        before = _ratio(loop_gain.function, margins[0].frequency.mid() / 2 if margins else arb(1), BITS)
         if not abs(before) * abs(ball(gain)) > 1:
             return AllowedBandwidth(gain, None, None, is_limited)
-    if not found:
+    if not margins:
         return None  # it never falls below one
-    worst = min(found, key=lambda margin: abs(float(margin.angle.mid())))
-    return AllowedBandwidth(gain, found[0].frequency, worst.angle, is_limited)
+    worst = min(margins, key=lambda margin: abs(float(margin.angle.mid())))
+    return AllowedBandwidth(gain, margins[0].frequency, worst.angle, is_limited)

@@ -145,9 +145,9 @@ def closed_loop_roots(loop: AnyLoop, gain: Fraction, region: Region | None = Non
     """
     if isinstance(loop, NetworkLoop):
         return loop.located(gain, region or Modes(loop.modes))
-    found = locate(closed_loop(loop, gain), region, 15)
+    located = locate(closed_loop(loop, gain), region, 15)
     apart = poles_apart(loop.bound, loop.factors)
-    return replace(found, verdict=found.verdict.beside(apart.verdict))
+    return replace(located, verdict=located.verdict.beside(apart.verdict))
 
 
 def _traceable(loop: AnyLoop, roots: Sequence[Root]) -> Traceable:
@@ -284,12 +284,12 @@ def _points(roots: Sequence[Root]) -> list[complex]:
     return [complex(float(r.re.mid()), float(r.im.mid())) for r in roots for _ in range(r.multiplicity)]
 
 
-def _lowest(found: PoleZeroMap, wanted: int) -> list[bool]:
+def _lowest(located: PoleZeroMap, wanted: int) -> list[bool]:
     """Tell which poles of a map, with multiplicity, are of the lowest modes, or in the right half plane."""
-    positions = [*Modes(wanted).classify(found.poles), *(Position.INSIDE for _ in found.unstable)]
+    positions = [*Modes(wanted).classify(located.poles), *(Position.INSIDE for _ in located.unstable)]
     return [
         position is not Position.OUTSIDE or is_right(root)
-        for root, position in zip(found.all_poles, positions, strict=True)
+        for root, position in zip(located.all_poles, positions, strict=True)
         for _ in range(root.multiplicity)
     ]
 
@@ -339,23 +339,23 @@ def _trace(
         while pending:
             spend()
             aim = pending[-1]
-            found = _moved(function, current, aim, size, resting)
+            moved = _moved(function, current, aim, size, resting)
             far = max(
-                (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
+                (abs(a - b) / max(size, abs(b)) for a, b in zip(moved, current, strict=True)), default=0.0
             )
-            if (far > FAREST or _bends(branches, found, size)) and len(pending) < HALVINGS:
+            if (far > FAREST or _bends(branches, moved, size)) and len(pending) < HALVINGS:
                 pending.append((reached + aim) / 2)
                 continue
-            current, reached = found, aim
+            current, reached = moved, aim
             pending.pop()
             for branch, s in zip(branches, current, strict=True):
                 branch.append(s)
     return branches
 
 
-def _bends(branches: Sequence[Sequence[complex]], found: Sequence[complex], size: float) -> bool:
+def _bends(branches: Sequence[Sequence[complex]], moved: Sequence[complex], size: float) -> bool:
     """Tell whether a curve would turn visibly in one step."""
-    for branch, s in zip(branches, found, strict=True):
+    for branch, s in zip(branches, moved, strict=True):
         if len(branch) > 1:
             before, after = branch[-1] - branch[-2], s - branch[-1]
             shortest = SHORTEST * max(size, abs(s))
@@ -368,22 +368,22 @@ def _moved(
     function: Traceable, poles: Sequence[complex], gain: float, size: float, resting: tuple[complex, ...]
 ) -> list[complex]:
     """Return the poles at the next gain; those that meet are sent apart."""
-    found: list[complex] = []
+    moved: list[complex] = []
     for i, s in enumerate(poles):
         parts = s in resting or sum(abs(p - s) < TOUCHING * size for p in poles) > 1
         new = None if parts else _newton(function, s, gain, resting)
-        twins = [k for k in range(i) if new is not None and abs(found[k] - new) < TOUCHING * size]
+        twins = [k for k in range(i) if new is not None and abs(moved[k] - new) < TOUCHING * size]
         if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
             # Another pole is there already, or two part from the axis: the others are divided out.
-            known = (*resting, *found)
+            known = (*resting, *moved)
             shares = PARTING if parts else PARTING[:1]
             tries = [s + rect(share * size, angle) for share in shares for angle in TURNS]
             candidates = [c for start in tries if (c := _newton(function, start, gain, known)) is not None]
-            apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in found)]
+            apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in moved)]
             if apart:
                 new = min(apart, key=lambda c: abs(c - s))
-        found.append(s if new is None else new)
-    return found
+        moved.append(s if new is None else new)
+    return moved
 
 
 def _newton(function: Traceable, start: complex, gain: float, known: Sequence[complex]) -> complex | None:

@@ -101,12 +101,12 @@ def characteristic_loop(
         raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     bound = _bound(tf, gain, dict(values or {}))
     nominal = dict(bound.values)[gain.name] if gain.value is not None or gain.name in (values or {}) else None
-    found: list[GainPolynomial] = []
+    polynomials: list[GainPolynomial] = []
     for factor, exponent, is_hidden in factors:
         pieces = bind_polynomials(tf, bound, tuple(tf.ratio.ring.coefficients(factor, position)))
-        found.append(GainPolynomial(pieces, exponent, is_hidden))
+        polynomials.append(GainPolynomial(pieces, exponent, is_hidden))
     rational = None if nominal is None or nominal.pi_power else nominal.rational
-    return Loop(bound, gain, rational, tuple(found))
+    return Loop(bound, gain, rational, tuple(polynomials))
 
 
 def no_loop(code: str, message: str, gain: ModelParameter) -> ModelError:

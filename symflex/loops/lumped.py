@@ -77,18 +77,20 @@ class LumpedFactor:
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
-        found: list[Crossing] = []
+        crossings: list[Crossing] = []
         whole = self.even * self.common, self.odd * self.common
         if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
             return []
         if degree_in(whole[0], W) or len(whole[1]):
             at_zero = self.ring.coefficients(whole[0], W)[0]
-            found += [Crossing(gain, (arb(0),)) for gain in self._gains(at_zero, digits)]
+            crossings += [Crossing(gain, (arb(0),)) for gain in self._gains(at_zero, digits)]
         leading = [self._leading(whole)]
         if degree_in(self.common, W):
             leading.append(self._leading((self.common, self.common * 0)))
-        found += [Crossing(gain, (), is_infinite=True) for f in leading for gain in self._gains(f, digits)]
-        return found + self._meetings(digits) + self._on_axis(digits)
+        crossings += [
+            Crossing(gain, (), is_infinite=True) for f in leading for gain in self._gains(f, digits)
+        ]
+        return crossings + self._meetings(digits) + self._on_axis(digits)
 
     def _meetings(self, digits: int) -> list[Crossing]:
         """Return where poles that mirror each other in the axis meet, on it or beside it."""
@@ -99,8 +101,8 @@ class LumpedFactor:
         slope = simple.derivative(w)
         gains = self._real_roots(simple.discriminant(w), K, digits)
         squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
-        found = ((gain.re, self._frequencies(gain, squares, (simple, slope))) for gain in gains)
-        return [Crossing(gain, near, is_symmetric=True) for gain, near in found]
+        meetings = ((gain.re, self._frequencies(gain, squares, (simple, slope))) for gain in gains)
+        return [Crossing(gain, near, is_symmetric=True) for gain, near in meetings]
 
     def _on_axis(self, digits: int) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
@@ -116,8 +118,8 @@ class LumpedFactor:
         name = [str(self.ring.context.gen(i)) for i in (W, K)]
         squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS)
         gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits)
-        found = ((gain.re, self._frequencies(gain, squares, (self.even, self.odd))) for gain in gains)
-        return [Crossing(gain, near) for gain, near in found if near]
+        meetings = ((gain.re, self._frequencies(gain, squares, (self.even, self.odd))) for gain in gains)
+        return [Crossing(gain, near) for gain, near in meetings if near]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""

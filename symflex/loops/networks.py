@@ -77,12 +77,12 @@ class NetworkLoop:
 
     def gains(self, gain: Fraction, omega: Sequence[float]) -> list[complex]:
         """Return the loop gain ``K B/A`` at frequencies [rad/s], not proved."""
-        found = []
+        loop_gains = []
         for each in omega:
             value = self.cramer.at(acb(0, each), LOOP_GAIN_BITS)
             with precision(LOOP_GAIN_BITS):
-                found.append(complex((-ball(gain) * value.num / value.den).mid()))
-        return found
+                loop_gains.append(complex((-ball(gain) * value.num / value.den).mid()))
+        return loop_gains
 
     def in_disc(self, radius: float) -> LoopInDisc:
         """Return A and B in a disc about 0 [rad/s].

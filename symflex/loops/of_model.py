@@ -77,12 +77,12 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
 
 def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter) -> TransferFunction:
     """Return the first function whose poles depend on the gain, else the first: what it hides is hidden."""
-    found: list[TransferFunction] = []
+    derived: list[TransferFunction] = []
     for pair in pairs:
-        found += derive_all(model, [pair])
-        if gain.name in found[-1].ratio.ring.index and found[-1].den.depends_on(gain.name):
-            return found[-1]
-    return found[0]
+        derived += derive_all(model, [pair])
+        if gain.name in derived[-1].ratio.ring.index and derived[-1].den.depends_on(gain.name):
+            return derived[-1]
+    return derived[0]
 
 
 def _of_network(model: Model, parameter: ModelParameter, given: Mapping[str, Given]) -> AnyLoop | None:

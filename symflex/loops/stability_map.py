@@ -35,8 +35,8 @@ class Boundary:
     @property
     def frequencies(self) -> tuple[arb, ...]:
         """At which poles are on the axis [rad/s], ascending."""
-        found = [omega for crossing in self.crossings for omega in crossing.frequencies]
-        return tuple(sorted(found, key=lambda omega: float(omega.mid())))
+        frequencies = [omega for crossing in self.crossings for omega in crossing.frequencies]
+        return tuple(sorted(frequencies, key=lambda omega: float(omega.mid())))
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,12 +188,12 @@ class StabilityMap:
 
     @property
     def _word(self) -> StabilityVerdict:
-        found = self.nominal_interval
-        if found is None:
+        interval = self.nominal_interval
+        if interval is None:
             return self.at_nominal or StabilityVerdict(
                 "unknown", None, False, NO_NOMINAL if self.nominal is None else BESIDE
             )
-        right, axis = found.poles.right, found.poles.axis
+        right, axis = interval.poles.right, interval.poles.axis
         beyond = "" if self.is_complete else self.reasons[0]
         if right:
             return StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
@@ -275,16 +275,16 @@ class StabilityMap:
         return (self.margin_beyond or 0.0) * 180 / pi
 
     def _bandwidth(self) -> dict[str, object] | None:
-        found = self.bandwidth
-        if found is None:
+        bandwidth = self.bandwidth
+        if bandwidth is None:
             return None
-        omega, angle = found.frequency, found.phase_margin
+        omega, angle = bandwidth.frequency, bandwidth.phase_margin
         return {
-            "gain": None if found.gain is None else float(found.gain),
+            "gain": None if bandwidth.gain is None else float(bandwidth.gain),
             "omega": real_json(omega, self.digits),
             "frequency_hz": None if omega is None else float(hertz(omega).mid()),
             "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
-            "limited": found.is_limited,
+            "limited": bandwidth.is_limited,
         }
 
     def change(self, index: int) -> int:
@@ -374,79 +374,81 @@ class PoleCount:
 SHORT_DIGITS = 6
 
 
-def stability_text(found: StabilityMap) -> str:
+def stability_text(stability: StabilityMap) -> str:
     """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-    return passages_text(_passages(found), WIDTH)
+    return passages_text(_passages(stability), WIDTH)
 
 
-def stability_html(found: StabilityMap) -> str:
+def stability_html(stability: StabilityMap) -> str:
     """Return the same for a notebook: paragraphs and tables."""
     from symflex.print.html import passages_html  # only notebooks ask
 
-    return passages_html(_passages(found))
+    return passages_html(_passages(stability))
 
 
-def _passages(found: StabilityMap) -> Iterator[Passage]:
-    unit = f" [{found.unit}]" if found.unit else ""
-    lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
+def _passages(stability: StabilityMap) -> Iterator[Passage]:
+    unit = f" [{stability.unit}]" if stability.unit else ""
+    lines = [f"{stability.gain}{unit}   {_status(stability)}", f"{INDENT}examined: {_examined(stability)}"]
     lines += [
-        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in found.reasons
+        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in stability.reasons
     ]
-    if found.nominal is not None:
-        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
-    if found.verdict.hidden:
-        lines.append(f"{INDENT}{found.tf}: {found.verdict.hidden_motion}")
+    if stability.nominal is not None:
+        lines.append(f"{INDENT}{stability.gain} = {_number(stability.nominal)}: {stability.verdict.sentence}")
+    if stability.verdict.hidden:
+        lines.append(f"{INDENT}{stability.tf}: {stability.verdict.hidden_motion}")
     yield Passage(lines)
-    if not found.intervals:
+    if not stability.intervals:
         return
-    scope = "" if found.is_complete else ", as far as poles were counted"
-    stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
+    scope = "" if stability.is_complete else ", as far as poles were counted"
+    stable = [2 * INDENT + _between(interval, stability) for interval in stability.stable]
     yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
-    marginal = [2 * INDENT + _between(i, found) for i in found.intervals if i.poles.word == "marginal"]
+    marginal = [
+        2 * INDENT + _between(i, stability) for i in stability.intervals if i.poles.word == "marginal"
+    ]
     if marginal:
         yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
-    head = (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
-    rows = [head, *(_boundary_row(found, i) for i in range(len(found.boundaries)))]
+    head = (stability.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
+    rows = [head, *(_boundary_row(stability, i) for i in range(len(stability.boundaries)))]
     yield Passage(
-        [f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else ()
+        [f"{INDENT}boundaries: {len(stability.boundaries) or 'none'}"], rows if stability.boundaries else ()
     )
     counted = [
         (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
-        for i in found.intervals
+        for i in stability.intervals
     ]
     title = f"{INDENT}poles that are not in the left half plane"
     yield Passage([title], [("from", "to", "right of the axis", "on the axis"), *counted])
-    if found.gain_margins or found.phase_margins:
-        yield _margins(found)
-    if found.bandwidth is not None:
-        said = 2 * INDENT + bandwidth_text(found.gain, found.bandwidth)
+    if stability.gain_margins or stability.phase_margins:
+        yield _margins(stability)
+    if stability.bandwidth is not None:
+        said = 2 * INDENT + bandwidth_text(stability.gain, stability.bandwidth)
         yield Passage([f"{INDENT}bandwidth with a gain margin of 6 dB", said])
-    if found.boundaries:
+    if stability.boundaries:
         yield Passage([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
 
 
-def _status(found: StabilityMap) -> str:
-    if found.certified:
-        if found.margin_beyond is not None:
-            return f"certified: the loop is passive, {found.gain} acts as a spring and a damper"
+def _status(stability: StabilityMap) -> str:
+    if stability.certified:
+        if stability.margin_beyond is not None:
+            return f"certified: the loop is passive, {stability.gain} acts as a spring and a damper"
         return "certified: all poles right of the imaginary axis counted"
-    if not found.is_complete and found.radius is not None:
-        return f"NOT CERTIFIED beyond {found.radius / (2 * pi):.4g} Hz: poles are counted up to there"
+    if not stability.is_complete and stability.radius is not None:
+        return f"NOT CERTIFIED beyond {stability.radius / (2 * pi):.4g} Hz: poles are counted up to there"
     return "NOT CERTIFIED"
 
 
-def _examined(found: StabilityMap) -> str:
-    low, high = found.limits
-    name = found.gain
-    if not found.intervals:
-        return "no range" if found.nominal is None else f"{name} = {_number(found.nominal)} alone"
+def _examined(stability: StabilityMap) -> str:
+    low, high = stability.limits
+    name = stability.gain
+    if not stability.intervals:
+        return "no range" if stability.nominal is None else f"{name} = {_number(stability.nominal)} alone"
     if low is None and high is None:
         return f"every {name}"
     if high is None:
         return f"{name} > {_number(low)}"
     if low is None:
         return f"{name} < {_number(high)}"
-    where = ", where no delayed term outweighs the others" if found.is_narrowed else ""
+    where = ", where no delayed term outweighs the others" if stability.is_narrowed else ""
     return f"{_number(low)} < {name} < {_number(high)}{where}"
 
 
@@ -454,10 +456,10 @@ def _poles(count: int) -> str:
     return f"{count} pole" + ("s" if count != 1 else "")
 
 
-def _between(interval: GainInterval, found: StabilityMap) -> str:
-    low = "" if interval.low is None else f"{_exact(interval.low, found.digits)} < "
-    high = "" if interval.high is None else f" < {_exact(interval.high, found.digits)}"
-    return f"{low}{found.gain}{high}"
+def _between(interval: GainInterval, stability: StabilityMap) -> str:
+    low = "" if interval.low is None else f"{_exact(interval.low, stability.digits)} < "
+    high = "" if interval.high is None else f" < {_exact(interval.high, stability.digits)}"
+    return f"{low}{stability.gain}{high}"
 
 
 def _exact(value: arb, digits: int) -> str:
@@ -466,12 +468,12 @@ def _exact(value: arb, digits: int) -> str:
     return decimals(value, arb(0), digits).told.re
 
 
-def _boundary_row(found: StabilityMap, index: int) -> tuple[str, ...]:
-    boundary = found.boundaries[index]
-    printed = decimals(boundary.gain, arb(0), found.digits).told
-    change = found.change(index)
+def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
+    boundary = stability.boundaries[index]
+    printed = decimals(boundary.gain, arb(0), stability.digits).told
+    change = stability.change(index)
     passing = f"{change:+d}" if change else "touch the axis"
-    return (printed.re, printed.radius, *_places(boundary, found.digits), passing)
+    return (printed.re, printed.radius, *_places(boundary, stability.digits), passing)
 
 
 def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
@@ -483,41 +485,41 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     return ", ".join(omegas), ", ".join(cycles)
 
 
-def _margins(found: StabilityMap) -> Passage:
-    lines = [f"{INDENT}margins of {found.gain} = {_number(found.nominal)}"]
+def _margins(stability: StabilityMap) -> Passage:
+    lines = [f"{INDENT}margins of {stability.gain} = {_number(stability.nominal)}"]
     rows: list[tuple[str, ...]] = []
-    for margin in found.gain_margins:
+    for margin in stability.gain_margins:
         places = ", ".join(
             f"{float(hertz(w).mid()):.{SHORT_DIGITS}g} Hz" for w in margin.boundary.frequencies
         )
         factor = decimals(margin.factor, arb(0), SHORT_DIGITS).told.re
         size = decimals(decibels(margin.factor), arb(0), SHORT_DIGITS).told.re
         rows.append(("gain", f"x {factor}", f"{size} dB", places))
-    worst = found.phase_margin
-    for each in found.phase_margins:
+    worst = stability.phase_margin
+    for each in stability.phase_margins:
         angle = degrees(each.angle)
         direction = "lag" if angle > 0 else "lead"
         place = f"{float(hertz(each.frequency).mid()):.{SHORT_DIGITS}g} Hz"
-        flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
+        flag = ", the smallest" if each is worst and len(stability.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).told.re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    if found.margin_beyond is not None and found.radius is not None:
-        place = f"all above {found.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
-        rows.append(("phase", f"{found.least_degrees_beyond:.4g} deg", "least", place))
+    if stability.margin_beyond is not None and stability.radius is not None:
+        place = f"all above {stability.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
+        rows.append(("phase", f"{stability.least_degrees_beyond:.4g} deg", "least", place))
     return Passage(lines, rows, has_head=False)
 
 
-def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:
+def bandwidth_text(gain: str, bandwidth: AllowedBandwidth) -> str:
     """Return the bandwidth that a loop allows, in one line."""
-    if found.gain is None:
+    if bandwidth.gain is None:
         return f"without limit: every {gain} > 0 is stable"
-    at = f"{gain} = {_number(found.gain)}"
-    if found.frequency is None or found.phase_margin is None:
+    at = f"{gain} = {_number(bandwidth.gain)}"
+    if bandwidth.frequency is None or bandwidth.phase_margin is None:
         return f"none: at {at} the loop gain is below one at the lowest frequencies"
-    place = f"{float(hertz(found.frequency).mid()):.{SHORT_DIGITS}g} Hz at {at}"
-    angle = float(degrees(found.phase_margin).mid())
+    place = f"{float(hertz(bandwidth.frequency).mid()):.{SHORT_DIGITS}g} Hz at {at}"
+    angle = float(degrees(bandwidth.phase_margin).mid())
     shown = f"{place}, phase margin {abs(angle):.3g} deg {'lag' if angle > 0 else 'lead'}"
-    return shown if found.is_limited else f"at least {shown}"
+    return shown if bandwidth.is_limited else f"at least {shown}"
 
 
 def _end(value: arb | None, infinite: str) -> str:

@@ -98,10 +98,10 @@ def _frequency(reader: Reader, value: Value) -> Fraction | None:
 
 def _quantity(reader: Reader, value: Value, what: str, unit: str) -> Quantity | None:
     """Return a quantity of the kind that a unit measures, or a number."""
-    found = reader.quantity(value, what)
-    if found is None or not found.unit or found.dimension == unit_of(unit).dimension:
-        return found
-    reader.note("SF203", f"{what} is in '{unit}', found '{found.unit}'", value.span)
+    quantity = reader.quantity(value, what)
+    if quantity is None or not quantity.unit or quantity.dimension == unit_of(unit).dimension:
+        return quantity
+    reader.note("SF203", f"{what} is in '{unit}', found '{quantity.unit}'", value.span)
     return None
 
 
@@ -140,7 +140,7 @@ def pick_tf(
 
 def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tuple[Figure, ...]:
     """Return the figures asked for."""
-    found: list[Figure] = []
+    figures: list[Figure] = []
     known = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"figure '{entry.key}'"
@@ -159,10 +159,10 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         band = _band(reader, limits) if limits else None
         until = _until(reader, table, kind, what)
         ends = _range(reader, table, kind, what, next((p for p in model.parameters if p.name == gain), None))
-        found.append(
+        figures.append(
             Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, ends)
         )
-    return tuple(found)
+    return tuple(figures)
 
 
 def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> DrawingHints:
@@ -172,12 +172,12 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
     reader.keys(section, ("order", "symbols", "rollers"), "[drawing]")
     order, rollers, table = (section.get(key) for key in ("order", "rollers", "symbols"))
     nodes = [n.name for n in model.nodes]
-    found: list[str] = []
+    listed: list[str] = []
     for text in (reader.strings(order, "order of [drawing]", "an array of nodes") or ()) if order else ():
         _check_among(reader, text, nodes, "node")
-        if text.value in found:
+        if text.value in listed:
             reader.note("SF213", f"node '{text.value[:64]}' appears twice in order", text.span)
-        found.append(text.value)
+        listed.append(text.value)
     if rollers and not isinstance(rollers.value, BooleanValue):
         reader.misfit("rollers of [drawing] must be true or false", rollers.value)
     symbols: list[tuple[str, str]] = []
@@ -192,7 +192,7 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
         elif kind is not None:
             symbols.append((entry.key, kind.value))
     has_rollers = rollers.value.value if rollers and isinstance(rollers.value, BooleanValue) else None
-    return DrawingHints(tuple(found), tuple(symbols), has_rollers)
+    return DrawingHints(tuple(listed), tuple(symbols), has_rollers)
 
 
 def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) -> bool:
@@ -288,8 +288,8 @@ def _end(reader: Reader, item: Value, gain: ModelParameter) -> Fraction | None:
 
 def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
     kinds = "kinds: " + ", ".join(FIGURE_KINDS)
-    found = reader.needed(table, "kind", entry, f"{what} has no 'kind'", kinds)
-    text = reader.string(found, f"kind of {what}") if found else None
+    given = reader.needed(table, "kind", entry, f"{what} has no 'kind'", kinds)
+    text = reader.string(given, f"kind of {what}") if given else None
     if text is not None and text.value not in FIGURE_KINDS:
         hint = nearest(text.value, FIGURE_KINDS) or kinds
         reader.note("SF208", f"unknown kind '{text.value[:60]}' of {what}", text.span, hint)
@@ -298,7 +298,7 @@ def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
 
 def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
     """Return the printed formulas; :mod:`symflex.model.analysis` checks their names."""
-    found: list[Published] = []
+    published: list[Published] = []
     known = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"published '{entry.key[:80]}'"
@@ -316,22 +316,22 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         scaled = reader.expression(scale.value, f"scale of {what}", quantities=False) if scale else None
         cited = reader.plain(table, "source", what)
         if expression is not None and where is not None and (scaled is not None or not scale):
-            found.append(Published(tf, expression, where, scaled, cited, entry.key_span))
-    return tuple(found)
+            published.append(Published(tf, expression, where, scaled, cited, entry.key_span))
+    return tuple(published)
 
 
 def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...] | None:
     """Return the lines, ``None`` when one cannot be read."""
     entry = table.get("where")
     inner = reader.table(entry, f"where of {what}") if entry else None
-    found = []
+    definitions = []
     items = inner.entries if inner else ()
     for item in items:
         if reader.name(item, "an abbreviation", RESERVED):
             expression = reader.expression(item.value, f"'{item.key}' of {what}", quantities=False)
             if expression is not None:
-                found.append((item.key, expression))
-    return tuple(found) if len(found) == len(items) and (inner or not entry) else None
+                definitions.append((item.key, expression))
+    return tuple(definitions) if len(definitions) == len(items) and (inner or not entry) else None
 
 
 NUMBERS = Line({}, frozenset(), frozenset(), {})

@@ -143,15 +143,15 @@ def _read_values(
     is_matrix = block.type_name == "ss"
     for parameter in block.parameters:
         where = f"{parameter.name} of {block.type_name} '{entry.key}'"
-        found = table.get(parameter.name)
-        if found is not None and is_matrix:
+        given = table.get(parameter.name)
+        if given is not None and is_matrix:
             size = sum(name.startswith("A[") for name, _ in values)
-            entries = _matrix(reader, found.value, parameter.name, where, isqrt(size))
+            entries = _matrix(reader, given.value, parameter.name, where, isqrt(size))
             values += entries or ()
             complete = complete and entries is not None
             continue
-        if found is not None:
-            expression = _value(reader, found.value, where, coefficients=block.type_name == "tf")
+        if given is not None:
+            expression = _value(reader, given.value, where, coefficients=block.type_name == "tf")
         elif parameter.default is not None:
             expression = signed_number(Fraction(parameter.default))
         else:
@@ -182,8 +182,8 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
         message = f"{where} has {len(value.items)} coefficients; at most {EXPONENT_LIMIT + 1} are allowed"
         reader.note("SF103", message, value.span, "write a product of blocks of lower order")
         return None
-    found = [reader.expression(item, where) for item in value.items]
-    parts = [None if part is None else lower(part) for part in found]
+    items = [reader.expression(item, where) for item in value.items]
+    parts = [None if part is None else lower(part) for part in items]
     terms = [
         _term(part, degree)
         for degree, part in zip(range(len(parts) - 1, -1, -1), parts, strict=True)
@@ -212,12 +212,12 @@ def _matrix(
     if name != "A" and not size:
         return None  # A is wrong, and told so
     if not is_whole or (shape != wanted and not (is_flat and len(entries) == max(wanted))):
-        found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
-        found = f"{len(entries)} entries" if is_flat else found
+        shape_found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
+        shape_found = f"{len(entries)} entries" if is_flat else shape_found
         sizes = "square" if name == "A" else f"{wanted[0]} x {wanted[1]}"
         hint = "a block has one input and one output; symflex.from_control takes systems with more"
         hint_here = None if name == "A" or is_flat else hint
-        reader.note("SF206", f"{where} must be {sizes}, found {found}", value.span, hint_here)
+        reader.note("SF206", f"{where} must be {sizes}, found {shape_found}", value.span, hint_here)
         return None
     read = [reader.expression(x, where) for x in entries]
     names = {
@@ -248,8 +248,8 @@ def _read_model_block(
     what = f"block '{entry.key}'"
     reader.keys(table, ("type", "spec", "tf", "doc"), what)
     hint = 'spec = "file.toml", tf = "OUT/IN"'
-    found = [reader.needed(table, key, entry, f"{what} lacks {key}", hint) for key in ("spec", "tf")]
-    path_text, tf_text = (reader.string(each, f"{each.key} of {what}") if each else None for each in found)
+    given = [reader.needed(table, key, entry, f"{what} lacks {key}", hint) for key in ("spec", "tf")]
+    path_text, tf_text = (reader.string(each, f"{each.key} of {what}") if each else None for each in given)
     if path_text is None or tf_text is None:
         return None
     submodel = _load(reader, path_text, origin)

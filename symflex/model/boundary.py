@@ -129,15 +129,15 @@ class Stretch:
 
 def stretches(fields: Sequence[FieldProblem], elements: Sequence[PlacedElement]) -> tuple[Stretch, ...]:
     """Return the stretches of a model; of elements, x runs from 0 at the first end."""
-    found = [Stretch(f"the domain of field '{f.name}'", f.unknowns, f.start, f.end) for f in fields]
+    every = [Stretch(f"the domain of field '{f.name}'", f.unknowns, f.start, f.end) for f in fields]
     for use in elements:
         element = use.element
         if isinstance(element, LineElement) and element.length in dict(use.values):
             names = tuple(f"{use.name}.{name}" for quantity in element.along for name in quantity)
             length = dict(use.values)[element.length]
             what = f"{element.type_name} '{use.name}'"
-            found.append(Stretch(what, names, Number(Fraction(0)), length))
-    return tuple(found)
+            every.append(Stretch(what, names, Number(Fraction(0)), length))
+    return tuple(every)
 
 
 def check_points(
@@ -219,21 +219,21 @@ def _check_equations(
     reader.take(problems)
     if problems:
         return None
-    found = [_orders(e, field.unknowns) for e in field.equations]
-    for equation, orders in zip(field.equations, found, strict=True):
+    orders_of = [_orders(e, field.unknowns) for e in field.equations]
+    for equation, orders in zip(field.equations, orders_of, strict=True):
         if not orders:
             wanted = ", ".join(field.unknowns)
             message = f"this equation of field '{field.name}' contains none of its unknowns ({wanted})"
             reader.note("SF242", message, equation.span)
             return None
     for unknown in field.unknowns:
-        if not any(unknown in orders for orders in found):
+        if not any(unknown in orders for orders in orders_of):
             message = f"the unknown '{unknown}' of field '{field.name}' appears in none of its equations"
             reader.note("SF242", message, field.span)
             return None
     if not inside.broken and _repeat(reader, field, point):
         return None
-    highest = {u: max(orders.get(u, 0) for orders in found) for u in field.unknowns}
+    highest = {u: max(orders.get(u, 0) for orders in orders_of) for u in field.unknowns}
     order = sum(highest.values())
     if order == 0:
         message = f"the equations of field '{field.name}' contain no derivative along x"
@@ -243,7 +243,7 @@ def _check_equations(
         message = f"field '{field.name}' is of order {order} in x; at most {ORDER_LIMIT} is allowed"
         reader.note("SF103", message, field.equations[0].span, "split what is independent into two fields")
         return None
-    if not _can_be_solved(found, highest):
+    if not _can_be_solved(orders_of, highest):
         leading = " and ".join(u + "'" * k for u, k in highest.items())
         message = f"the equations of field '{field.name}' do not determine its highest derivatives, {leading}"
         hint = "each needs an equation of its own; substitute one equation into another to get it"
@@ -279,20 +279,20 @@ def _repetition_message(what: str, repetition: Repetition, equations: Sequence[E
 
 def _orders(equation: Equation, unknowns: Sequence[str]) -> dict[str, int]:
     """Return the highest derivative of every unknown in an equation."""
-    found: dict[str, int] = {}
+    orders: dict[str, int] = {}
     for node in names(equation):
         if isinstance(node, Name | Derivative) and node.name in unknowns:
             order = node.order if isinstance(node, Derivative) else 0
-            found[node.name] = max(order, found.get(node.name, 0))
-    return found
+            orders[node.name] = max(order, orders.get(node.name, 0))
+    return orders
 
 
-def _can_be_solved(found: Sequence[Mapping[str, int]], highest: Mapping[str, int]) -> bool:
+def _can_be_solved(orders_of: Sequence[Mapping[str, int]], highest: Mapping[str, int]) -> bool:
     """Tell whether every unknown's highest derivative can be given an equation of its own that holds it."""
     chosen: dict[int, str] = {}
 
     def place(unknown: str, tried: set[int]) -> bool:
-        for i, orders in enumerate(found):
+        for i, orders in enumerate(orders_of):
             if orders.get(unknown) == highest[unknown] and i not in tried:
                 tried.add(i)
                 if i not in chosen or place(chosen[i], tried):
@@ -438,10 +438,12 @@ class _PlaceCounts:
 
     def likely(self, *, surplus: bool = False) -> str:
         """Return ", likely at l" when there is a place that has too few (or too many)."""
-        found = [text for text, count, usual in self._rows if (count > usual if surplus else count < usual)]
-        if not self._guess or not found or len(found) == len(self._rows) > 1:
+        suspects = [
+            text for text, count, usual in self._rows if (count > usual if surplus else count < usual)
+        ]
+        if not self._guess or not suspects or len(suspects) == len(self._rows) > 1:
             return ""
-        return f", likely at {' and '.join(found)}"
+        return f", likely at {' and '.join(suspects)}"
 
     def summary(self) -> str:
         """Return how many conditions there are at each place."""

@@ -84,19 +84,19 @@ def named_brackets(
     >>> [format_expression(e) for e in found], unknowns
     (["(A*x*u')' = s^2*u", "A*x*u' = (A*x*u')"], ('u', "(A*x*u')"))
     """
-    found, names = list(equations), list(unknowns)
-    while bracket := next((n for e in found for n in nodes(e) if isinstance(n, Differentiated)), None):
+    opened, names = list(equations), list(unknowns)
+    while bracket := next((n for e in opened for n in nodes(e) if isinstance(n, Differentiated)), None):
         name = f"({format_expression(bracket.operand)})"
         named = [
-            *_with(found, bracket, Derivative(name, bracket.order)),
+            *_with(opened, bracket, Derivative(name, bracket.order)),
             Equation(bracket.operand, Name(name)),
         ]
-        if _order(named, [*names, name]) == _order(found, names):
-            found, names = named, [*names, name]
+        if _order(named, [*names, name]) == _order(opened, names):
+            opened, names = named, [*names, name]
         else:
             opener = _Opener(frozenset(names), has_coordinate=True, is_condition=False)
-            found = _with(found, bracket, opener.opened(bracket))
-    return tuple(found), tuple(names)
+            opened = _with(opened, bracket, opener.opened(bracket))
+    return tuple(opened), tuple(names)
 
 
 def _with(equations: Sequence[Equation], old: Expression, new: Expression) -> list[Equation]:
@@ -137,20 +137,20 @@ class _Opener:
             case Differentiated():
                 return self._bracket(expression)
             case Negative(operand):
-                found = negative(self.opened(operand))
+                result = negative(self.opened(operand))
             case Sum(terms):
-                found = sum_of([self.opened(t) for t in terms])
+                result = sum_of([self.opened(t) for t in terms])
             case Product(factors):
-                found = product_of([self.opened(f) for f in factors])
+                result = product_of([self.opened(f) for f in factors])
             case Quotient(above, below):
-                found = Quotient(self.opened(above), self.opened(below))
+                result = Quotient(self.opened(above), self.opened(below))
             case _:
                 message = (
                     "a bracket with primes may only be added, or multiplied by something without unknowns"
                 )
                 self.problems.append(Diagnostic("SF223", message, expression.span))
                 return expression
-        return _placed(found, expression.span)
+        return _placed(result, expression.span)
 
     def _bracket(self, bracket: Differentiated) -> Expression:
         message = hint = ""
@@ -165,21 +165,21 @@ class _Opener:
             place = fixed[0].span if fixed else bracket.span
             self.problems.append(Diagnostic("SF241", message, place, hint))
             return bracket
-        found = self._slope(bracket)
+        slope = self._slope(bracket)
         if bracket.point is None or self.problems:
-            return found
-        return _at(found, bracket.point, self.unknowns, has_coordinate=self.has_coordinate)
+            return slope
+        return _at(slope, bracket.point, self.unknowns, has_coordinate=self.has_coordinate)
 
     def _slope(self, bracket: Differentiated) -> Expression:
         """Return a bracket with its primes carried out."""
         inner = replace(self, is_condition=False)
-        found: Expression | None = inner.opened(bracket.operand)
+        operand: Expression | None = inner.opened(bracket.operand)
         for _ in range(bracket.order):
-            found = None if found is None else self.slope(found)
-            if found is not None and len(nodes(found)) > OPENED_LIMIT:
+            operand = None if operand is None else self.slope(operand)
+            if operand is not None and len(nodes(operand)) > OPENED_LIMIT:
                 self.refuse(bracket.span)
                 return bracket
-        return _placed(number(0) if found is None else found, bracket.span)
+        return _placed(number(0) if operand is None else operand, bracket.span)
 
     def slope(self, expression: Expression) -> Expression | None:
         """Return the derivative along x, None where an expression is constant."""

@@ -124,6 +124,6 @@ def _per_s(expression: Expression) -> Expression | None:
             return None if inner is None else Quotient(inner, denominator)
         case Sum(terms):
             inner_terms = [_per_s(term) for term in terms]
-            found = [each for each in inner_terms if each is not None]
-            return sum_of(found) if len(found) == len(terms) else None
+            terms_per_s = [each for each in inner_terms if each is not None]
+            return sum_of(terms_per_s) if len(terms_per_s) == len(terms) else None
     return None

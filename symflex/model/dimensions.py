@@ -197,10 +197,10 @@ class DimensionSystem:
             return
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
         if not self._learn(reduced):
-            found = self._reduce(measure).dimension
-            message = f"{what} is in '{found}'; {a_what} is in '{unit}'"
+            given = self._reduce(measure).dimension
+            message = f"{what} is in '{given}'; {a_what} is in '{unit}'"
             self._note(
-                "SF203", message, expression.span, self._declaration(expression, found, wanted.dimension)
+                "SF203", message, expression.span, self._declaration(expression, given, wanted.dimension)
             )
 
     def read(self, expression: Expression) -> None:
@@ -215,9 +215,9 @@ class DimensionSystem:
             return
         left = self.variable(variable)
         if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
-            found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
-            message = f"'{variable}' is used in '{wanted}' but its expression is in '{found}'"
-            hint = _gain_hint(expression, found, wanted) or f"a gain in '{wanted / found}' makes it fit"
+            given, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
+            message = f"'{variable}' is used in '{wanted}' but its expression is in '{given}'"
+            hint = _gain_hint(expression, given, wanted) or f"a gain in '{wanted / given}' makes it fit"
             self._note("SF203", message, expression.span, hint)
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
@@ -363,10 +363,10 @@ class DimensionSystem:
         if any(isinstance(n, Name) and n.name == LAPLACE for n in written):
             return  # a point that depends on s is refused for that
         if not self._learn(self._reduce(measure.times(axis.power(-1)))):
-            found, wanted = self._reduce(measure).dimension, self._reduce(axis).dimension
-            message = f"the point is in '{found}'; the domain of '{name}' is in '{wanted}'"
+            given, wanted = self._reduce(measure).dimension, self._reduce(axis).dimension
+            message = f"the point is in '{given}'; the domain of '{name}' is in '{wanted}'"
             if name in self._scope.along:
-                message = f"the point is in '{found}'; x along {self._scope.along[name]} is in '{wanted}'"
+                message = f"the point is in '{given}'; x along {self._scope.along[name]} is in '{wanted}'"
             self._note("SF203", message, place.span)
             return
         self._sound_points.add(point)
@@ -542,11 +542,11 @@ class DimensionSystem:
             self._solved[waiting.pop()] = (tuple((v, e) for v, e in merged.items() if e), dimension)
         return self._solved[variable]
 
-    def _declaration(self, expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
+    def _declaration(self, expression: Expression, given: Dimension, wanted: Dimension) -> str | None:
         if isinstance(expression, Name):
             quantity = self._quantities.get(expression.name)
             if quantity is not None:
-                slip = unit_slip(quantity.unit, found, wanted)
+                slip = unit_slip(quantity.unit, given, wanted)
                 unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
                 return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
         return None
@@ -558,9 +558,9 @@ def _said(term: Expression) -> str:
     return f"{text} in " if 0 < len(text) <= LONGEST_TERM else ""
 
 
-def _gain_hint(expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
+def _gain_hint(expression: Expression, given: Dimension, wanted: Dimension) -> str | None:
     """Say that an integral or a derivative has another unit; a gain makes it fit, also a plain number."""
     has_s = names_among(expression, (LAPLACE,))
-    if has_s and any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
+    if has_s and any(given == wanted * SECOND**power for power in (-2, -1, 1, 2)):
         return "'s' and '1/s' have units: multiply by a gain; a plain number, as in '1*(u/s)', fits any unit"
     return None

@@ -33,7 +33,7 @@ def read_fields(
     reader: Reader, section: TableValue | None, taken: Collection[str]
 ) -> tuple[FieldProblem, ...]:
     """Return ``[fields]`` in order; no unknown may bear a name of a parameter, definition or block."""
-    found: list[FieldProblem] = []
+    fields: list[FieldProblem] = []
     owners: dict[str, str] = {}
     for i, entry in enumerate(section.entries if section else ()):
         if i >= FIELD_LIMIT:
@@ -43,8 +43,8 @@ def read_fields(
             break
         field = _read_field(reader, entry, taken, owners)
         if field is not None:
-            found.append(field)
-    return tuple(found)
+            fields.append(field)
+    return tuple(fields)
 
 
 def with_brackets_opened(
@@ -54,7 +54,7 @@ def with_brackets_opened(
 
     A field with a bracket that cannot be opened is left out.
     """
-    found = []
+    opened_fields = []
     for each in fields:
         every = [u for other in fields for u in other.unknowns]
         opened = [
@@ -73,8 +73,8 @@ def with_brackets_opened(
             equations, conditions = (tuple(e for e, _ in group) for group in opened)
             given = (*each.equations, *each.conditions)
             written = given if given != (*equations, *conditions) else ()
-            found.append(replace(each, equations=equations, conditions=conditions, written=written))
-    return tuple(found)
+            opened_fields.append(replace(each, equations=equations, conditions=conditions, written=written))
+    return tuple(opened_fields)
 
 
 def _read_field(
@@ -211,5 +211,5 @@ def _few(
 def parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:
     """Return the equations that texts hold; None without texts, or when one cannot be read."""
     read = [reader.read(parse_equation, text) for text in texts or ()]
-    found = [equation for equation in read if equation is not None]
-    return tuple(found) if texts is not None and len(found) == len(texts) else None
+    equations = [equation for equation in read if equation is not None]
+    return tuple(equations) if texts is not None and len(equations) == len(texts) else None

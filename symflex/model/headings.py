@@ -151,12 +151,12 @@ def _has_lost_sections(spec: Spec) -> bool:
 
 
 def _empty_sections(spec: Spec) -> list[Diagnostic]:
-    found = []
+    diagnostics = []
     for name, example in NEEDED.items():
         entry = spec.root.get(name)
         if entry is None or (isinstance(entry.value, TableValue) and not entry.value.entries):
             span = entry.key_span if entry else Span(spec.source, 0, 0)
             message = f"the specification has no [{name}]"
             hint = f"below a heading [{name}], for instance: {example}"
-            found.append(Diagnostic("SF214", message, span, hint))
-    return found
+            diagnostics.append(Diagnostic("SF214", message, span, hint))
+    return diagnostics

@@ -148,7 +148,7 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
 
     One with a right side that holds more than inputs is passed over: nodes and signals may meet it.
     """
-    found: list[Repetition] = []
+    repeated: list[Repetition] = []
     reduced: list[tuple[Place, Form, dict[int, int]]] = []
     for number, form in enumerate(forms):
         rest: Form = dict(form)
@@ -166,8 +166,8 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
         left = [k for k in rest if k is not None and not isinstance(k, tuple)]
         if all(v.kind == "input" for v in left):
             others = tuple(sorted(i for i in origin if i != number))
-            found.append(Repetition(number, others, bool(rest)))
-    return found
+            repeated.append(Repetition(number, others, bool(rest)))
+    return repeated
 
 
 def _combined(left: Mapping[int, int], right: Mapping[int, int], factor: int) -> dict[int, int]:

@@ -260,8 +260,8 @@ class _Degrees:
 
 
 def _strongest(degrees: Iterable[Degree]) -> Degree:
-    found = set(degrees)
-    return "linear" if "linear" in found else "unknown" if "unknown" in found else "constant"
+    kinds = set(degrees)
+    return "linear" if "linear" in kinds else "unknown" if "unknown" in kinds else "constant"
 
 
 def _derivative(span: Span | None) -> Diagnostic:

@@ -155,7 +155,7 @@ class PlacedElement:
             return self.values
         directions = {p.name for p in self.element.parameters if p.is_direction}
         turned = (direction_of(e) for name, e in self.values if name in directions)
-        return (*self.values, *(pair for found in turned for pair in found.items()))
+        return (*self.values, *(pair for mapping in turned for pair in mapping.items()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,8 +378,8 @@ class Model:
             driven = {port.name for port in use.element.parameters if port.signal}
             told += [("", value) for name, value in use.values if name in driven]
         for owner, expression in told:
-            found = {n.owner if isinstance(n, Attribute) else n.name for n in names(expression)}
-            uses.setdefault(owner, set()).update("" if name in network else name for name in found)
+            owners = {n.owner if isinstance(n, Attribute) else n.name for n in names(expression)}
+            uses.setdefault(owner, set()).update("" if name in network else name for name in owners)
         for start, first in uses.items():
             reached, pending = set[str](), [*first]
             while pending:

@@ -73,14 +73,14 @@ class DraftElement:
     def attachments(self, measure: Callable[[Expression], Dimension | None]) -> list[Attachment]:
         """Return what this element says about its nodes; ``measure`` tells a constant's dimension."""
         who = f"{self.element.type_name} '{self.name}'"
-        found = []
+        attachments = []
         for port, references in self.nodes:
             coupling = self._coupling(port, measure) if port.domain == "any" else None
-            found += [
+            attachments += [
                 Attachment(r, port.domain, who, coupling, self.element.carries_x and not r.component)
                 for r in references
             ]
-        return found
+        return attachments
 
     def _coupling(self, port: Port, measure: Callable[[Expression], Dimension | None]) -> Coupling | None:
         ratio = dict(self.values).get("ratio")
@@ -143,27 +143,27 @@ def _choices(
     reader: Reader, table: TableValue, entry: KeyValue, element: Element
 ) -> tuple[tuple[str, str], ...] | None:
     """Return what was chosen for every choice; ``None`` when a word is unknown."""
-    found: list[tuple[str, str]] = []
+    chosen: list[tuple[str, str]] = []
     for choice in element.choices:
         given = table.get(choice.name)
         what = f"{choice.name} of {element.type_name} '{entry.key}'"
         if given is not None and choice.is_flag:
             if isinstance(given.value, BooleanValue):
-                found.append((choice.name, choice.name if given.value.value else choice.default))
+                chosen.append((choice.name, choice.name if given.value.value else choice.default))
             else:
                 reader.misfit(f"{what} must be true or false", given.value)
             continue
         text = reader.string(given, what) if given else None
         if given is None:
-            found.append((choice.name, choice.default))
+            chosen.append((choice.name, choice.default))
         elif text is not None and text.value in choice.values:
-            found.append((choice.name, text.value))
+            chosen.append((choice.name, text.value))
         elif text is not None:
             hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
             who = f"{element.type_name} '{entry.key}'"
             message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
             reader.note("SF208", message, text.span, hint)
-    return tuple(found) if len(found) == len(element.choices) else None
+    return tuple(chosen) if len(chosen) == len(element.choices) else None
 
 
 def _values(
@@ -185,25 +185,27 @@ def _values(
     spare = _spare(table, element, choices)
     for parameter in element.parameters:
         expression: Expression | None = None
-        found, applies = table.get(parameter.name), parameter.applies(choices.values())
-        if found is None and (parameter.of or parameter.name in spare):
+        entry_given, applies = table.get(parameter.name), parameter.applies(choices.values())
+        if entry_given is None and (parameter.of or parameter.name in spare):
             continue
-        if found is not None and not applies:
+        if entry_given is not None and not applies:
             chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
             others = " or ".join(f'"{value}"' for value in parameter.only)
             reader.note(
                 "SF247",
                 f"{parameter.name} of {who} does not go with {chosen}",
-                found.key_span,
+                entry_given.key_span,
                 f"it goes with {others}",
             )
-        elif found is not None and parameter.name in spare:
+        elif entry_given is not None and parameter.name in spare:
             product = spare[parameter.name]
             place = f"{product.name} in place of {'*'.join(product.of)}"
             message = f"{who} has {place} and also {parameter.name}"
-            reader.note("SF247", message, found.key_span, f"leave {parameter.name} or {product.name} out")
-        elif found is not None:
-            expression = reader.expression(found.value, f"{parameter.name} of {who}")
+            reader.note(
+                "SF247", message, entry_given.key_span, f"leave {parameter.name} or {product.name} out"
+            )
+        elif entry_given is not None:
+            expression = reader.expression(entry_given.value, f"{parameter.name} of {who}")
         elif parameter.default is not None:
             like = any(p.name == parameter.default for p in element.parameters)
             expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
@@ -258,15 +260,15 @@ def _references(
     reader: Reader, table: TableValue, port: Port, entry: KeyValue, element: Element, meant: frozenset[str]
 ) -> tuple[NodeReference, ...] | None:
     what = f"{port.name} of {element.type_name} '{entry.key}'"
-    found, wanted = table.get(port.name), port.terminals
+    entry_given, wanted = table.get(port.name), port.terminals
     both = table.get(port.pair) if port.pair else None
-    if found is not None and both is not None:
+    if entry_given is not None and both is not None:
         message = f"{element.type_name} '{entry.key}' takes {port.name} or {port.pair}, not both"
         reader.note("SF217", message, both.key_span)
         return None
     if both is not None:
-        what, found, wanted = f"{port.pair} of {element.type_name} '{entry.key}'", both, 2
-    if found is None:
+        what, entry_given, wanted = f"{port.pair} of {element.type_name} '{entry.key}'", both, 2
+    if entry_given is None:
         if port.default is not None:
             return tuple(NodeReference(n) for n in port.default)
         if port.name in meant:
@@ -280,7 +282,7 @@ def _references(
         )
         return None
     kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
-    texts = reader.strings(found, what, kind)
+    texts = reader.strings(entry_given, what, kind)
     if texts is None:
         return None
     if port.reacts and len(texts) == 2:  # noqa: PLR2004
@@ -298,7 +300,7 @@ def _references(
         reader.note(
             "SF217",
             f"{what} takes {wanted} {plural}, found {len(texts)}",
-            found.value.span,
+            entry_given.value.span,
             hint,
         )
         return None
@@ -310,7 +312,7 @@ def _references(
         case (a, b) if (a.node, a.component) == (b.node, b.component):
             message = f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'"
             hint = 'give one end a node of its own; { type = "fixed", at = NODE } holds it'
-            reader.note("SF218", message, found.value.span, hint if a.is_ground else None)
+            reader.note("SF218", message, entry_given.value.span, hint if a.is_ground else None)
             return None
     return kept
 
@@ -536,14 +538,14 @@ def _moving_along(attachments: Sequence[Attachment]) -> set[str]:
     for together in carried.values():
         for name in together:
             beside.setdefault(name, set()).update(together)
-    found: set[str] = set()
+    moving: set[str] = set()
     pending = [a.reference.node for a in attachments if _claim(a) == "plane" and not a.reference.is_ground]
     while pending:
         name = pending.pop()
-        if name not in found:
-            found.add(name)
+        if name not in moving:
+            moving.add(name)
             pending += beside.get(name, ())
-    return found
+    return moving
 
 
 def _undirected(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:

@@ -62,8 +62,8 @@ def describe(value: Value) -> str:
 
 def read_entries(section: TableValue | None, read: Callable[[KeyValue], Made | None]) -> tuple[Made, ...]:
     """Return what can be read of a section's entries, in order."""
-    found = [read(entry) for entry in section.entries] if section else []
-    return tuple(each for each in found if each is not None)
+    made = [read(entry) for entry in section.entries] if section else []
+    return tuple(each for each in made if each is not None)
 
 
 @dataclass(slots=True)
@@ -114,11 +114,11 @@ class Reader:
         """
         known = tuple(allowed)
         absent = [k for k in known if table.get(k) is None]
-        found: set[str] = set()
+        keys: set[str] = set()
         for entry in table.entries:
             if entry.key not in known:
                 meant = key_meant(entry.key, absent)
-                found |= {meant} if meant else set()
+                keys |= {meant} if meant else set()
                 hint = f"write {meant}" if meant else nearest(entry.key, known)
                 hint = hint or "; ".join(filter(None, ("known keys: " + ", ".join(known), example)))
                 if entry.key in LOSS_WORDS and "eta_s" in known:
@@ -126,7 +126,7 @@ class Reader:
                 elif entry.key == "matrices":
                     hint = "Python's symflex.from_matrices(M=..., D=..., K=...) makes a model of matrices"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
-        return frozenset(found)
+        return frozenset(keys)
 
     def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:
         """Tell whether the entry's key is a name; ``reserved`` says why some are taken."""
@@ -166,10 +166,10 @@ class Reader:
         self, table: TableValue, key: str, entry: KeyValue, message: str, hint: str | None = None
     ) -> KeyValue | None:
         """Return what the table of an entry must hold; the message says that it does not."""
-        found = table.get(key)
-        if found is None:
+        given = table.get(key)
+        if given is None:
             self.note("SF214", message, entry.key_span, hint)
-        return found
+        return given
 
     def strings(
         self, entry: KeyValue, what: str, kind: str = "a string or an array of strings"
@@ -215,11 +215,11 @@ class Reader:
             self.misfit(f"{what} must be an expression or a number", value)
             return None
         if quantities and looks_like_quantity(value.text.value):
-            found = self.quantity(value, what, NAMED)
-            if found is None:
+            quantity = self.quantity(value, what, NAMED)
+            if quantity is None:
                 return None
-            if found.unit:
-                return QuantityLiteral(found, span=value.text.span)
+            if quantity.unit:
+                return QuantityLiteral(quantity, span=value.text.span)
         return self.read(parse, value.text)
 
 

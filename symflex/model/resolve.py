@@ -212,8 +212,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         later.take(check_printed(published, readable))
     # A transfer function is missing where its output or input could not be read: no second mistake.
     whole = all(
-        len(found) == len(section.entries)
-        for found, section in ((outputs, sections["outputs"]), (inputs, sections["inputs"]))
+        len(entries) == len(section.entries)
+        for entries, section in ((outputs, sections["outputs"]), (inputs, sections["inputs"]))
         if section
     )
     reader.take([p for p in later.problems if whole or p.code != "SF218"])
@@ -291,13 +291,13 @@ def _inherited_parameters(
 ) -> tuple[ModelParameter, ...]:
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
     own = {p.name: p.resolve(CycleReading.TURNED, "") for p in declared}
-    found: dict[str, ModelParameter] = {}
+    inherited: dict[str, ModelParameter] = {}
     bringing: dict[str, str] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
-            known = own.get(parameter.name) or found.get(parameter.name)
+            known = own.get(parameter.name) or inherited.get(parameter.name)
             if known is None:
-                found[parameter.name] = parameter
+                inherited[parameter.name] = parameter
                 bringing[parameter.name] = block.name
             elif known.value is not None and parameter.value is not None and known.value != parameter.value:
                 other = bringing.get(parameter.name)
@@ -309,7 +309,7 @@ def _inherited_parameters(
                     known.span if known.name in own else block.span,
                     "rename one of the two: parameters of a model block are shared by name",
                 )
-    return tuple(found.values())
+    return tuple(inherited.values())
 
 
 def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model, Mapping[str, Expression]]:
@@ -490,12 +490,12 @@ def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list
 
 def _all_expressions(draft: Draft) -> list[tuple[Expression, Kind]]:
     """Return every expression with what it may be."""
-    found: list[tuple[Expression, Kind]] = [(d.expression, "constant") for d in draft.definitions]
+    expressions: list[tuple[Expression, Kind]] = [(d.expression, "constant") for d in draft.definitions]
     for use in draft.elements:
         kinds: dict[str, Kind] = {p.name: "signal" for p in use.element.parameters if p.signal}
         kinds |= {p.name: "varying" for p in use.element.parameters if p.varies}
         kinds |= {"l": "real"} if isinstance(use.element, LineElement) else {}
-        found += [(e, kinds.get(name, "constant")) for name, e in use.values]
-    found += [(e, "real") for b in draft.blocks for _, e in b.values]
-    found += [(x.expression, "signal") for x in draft.signals]
-    return found + [(x.expression, "signal") for x in draft.outputs]
+        expressions += [(e, kinds.get(name, "constant")) for name, e in use.values]
+    expressions += [(e, "real") for b in draft.blocks for _, e in b.values]
+    expressions += [(x.expression, "signal") for x in draft.signals]
+    return expressions + [(x.expression, "signal") for x in draft.outputs]

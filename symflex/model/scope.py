@@ -94,11 +94,11 @@ class ModelScope:
     def find(self, expression: Name | Attribute) -> Meaning | None:
         """Return the only meaning of a name, among constants when it has others too, or ``None``."""
         if isinstance(expression, Attribute):
-            found = self.attributes.get((expression.owner, expression.name), ())
-            return found[0] if len(found) == 1 else None
-        found = self.meanings.get(expression.name, ())
-        constants = [m for m in found if m.kind in CONSTANT_KINDS]
-        return found[0] if len(found) == 1 else constants[0] if len(constants) == 1 else None
+            candidates = self.attributes.get((expression.owner, expression.name), ())
+            return candidates[0] if len(candidates) == 1 else None
+        candidates = self.meanings.get(expression.name, ())
+        constants = [m for m in candidates if m.kind in CONSTANT_KINDS]
+        return candidates[0] if len(candidates) == 1 else constants[0] if len(constants) == 1 else None
 
     def is_coordinate(self, name: str) -> bool:
         """Tell whether a name is the coordinate's: nothing else that may stand in a coefficient has it."""
@@ -116,31 +116,31 @@ class ModelScope:
         if expression.name in self.inside:
             variable = Variable("field", expression.name)
             return Meaning("variable", expression.name, f"the unknown '{expression.name}'", variable)
-        found = self.meanings.get(expression.name, ())
+        candidates = self.meanings.get(expression.name, ())
         if self.has_coordinate and self.is_coordinate(expression.name):
             return Meaning("coordinate", expression.name, "the coordinate x")
         if self.inside:
-            found = self._along(expression, found)
-        readable = [m for m in found if not constant or m.kind in CONSTANT_KINDS]
-        if expression.name in self.broken and (not found or len(readable) > 1):
+            candidates = self._along(expression, candidates)
+        readable = [m for m in candidates if not constant or m.kind in CONSTANT_KINDS]
+        if expression.name in self.broken and (not candidates or len(readable) > 1):
             return Meaning("broken", expression.name, "a name with a mistake")
         if len(readable) == 1:
             return readable[0]
         if len(readable) > 1:
             raise SpecError(_ambiguous(expression.name, readable, expression.span))
-        if found:
-            raise SpecError(_varying(expression.name, found[0], expression.span))
+        if candidates:
+            raise SpecError(_varying(expression.name, candidates[0], expression.span))
         if expression.name in self.unknowns:
             raise SpecError(without_point(expression.name, expression.name, expression.span))
         hint = self._hint(expression.name, constant=constant)
         raise SpecError(Diagnostic("SF210", f"unknown name '{expression.name}'", expression.span, hint))
 
-    def _along(self, expression: Name, found: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
+    def _along(self, expression: Name, candidates: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
         """Return the meanings that may stand in the equations of a field."""
-        kept = tuple(m for m in found if m.variable is None or _is_load(m))
-        if found and not kept:
-            raise SpecError(outside(expression.name, found[0].described, expression.span))
-        if not found and expression.name in self.unknowns:
+        kept = tuple(m for m in candidates if m.variable is None or _is_load(m))
+        if candidates and not kept:
+            raise SpecError(outside(expression.name, candidates[0].described, expression.span))
+        if not candidates and expression.name in self.unknowns:
             described = f"an unknown of field '{self.unknowns[expression.name]}'"
             raise SpecError(outside(expression.name, described, expression.span))
         return kept
@@ -172,12 +172,12 @@ class ModelScope:
 
     def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
         text = f"{expression.owner}.{expression.name}"
-        found = self.attributes.get((expression.owner, expression.name), ())
-        if len(found) > 1:
-            raise SpecError(_ambiguous(text, found, expression.span))
-        if not found and text in self.along:
+        candidates = self.attributes.get((expression.owner, expression.name), ())
+        if len(candidates) > 1:
+            raise SpecError(_ambiguous(text, candidates, expression.span))
+        if not candidates and text in self.along:
             raise SpecError(without_point(text, text, expression.span))
-        if not found:
+        if not candidates:
             offered = self.owners.get(expression.owner)
             if expression.owner in self.broken:
                 return Meaning("broken", text, "a name with a mistake")
@@ -190,7 +190,7 @@ class ModelScope:
                 )
                 message = f"'{expression.owner}' has no quantity '{expression.name}'"
             raise SpecError(Diagnostic("SF210", message, expression.span, hint))
-        (meaning,) = found
+        (meaning,) = candidates
         if self.inside:
             raise SpecError(outside(text, meaning.described, expression.span))
         if constant:
@@ -324,9 +324,9 @@ def build_scope(
             Meaning("through", source.name, described, kind.delivered(source.name)),
         )
     return ModelScope(
-        {name: tuple(found) for name, found in meanings.items()},
-        {name: tuple(found) for name, found in attributes.items()},
-        {name: tuple(found) for name, found in owners.items()},
+        {name: tuple(candidates) for name, candidates in meanings.items()},
+        {name: tuple(candidates) for name, candidates in attributes.items()},
+        {name: tuple(candidates) for name, candidates in owners.items()},
         broken,
         {unknown: f.name for f in fields for unknown in f.unknowns},
         along={

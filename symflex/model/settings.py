@@ -41,7 +41,7 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
     >>> read_settings(["k=80 kN/m", "m = 2"])
     {'k': '80 kN/m', 'm': '2'}
     """
-    found: dict[str, str] = {}
+    settings: dict[str, str] = {}
     for text in texts:
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (sign and name and value):
@@ -49,10 +49,10 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
             raise UsageError(Diagnostic("SF902", message, None, f"for instance {OPTION} k='80 kN/m'"))
         if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"":
             value = value[1:-1]  # as a specification writes it
-        if name in found:
+        if name in settings:
             raise UsageError(Diagnostic("SF902", f"'{name[:64]}' is set twice"))
-        found[name] = value
-    return found
+        settings[name] = value
+    return settings
 
 
 def check_names(model: Model, settings: Mapping[str, Setting]) -> None:

@@ -80,11 +80,11 @@ class Line:
     @cached_property
     def enclosures(self) -> Mapping[str, arb]:
         """The values of parameters and definitions, of those that have one."""
-        found = {"pi": arb.pi(), **{name: _ball(value) for name, value in self.values.items()}}
+        enclosed = {"pi": arb.pi(), **{name: _ball(value) for name, value in self.values.items()}}
         for name, expression in self.definitions.items():
-            if (value := _enclosed(expression, found)) is not None:
-                found[name] = value
-        return found
+            if (value := _enclosed(expression, enclosed)) is not None:
+                enclosed[name] = value
+        return enclosed
 
     @staticmethod
     def of_numbers(
@@ -139,13 +139,13 @@ class Line:
 
     def opened_names(self, expression: Expression) -> set[str]:
         """Return the names of an expression and of the definitions in it; a dot for what else may vary."""
-        found: set[str] = set()
+        opened: set[str] = set()
         for each in names(expression):
             if isinstance(each, Name) and each.name in self.definitions:
-                found |= self.opened_names(self.definitions[each.name])
+                opened |= self.opened_names(self.definitions[each.name])
             elif not isinstance(each, Call) or each.name not in FUNCTIONS:
-                found.add(each.name if isinstance(each, Name) else ".")
-        return found
+                opened.add(each.name if isinstance(each, Name) else ".")
+        return opened
 
     def nearly(self, expression: Expression) -> float | None:
         """Return the double next to the number an expression of any form is, None without one."""
@@ -390,7 +390,7 @@ def value_along(value: Expression, x: arb, line: Line) -> arb | None:
 def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
     """Return an enclosure of an expression, None where a name has no value."""
     try:
-        found: arb = fold(
+        enclosure: arb = fold(
             lower(expression),
             number=_ball,
             name=values.__getitem__,
@@ -399,15 +399,15 @@ def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
         )
     except (KeyError, TypeError):
         return None  # a parameter without value, or a quantity that is no number
-    return found
+    return enclosure
 
 
 def _slope_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return the slope of what varies along x on a ball of x, None where it is not known."""
     beside = arb_series([x, 1], 2)
     # Series have the arithmetic of balls.
-    found = cast("arb_series | arb | None", value_along(value, cast("arb", beside), line))
-    return found[1] if isinstance(found, arb_series) else None
+    series = cast("arb_series | arb | None", value_along(value, cast("arb", beside), line))
+    return series[1] if isinstance(series, arb_series) else None
 
 
 def _sign_along(value: Expression, length: Expression, line: Line) -> int | None:
@@ -469,10 +469,10 @@ def sign_between(
         return sign
 
     try:
-        found = {sign for _, _, sign in covered(sign_on, 1, SHORTEST)}
+        signs = {sign for _, _, sign in covered(sign_on, 1, SHORTEST)}
     except UndecidedError:
         return None
-    return found.pop() if len(found) == 1 else None
+    return signs.pop() if len(signs) == 1 else None
 
 
 def sign_of(number: arb | None) -> int | None:

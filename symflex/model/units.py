@@ -117,10 +117,10 @@ def declared_quantities(
     declared: Sequence[DeclaredParameter], inherited: Sequence[ModelParameter]
 ) -> dict[str, Quantity | None]:
     """Return what every parameter is measured in, ``None`` where no unit was written."""
-    found = {p.name: p.measured for p in declared}
+    quantities = {p.name: p.measured for p in declared}
     for parameter in inherited:
-        found[parameter.name] = _in_si(parameter)
-    return found
+        quantities[parameter.name] = _in_si(parameter)
+    return quantities
 
 
 def constant_measure(

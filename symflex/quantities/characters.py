@@ -77,14 +77,14 @@ def _comma_hint(value: str, position: int) -> str:
     number = re.compile(r"[0-9]+(?:[.,][0-9]+)*").search(value, len(value[:position].rstrip("0123456789.,")))
     if number is None or not number.start() < position < number.end():
         return "a decimal point is written '.', and a function takes one argument"
-    found = number[0]
-    if found.count(",") == 1 and "." not in found:
-        is_group = len(found) - found.index(",") - 1 == _GROUP and not found.startswith("0")
-        also = f", or '{found.replace(',', '')}' for thousands" if is_group else ""
-        return f"write a decimal point: '{found.replace(',', '.')}'{also}"
-    last = max(found.rfind("."), found.rfind(","))
-    whole = re.sub("[.,]", "", found[:last])
-    return f"digits are not grouped: write '{whole}.{found[last + 1 :]}'"
+    digits = number[0]
+    if digits.count(",") == 1 and "." not in digits:
+        is_group = len(digits) - digits.index(",") - 1 == _GROUP and not digits.startswith("0")
+        also = f", or '{digits.replace(',', '')}' for thousands" if is_group else ""
+        return f"write a decimal point: '{digits.replace(',', '.')}'{also}"
+    last = max(digits.rfind("."), digits.rfind(","))
+    whole = re.sub("[.,]", "", digits[:last])
+    return f"digits are not grouped: write '{whole}.{digits[last + 1 :]}'"
 
 
 def ascii_name(text: str) -> str:

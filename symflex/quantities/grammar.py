@@ -202,18 +202,18 @@ def _syntax_rejection(unexpected: UnexpectedError, value: str, kind: str) -> Rej
     start, token = unexpected.start, unexpected.token
     if token is not None and token.type == END:
         return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value))
-    found = value[start] if token is None else str(token)
-    hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), found)
-    message = f"unexpected '{found}'{code_point(found[0])} in the {kind} '{value}'"
-    if hint is None and (found == "," or not found.isascii()):
+    wrong = value[start] if token is None else str(token)
+    hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), wrong)
+    message = f"unexpected '{wrong}'{code_point(wrong[0])} in the {kind} '{value}'"
+    if hint is None and (wrong == "," or not wrong.isascii()):
         hint = character_hint(value, start)
-    return RejectedError("SF202", message, start, start + len(found), hint)
+    return RejectedError("SF202", message, start, start + len(wrong), hint)
 
 
-def _syntax_hint(before: str, after: str, found: str) -> str | None:
-    if found in IMAGINARY_NAMES and re.search("[0-9] *[*]?$", before):
+def _syntax_hint(before: str, after: str, wrong: str) -> str | None:
+    if wrong in IMAGINARY_NAMES and re.search("[0-9] *[*]?$", before):
         return NOT_IN_PARAMETERS
-    if UNIT_START.match(found):
+    if UNIT_START.match(wrong):
         if not before and after.replace(" ", "").startswith("sqrt(-"):
             return NOT_IN_PARAMETERS
         if not before:
@@ -221,16 +221,16 @@ def _syntax_hint(before: str, after: str, found: str) -> str | None:
         constant = before[:-1].strip(SPACES)
         if SIGNED_NUMBER.fullmatch(constant) and before[-1] in "*/":
             return f"write a space before the unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
-    if re.match(NUMBER, found):
+    if re.match(NUMBER, wrong):
         return _ONE_NUMBER
-    after = after[len(found) :]
-    if found in {".", "-"} and UNIT_START.match(before[-1:]):
+    after = after[len(wrong) :]
+    if wrong in {".", "-"} and UNIT_START.match(before[-1:]):
         if UNIT_START.match(after):
             return "units are multiplied by '*' or a space, as in 'kg*m^2'"
         power = re.match("[0-9]+", after)
-        return f"write '^-{power[0]}'" if power and found == "-" else None
+        return f"write '^-{power[0]}'" if power and wrong == "-" else None
     if before[-1:].isdigit() and (
-        (found in {"'", "_"} and after[:1].isdigit()) or re.search("[0-9] [0-9]+$", before)
+        (wrong in {"'", "_"} and after[:1].isdigit()) or re.search("[0-9] [0-9]+$", before)
     ):
         return _NO_GROUPS
     return None

@@ -79,21 +79,21 @@ class Grammar:
         """Return the word that begins at an offset, or behind what is ignored there; none at the end."""
         kept = self.states[state].keys() | self._ignored if self._is_contextual else self._terminals.keys()
         while start < len(text):
-            found = self._first(text, start, kept)
-            if found is None:
+            token = self._first(text, start, kept)
+            if token is None:
                 raise UnexpectedError(
                     start, self._first(text, start, self._terminals.keys()), self.expected(state)
                 )
-            if found.type not in self._ignored:
-                return found
-            start = found.end
+            if token.type not in self._ignored:
+                return token
+            start = token.end
         return None
 
     def _first(self, text: str, start: int, kept: Set[str]) -> Token | None:
         """Return the first of some terminals that begins at an offset."""
         for name, pattern in self._terminals.items():
-            if name in kept and (found := pattern.match(text, start)):
-                return Token(name, found[0], start)
+            if name in kept and (match := pattern.match(text, start)):
+                return Token(name, match[0], start)
         return None
 
     def expected(self, state: int) -> frozenset[str]:

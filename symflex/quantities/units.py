@@ -337,7 +337,7 @@ def unit_hint(symbol: str) -> str | None:
     return product_of_units or nearest(symbol, known)
 
 
-def unit_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
+def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
     """Return how a unit is written that has a mass for a force, or the reverse, or one slash too many.
 
     Examples
@@ -348,26 +348,26 @@ def unit_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
     >>> unit_slip("N/m/s", unit_of("N/m/s").dimension, unit_of("N*s/m").dimension)
     "'/' divides each time: write 'N/(m/s)'"
     """
-    return _mass_slip(unit, found, wanted) or _slash_slip(unit, found, wanted)
+    return _mass_slip(unit, given, wanted) or _slash_slip(unit, given, wanted)
 
 
-def _slash_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
+def _slash_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
     """Read ``N/m/s`` as ``N/(m/s)``, also where the mass in it is a force."""
     above, *below = unit.split("/")
     last = unit_named(below[-1].strip("() ")) if len(below) == 2 and "(" not in unit else None  # noqa: PLR2004
     if last is None:
         return None
-    meant, written = found * last.dimension**2, f"{above}/({below[0]}/{below[1]})"
+    meant, written = given * last.dimension**2, f"{above}/({below[0]}/{below[1]})"
     if meant == wanted:
         return f"'/' divides each time: write '{written}'"
     mass = _mass_slip(written, meant, wanted)
     return f"'/' divides each time, and {mass}" if mass else None
 
 
-def _mass_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
-    for instead, more, kinds in ((_FORCES, wanted, ("mass", "force")), (_MASSES, found, ("force", "mass"))):
+def _mass_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
+    for instead, more, kinds in ((_FORCES, wanted, ("mass", "force")), (_MASSES, given, ("force", "mass"))):
         written = next((name for name in re.findall(r"[A-Za-z_]+", unit) if name in instead), None)
-        if written and more == (found if more is wanted else wanted) * _GRAVITY.dimension:
+        if written and more == (given if more is wanted else wanted) * _GRAVITY.dimension:
             right = re.sub(rf"\b{written}\b", instead[written], unit)
             return f"'{written}' is a {kinds[0]}, '{instead[written]}' a {kinds[1]}: write '{right}'"
     return None

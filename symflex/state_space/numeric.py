@@ -211,15 +211,15 @@ class Rounding:
     def nearest(self, value: FieldElement, what: str) -> float:
         """Return the nearest double; ``what`` is its name in messages. Errors as of :func:`rounded`."""
         exact = self._rational(value)
-        found = self._of_ball(value, what) if exact is None else _float(exact)
-        if found == exact:
-            return found
-        if not isfinite(found) or abs(found) < float_info.min:
-            size = "large" if abs(found) > 1 else "small"
+        rounded_value = self._of_ball(value, what) if exact is None else _float(exact)
+        if rounded_value == exact:
+            return rounded_value
+        if not isfinite(rounded_value) or abs(rounded_value) < float_info.min:
+            size = "large" if abs(rounded_value) > 1 else "small"
             message = f"{what} is too {size} for double precision"
             hint = "choose units in which values are closer to 1, such as mm and t"
             raise ModelError(Diagnostic("SF233", message, None, hint))
-        return found
+        return rounded_value
 
     def enclosed(self, value: FieldElement, bits: int) -> arb:
         """Return a ball around a quotient, at a precision that is to be the current one."""
@@ -292,7 +292,7 @@ def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[comp
     with precision(RESPONSE_BITS):
         a, b, c, d = (_acb_matrix(array) for array in (arrays.a, arrays.b, arrays.c, arrays.d))
         n = len(arrays.a)
-        found = []
+        responses = []
         for s in points:
             value = d
             if n:
@@ -304,8 +304,8 @@ def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[comp
                 except ZeroDivisionError:
                     value = d * acb("nan")
             rows = value.tolist()
-            found.append(tuple(tuple(complex(x.mid()) for x in row) for row in rows))
-        return found
+            responses.append(tuple(tuple(complex(x.mid()) for x in row) for row in rows))
+        return responses
 
 
 def _acb_matrix(array: npt.NDArray[np.float64]) -> acb_mat:

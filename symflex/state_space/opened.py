@@ -116,7 +116,7 @@ class _Splitter:
                 parts: list[Expression] = []
                 for i, term in enumerate(terms):
                     part = self.apart(owner, term)
-                    others = {d for j, found in enumerate(known) if j != i for d in found}
+                    others = {d for j, own in enumerate(known) if j != i for d in own}
                     # Filters that share a denominator have its states together.
                     if self._varies(term) and known[i] and not known[i] & others:
                         is_negative = isinstance(part, Negative)
@@ -162,7 +162,7 @@ class _Splitter:
 
 def _denominators(expression: Expression) -> set[str]:
     """Return the factors in s that a term of a sum is divided by, as text."""
-    found: set[str] = set()
+    denominators: set[str] = set()
     pending = [expression]
     while pending:
         node = pending.pop()
@@ -173,11 +173,11 @@ def _denominators(expression: Expression) -> set[str]:
                 pending.extend(factors)
             case Quotient(numerator, Product(factors)):
                 pending.append(numerator)
-                found |= {format_expression(f) for f in factors if _holds_s(f)}
+                denominators |= {format_expression(f) for f in factors if _holds_s(f)}
             case Quotient(numerator, denominator):
                 pending.append(numerator)
-                found |= {format_expression(denominator)} if _holds_s(denominator) else set()
-    return found
+                denominators |= {format_expression(denominator)} if _holds_s(denominator) else set()
+    return denominators
 
 
 def _holds_s(expression: Expression) -> bool:

@@ -204,8 +204,8 @@ class _Rows:
                 results.append({(column, 0): FieldElement.number(ring, 1)})
             else:
                 results.append({key: value / divisor[0] for key, value in row.items()})
-        found = _Rows(unknowns, tuple(inputs), tuple(about), tuple(rows), tuple(results))
-        return found.with_partial_states(columns)
+        collected = _Rows(unknowns, tuple(inputs), tuple(about), tuple(rows), tuple(results))
+        return collected.with_partial_states(columns)
 
     def with_partial_states(self, columns: Mapping[Variable, int]) -> _Rows:
         """Return the equations with ``den z = x``, and ``num z`` for y, in place of every ``den y = num x``.
@@ -423,7 +423,7 @@ class _Realisation:
         self, keys: Sequence[tuple[int, int]], direct: Sequence[Mapping[int, Vector]]
     ) -> tuple[State, ...]:
         one = FieldElement.number(self.ring, 1)
-        found: list[State] = []
+        states: list[State] = []
         taken: set[str] = set()
         for (column, order), parts in zip(keys, direct, strict=True):
             variable = self.rows.unknowns[column]
@@ -437,8 +437,8 @@ class _Realisation:
             while label in taken:
                 label += "_"
             taken.add(label)
-            found.append(State(label, terms, self._unit(variable, order)))
-        return tuple(found)
+            states.append(State(label, terms, self._unit(variable, order)))
+        return tuple(states)
 
     def _unit(self, variable: Variable, power: int) -> str:
         domains = {n.name: n.domain for n in self.model.nodes}

@@ -91,8 +91,8 @@ def _observable(system: StateSpace, basis: Basis) -> StateSpace:
 
 def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace) -> Basis:
     """Return the least space that holds the given vectors and that a matrix maps into itself."""
-    found = (_at_random_point(start, rows, system, seed) for seed in (0, 1))
-    points = [point for point in found if point is not None]
+    at_points = (_at_random_point(start, rows, system, seed) for seed in (0, 1))
+    points = [point for point in at_points if point is not None]
     dimension = max((len(space) for _, space in points), default=0)
     one = FieldElement.number(system.ring, 1)
     if dimension == system.order:
@@ -108,14 +108,14 @@ def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace)
 
 def _constants(points: Sequence[tuple[int, Mapping[int, Mapping[int, int]]]], ring: Ring) -> Basis | None:
     """Return a basis of small numbers that is the same at all random points, ``None`` when there is none."""
-    found = [
+    reconstructed = [
         {k: {j: _reconstructed(x, prime) for j, x in entries.items()} for k, entries in space.items()}
         for prime, space in points
     ]
-    if not found or any(other != found[0] for other in found[1:]):
+    if not reconstructed or any(other != reconstructed[0] for other in reconstructed[1:]):
         return None
     basis: Basis = {}
-    for pivot, row in found[0].items():
+    for pivot, row in reconstructed[0].items():
         basis[pivot] = {}
         for j, fraction in row.items():
             if fraction is None:
@@ -212,12 +212,12 @@ def _at_random_point(
     if point is None:
         return None
     step = _residues(rows, n, point, system)
-    found = _independent(_residues(start, n, point, system))
+    basis = _independent(_residues(start, n, point, system))
     length = 1
-    while found.nrows() and length < n:
-        found = _independent(_stacked(found, found * step))
+    while basis.nrows() and length < n:
+        basis = _independent(_stacked(basis, basis * step))
         step, length = step * step, 2 * length
-    table = [[int(x) for x in row] for row in found.tolist()]
+    table = [[int(x) for x in row] for row in basis.tolist()]
     vectors = [{j: x for j, x in enumerate(row) if x} for row in table]
     return point[0], {min(vector): vector for vector in vectors}
 

@@ -177,14 +177,14 @@ def sampled_state_space(
     rounding = rounding_of(system, values)
 
     def balls(bits: int) -> tuple[arb_mat, ...]:
-        found = []
+        matrices = []
         for _, rows, (height, width) in system.matrices:
             entries = [[arb(0)] * width for _ in range(height)]
             for i, row in enumerate(rows):
                 for j, value in row.items():
                     entries[i][j] = rounding.enclosed(value, bits)
-            found.append(_matrix(entries, width))
-        return tuple(found)
+            matrices.append(_matrix(entries, width))
+        return tuple(matrices)
 
     groups = (system.states, system.inputs, system.outputs)
     states, inputs, outputs = (tuple(x.name for x in group) for group in groups)
@@ -227,9 +227,9 @@ def sampled(
     stepped = _stepped if sampling.method == "zoh" else _bilinear
     for bits in precisions(FIRST_BITS, LAST_BITS):
         with precision(bits):
-            found = [_doubles(m) for m in stepped(balls(bits), sampling, delay, whole)]
-        known = [array for array in found if array is not None]
-        if len(known) == len(found):
+            doubles = [_doubles(m) for m in stepped(balls(bits), sampling, delay, whole)]
+        known = [array for array in doubles if array is not None]
+        if len(known) == len(doubles):
             past = [f"{name}_{i}_before" for i in range(whole, 0, -1) for name in inputs]
             arrays = Arrays(known[0], known[1], known[2], known[3])
             every = (*states, *past)
@@ -320,7 +320,7 @@ def _matrix(rows: Sequence[Sequence[arb]], columns: int) -> arb_mat:
 def _doubles(matrix: arb_mat) -> npt.NDArray[np.float64] | None:
     """Return the nearest double of every entry; None where more precision is needed, or nothing fits."""
     rows, columns = matrix.nrows(), matrix.ncols()
-    found = np.zeros((rows, columns))
+    doubles = np.zeros((rows, columns))
     entries = [(i, j, matrix[i, j]) for i in range(rows) for j in range(columns)]
     largest = max((x.abs_upper() for _, _, x in entries), default=arb(0))
     nothing = largest * arb(2) ** -NOTHING_BITS
@@ -332,5 +332,5 @@ def _doubles(matrix: arb_mat) -> npt.NDArray[np.float64] | None:
             low = 0.0
         if not np.isfinite(low):
             return None
-        found[i, j] = low
-    return found
+        doubles[i, j] = low
+    return doubles

@@ -213,18 +213,18 @@ def _has_filters(tf: TransferFunction) -> bool:
 
 def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> list[acb]:
     """Return the values of all forms; that of a large function is not opened."""
-    found = []
+    values = []
     if (closed := _closed(tf)) is not None:
         num, den = _sides(closed, here, known)
-        found.append(num / den)
+        values.append(num / den)
     if tf.is_distributed:
         whole, num, den = _with_kernels(tf, here, known)
-        found += [whole, num / den]
+        values += [whole, num / den]
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
-        found.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
+        values.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
     if not isinstance(tf, TransferFunction) and not tf.is_distributed:
-        found.append(tf.enclosed(current_bits())(here.s()))
-    return found
+        values.append(tf.enclosed(current_bits())(here.s()))
+    return values
 
 
 def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:

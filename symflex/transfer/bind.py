@@ -235,8 +235,8 @@ class BoundTransferFunction:
             values = [evaluate() for _, evaluate in self.constants]
 
             def coefficients(factor: fmpz_mpoly) -> list[arb]:
-                found = coefficients_in_s(factor, self.constant_ring)
-                return [value_at(c, values.__getitem__, arb) for c in found]
+                terms = coefficients_in_s(factor, self.constant_ring)
+                return [value_at(c, values.__getitem__, arb) for c in terms]
 
             factors = tuple((acb_poly(coefficients(f)), e) for f, e in self.ratio.factors)
             return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors)
@@ -515,12 +515,12 @@ def _derived_with_numbers(
     """
     symbolic = [p.name for p in tf.model.parameters if p.name not in names]
     numeric = with_numbers(tf.model, symbolic, dict(values), in_kernels=True)
-    found = derive(assemble(numeric, nested_transfer), tf.output.name, tf.input.name)
-    if found.is_mixed:
+    derived = derive(assemble(numeric, nested_transfer), tf.output.name, tf.input.name)
+    if derived.is_mixed:
         nameless = assemble(numeric, nested_transfer, is_nameless=True)
-        found = derive(nameless, tf.output.name, tf.input.name)
+        derived = derive(nameless, tf.output.name, tf.input.name)
     left = {name: value for name, value in values if name in symbolic}
-    return replace(bind(found, left), values=values, symbolic=tf)
+    return replace(bind(derived, left), values=values, symbolic=tf)
 
 
 def bind_polynomials(

@@ -67,7 +67,7 @@ def derive_all(
     ``most`` refuses distributed systems earlier, whose formulas nobody would read.
     """
     workshop = _CramerQuotients(equations, most)
-    found = tuple(workshop.finish(output, source) for output, source in pairs)
+    derived = tuple(workshop.finish(output, source) for output, source in pairs)
     if not (workshop.is_sure or is_tapered(equations.model)):
         from symflex.transfer.named_coefficients import named_coefficients  # only with beams
 
@@ -75,9 +75,11 @@ def derive_all(
         named, kept = named_coefficients(equations)
         again = assemble(named, nested_transfer)
         other = _CramerQuotients(again, most, equations, kept)
-        found = tuple(min(tf, other.finish(*pair), key=_terms) for tf, pair in zip(found, pairs, strict=True))
-    compare(workshop.solve, [agreement(tf) for tf in found])
-    return found
+        derived = tuple(
+            min(tf, other.finish(*pair), key=_terms) for tf, pair in zip(derived, pairs, strict=True)
+        )
+    compare(workshop.solve, [agreement(tf) for tf in derived])
+    return derived
 
 
 class ClosedDefinitions:

@@ -127,7 +127,7 @@ class DirectSolve:
             unknowns = [solved.unknowns(len(columns) + k) for k in range(len(sources))]
         except UndecidedError:
             raise SingularPointError from None
-        found = {}
+        quotients = {}
         outputs = {row.name: row for row in equations.outputs}
         divisors = {output: number(outputs[output].divisor) for output, _ in pairs}
         for output, source in pairs:
@@ -136,8 +136,8 @@ class DirectSolve:
             for i, c in form.items():
                 if i < len(columns):
                     total = total + c * unknowns[k][i]
-            found[output, source] = total / divisors[output]
-        return Solution(found, solved.determinant, divisors, values)
+            quotients[output, source] = total / divisors[output]
+        return Solution(quotients, solved.determinant, divisors, values)
 
     @cached_property
     def _along(self) -> Mapping[str, Call]:
@@ -211,12 +211,12 @@ class GeneratorValues:
 
     def row(self, form: LinearForm, places: Mapping[Variable, int]) -> dict[int, acb]:
         """Return a linear form by its columns; what belongs to none is left out."""
-        found: dict[int, acb] = {}
+        entries: dict[int, acb] = {}
         for variable, coefficient in form.terms:
             if variable in places:
                 i, c = places[variable], self(coefficient)
-                found[i] = found[i] + c if i in found else c
-        return found
+                entries[i] = entries[i] + c if i in entries else c
+        return entries
 
 
 # ---------------------------------------------------------------------------------------- distributed parts
@@ -292,8 +292,8 @@ class _AlongX:
                 known.setdefault(name, self._function(self.functions[name], along))
             return known[name] if name in known else self.number.values[name]
 
-        found = evaluated(value, named, acb_series([1]))
-        return [found[i] for i in range(current_terms())]
+        expansion = evaluated(value, named, acb_series([1]))
+        return [expansion[i] for i in range(current_terms())]
 
     def _function(self, call: Call, along: acb_series) -> acb_series:
         def named(name: str) -> acb_series:
@@ -329,8 +329,8 @@ def _elementary(name: str, x: acb_series) -> acb_series:
         case "tan":
             return _elementary("sin", x) / _elementary("cos", x)
     function: Callable[[Arithmetic], Arithmetic] = FUNCTIONS[name].evaluate
-    found: acb_series = function(x)
-    return found
+    series: acb_series = function(x)
+    return series
 
 
 def _stepped(

@@ -194,9 +194,9 @@ class KernelReduction:
         for length, multiples in self._multiples:
             angles = [a for a in self.coordinates.angles if a.even.length is length]
             for n in multiples:
-                found = [self._lift(v, angles, n) for v in (ratio, modes)]
-                if found[0] is not None and found[1] is not None:
-                    ratio, modes = found[0], found[1]
+                lifted = [self._lift(v, angles, n) for v in (ratio, modes)]
+                if lifted[0] is not None and lifted[1] is not None:
+                    ratio, modes = lifted[0], lifted[1]
                     longer = {a.even.length: a.even.length * n for a in angles}
                     table = KernelTable(
                         table.dispersions,
@@ -236,14 +236,14 @@ class KernelReduction:
     @cached_property
     def _vanishing(self) -> tuple[fmpz_mpoly, ...]:
         """What vanishes with a wavenumber or where two meet: s, and where foundations balance inertia."""
-        found = [self.ring.context.gen(0)]
+        factors = [self.ring.context.gen(0)]
         for dispersion in self.table.dispersions:
             for meeting in dispersion.meets:
-                found += [f for f, _ in meeting.factors if f not in found and degree_in(f, 0)]
+                factors += [f for f, _ in meeting.factors if f not in factors and degree_in(f, 0)]
             for factor, exponent in dispersion.characteristic[0].factors if dispersion.characteristic else ():
-                if exponent > 0 and degree_in(factor, 0) and factor not in found:
-                    found.append(factor)
-        return tuple(found)
+                if exponent > 0 and degree_in(factor, 0) and factor not in factors:
+                    factors.append(factor)
+        return tuple(factors)
 
     def _shortest(self, value: Factored) -> Factored:
         """Return a value with every factor in normal form, or with pairs of wavenumbers left as they are.
@@ -253,8 +253,8 @@ class KernelReduction:
         pairs = any(d.kind == "pair" for d in self.table.dispersions)
 
         def shortest(factor: fmpz_mpoly) -> Factored:
-            found = [self.normal.reduce(factor, pairs=p) for p in ((False, True) if pairs else (False,))]
-            return min(found, key=lambda value: sum(len(f) - 1 for f, _ in value.factors))
+            reduced = [self.normal.reduce(factor, pairs=p) for p in ((False, True) if pairs else (False,))]
+            return min(reduced, key=lambda value: sum(len(f) - 1 for f, _ in value.factors))
 
         return self.normal.balance(value.map_factors(self.ring, shortest))
 
@@ -515,7 +515,7 @@ def _multiples(
     table: KernelTable, coordinates: Sequence[Sequence[Sequence[int]]]
 ) -> tuple[tuple[Factored, tuple[int, ...]], ...]:
     """Return per base length the multiples of it alone that were asked for, longest first."""
-    found: list[tuple[Factored, tuple[int, ...]]] = []
+    products: list[tuple[Factored, tuple[int, ...]]] = []
     for dispersion, wanted in zip(table.dispersions, coordinates, strict=False):
         if dispersion.kind == "general" or not dispersion.shift.is_zero:
             continue
@@ -523,8 +523,8 @@ def _multiples(
         for i, length in enumerate(lengths):
             alone = {abs(c[i]) for c in wanted if not any(x for j, x in enumerate(c) if j != i)}
             if multiples := sorted((n for n in alone if n > 1), reverse=True):
-                found.append((length, tuple(multiples)))
-    return tuple(found)
+                products.append((length, tuple(multiples)))
+    return tuple(products)
 
 
 def _solve_relations(
@@ -551,16 +551,16 @@ def _solve_in_many_ways(
     """
     if not any(d.kind == "pair" for d in table.dispersions):
         return []
-    found: dict[tuple[str, ...], tuple[tuple[str, Factored], ...]] = {}
+    solutions: dict[tuple[str, ...], tuple[tuple[str, Factored], ...]] = {}
     relations = [r for d in table.dispersions for r in _relations(ring, d)]
     for first in (None, *parameters):
         for order in (relations, relations[::-1]):
             solved = _solve_in_turn(ring, order, parameters, first)
             if len(solved) == len(relations):
-                found.setdefault(tuple(name for name, _ in solved), solved)
-        if len(found) > WAYS:
+                solutions.setdefault(tuple(name for name, _ in solved), solved)
+        if len(solutions) > WAYS:
             break
-    return list(found.values())
+    return list(solutions.values())
 
 
 def _length(solved: Sequence[tuple[str, Factored]]) -> tuple[int, int]:
@@ -579,7 +579,7 @@ def _solve_in_turn(
         polynomial = _branch(_solved_for(relation, solved), wavenumbers)
         if polynomial is None:
             continue
-        found: list[tuple[int, int, int, str, Factored]] = []
+        candidates: list[tuple[int, int, int, str, Factored]] = []
         # s comes last: it is everywhere, but better than nothing where a diffusivity enters squared.
         for name in (*parameters, LAPLACE):
             index = ring.index[name]
@@ -593,9 +593,9 @@ def _solve_in_turn(
                 divisors = [f for _, earlier in solved for f, e in earlier.factors if e < 0]
                 if not any(_substitute(ring, name, formula, f).is_zero for f in divisors):
                     rank = 2 if name == LAPLACE else int(name != preferred)
-                    found.append((rank, len(zero) + len(slope), len(zero), name, formula))
-        if found:
-            *_, name, formula = min(found, key=lambda entry: entry[:3])
+                    candidates.append((rank, len(zero) + len(slope), len(zero), name, formula))
+        if candidates:
+            *_, name, formula = min(candidates, key=lambda entry: entry[:3])
             solved.append((name, formula))
     return tuple(solved)
 
@@ -608,13 +608,13 @@ def _branch(value: Factored, wavenumbers: Sequence[str]) -> fmpz_mpoly | None:
     """
     ring = value.ring
     waves = [ring.generator(w) for w in wavenumbers]
-    found = [
+    factors = [
         piece
         for factor in value.numerator().factors
         for piece, _ in irreducible_factors(factor[0])[1]
         if piece not in waves and not ring.used_in([piece]).isdisjoint(wavenumbers)
     ]
-    return found[0] if len(found) == 1 else None
+    return factors[0] if len(factors) == 1 else None
 
 
 def _solved_for(value: Factored, solved: Sequence[tuple[str, Factored]]) -> Factored:
@@ -627,15 +627,15 @@ def _solved_for(value: Factored, solved: Sequence[tuple[str, Factored]]) -> Fact
 def _relations(ring: Ring, dispersion: Dispersion) -> list[tuple[Sequence[str], Factored]]:
     """Return what is zero by the definition of the wavenumbers, which stand beside it."""
     waves = [Factored.generator(ring, w) for w in dispersion.wavenumbers]
-    c, found = dispersion.characteristic, list[Factored]()
+    c, relations = dispersion.characteristic, list[Factored]()
     match dispersion.kind:
         case "wave":
-            found = [waves[0] ** 2 + c[0]]
+            relations = [waves[0] ** 2 + c[0]]
         case "bending":
-            found = [waves[0] ** 4 * 4 - c[0]]
+            relations = [waves[0] ** 4 * 4 - c[0]]
         case "pair":
-            found = [waves[0] ** 2 + waves[1] ** 2 + c[2], (waves[0] * waves[1]) ** 2 - c[0]]
-    return [(dispersion.wavenumbers, value) for value in found]
+            relations = [waves[0] ** 2 + waves[1] ** 2 + c[2], (waves[0] * waves[1]) ** 2 - c[0]]
+    return [(dispersion.wavenumbers, value) for value in relations]
 
 
 def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) -> Factored:
@@ -658,10 +658,10 @@ def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) ->
 
 
 def _powers(base: fmpz_mpoly, highest: int, ring: Ring) -> list[fmpz_mpoly]:
-    found = [ring.constant(1)]
+    powers = [ring.constant(1)]
     for _ in range(highest):
-        found.append(found[-1] * base)
-    return found
+        powers.append(powers[-1] * base)
+    return powers
 
 
 def _too_large() -> BudgetError:
@@ -680,10 +680,10 @@ class _Restorer:
 
     def odd_angles(self, value: Factored) -> set[int]:
         """Return the angles in which numerator or denominator are odd even as a whole."""
-        found: set[int] = set()
+        odd: set[int] = set()
         for _, parity in self._grouped(value):
-            found |= {i for i, p in enumerate(parity) if p}
-        return found
+            odd |= {i for i, p in enumerate(parity) if p}
+        return odd
 
     def _grouped(self, value: Factored) -> list[tuple[Factored, tuple[int, ...]]]:
         """Return the factors, those of odd degree multiplied together, with what parity is left."""

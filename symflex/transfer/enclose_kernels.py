@@ -64,11 +64,13 @@ class KernelValues:
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
         shifts: dict[Dispersion, Value] = {}
         for law in self.table.dispersions:
-            found = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
-            coefficients[law] = found
+            characteristic = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
+            coefficients[law] = characteristic
             if not law.shift.is_zero:
                 shifts[law] = self.value(law.shift, values)
-            values.update(law.roots(found, root) if root else _wavenumbers(law, found, near))
+            values.update(
+                law.roots(characteristic, root) if root else _wavenumbers(law, characteristic, near)
+            )
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
         is_long = isinstance(s, acb_series) and s.prec > PAIR
         roots = {} if is_long else self._roots(coefficients)
@@ -94,8 +96,10 @@ class KernelValues:
         values: dict[str, Value] = {"s": s, **self._numbers}
         for law in self.table.dispersions:
             if law.wavenumbers:
-                found = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
-                values.update(_wavenumbers(law, found, near))
+                characteristic = tuple(
+                    ZERO if c.is_zero else self.value(c, values) for c in law.characteristic
+                )
+                values.update(_wavenumbers(law, characteristic, near))
         return values
 
     @cached_property
@@ -111,15 +115,15 @@ class KernelValues:
 
     def _roots(self, coefficients: Mapping[Dispersion, Sequence[Value]]) -> dict[str, Value]:
         """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""
-        found: dict[str, Value] = {}
+        named: dict[str, Value] = {}
         for number, law in self._laws:
             # Where waves of both directions are alike, roots come in pairs x, -x.
             even = law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
             roots = characteristic_roots(coefficients[law], even=even)
             if roots is None:
                 return {}
-            found.update({_root_name(number, i): root for i, root in enumerate(roots)})
-        return found
+            named.update({_root_name(number, i): root for i, root in enumerate(roots)})
+        return named
 
     def _modal_sum(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial in fundamental functions without the cancellation of what grows fastest."""
@@ -319,11 +323,11 @@ def square_root(x: Value) -> Value:
         root = NOWHERE  # of a ball that holds 0 no branch is analytic
     if isinstance(x, acb):
         return root
-    found = [root]
+    coefficients = [root]
     for n in range(1, x.prec):
-        crossed = sum((found[k] * found[n - k] for k in range(1, n)), acb(0))
-        found.append((x[n] - crossed) / (2 * root))
-    return acb_series(found, x.prec)
+        crossed = sum((coefficients[k] * coefficients[n - k] for k in range(1, n)), acb(0))
+        coefficients.append((x[n] - crossed) / (2 * root))
+    return acb_series(coefficients, x.prec)
 
 
 FINER = 2**30
@@ -365,11 +369,11 @@ def _roots(coefficients: Sequence[Value]) -> list[Value] | None:
     boxes = _isolated(polynomial, slope)
     if boxes is None:
         return None
-    found: list[Value] = []
+    series: list[Value] = []
     for root in boxes:
         terms = [c[1] * root**i for i, c in enumerate(coefficients) if isinstance(c, acb_series)]
-        found.append(acb_series([root, -sum(terms, acb(0)) / slope(root)], 2) if terms else root)
-    return found
+        series.append(acb_series([root, -sum(terms, acb(0)) / slope(root)], 2) if terms else root)
+    return series
 
 
 def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:

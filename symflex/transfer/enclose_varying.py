@@ -85,13 +85,13 @@ class VaryingMatrices:
             expansion = self._about(minor.matrix, ball, terms)
         if expansion is None:
             return NOWHERE if isinstance(s, acb) else acb_series([NOWHERE] * terms, terms)
-        found = expansion.series(minor.rows, minor.columns, centre, terms)
+        terms_of_minor = expansion.series(minor.rows, minor.columns, centre, terms)
         if isinstance(u, acb):
-            total: Value = found[0]
+            total: Value = terms_of_minor[0]
         else:
             step = u - at_centre(u)
-            total = acb_series([found[-1]], terms)
-            for c in reversed(found[:-1]):
+            total = acb_series([terms_of_minor[-1]], terms)
+            for c in reversed(terms_of_minor[:-1]):
                 total = total * step + c
         if law.weights is not None and law.divisors:
             scaled = sum(law.weights[i] for i in minor.rows) - sum(law.weights[j] for j in minor.columns)

@@ -197,8 +197,8 @@ class DeterminantsOnLine:
         closure = determinants.system.closure
         base = [known.get(name) for name in closure.base.names]
         for name, polynomial in closure.sums:
-            if (found := _composed(polynomial, base)) is not None:
-                known[name] = found
+            if (composed := _composed(polynomial, base)) is not None:
+                known[name] = composed
         self._images = [known.get(name) for name in closure.ring.names]
         reduced, rows = determinants.reduced, determinants.minors.rows
         entries = [self._row(row) for row in (*rows, *reduced.outputs)]
@@ -251,16 +251,16 @@ class DeterminantsOnLine:
             return None
         image, degree = LINE.constant(int(value.unit)), 0
         for factor, exponent in value.factors:
-            found = _composed(factor, self._plain_images)
-            if found is None:
+            composed = _composed(factor, self._plain_images)
+            if composed is None:
                 return None
-            image, degree = image * found[0] ** exponent, degree + found[1] * exponent
+            image, degree = image * composed[0] ** exponent, degree + composed[1] * exponent
         return image, degree
 
     def _row(self, row: Mapping[int, fmpz_mpoly]) -> dict[int, Image] | None:
-        found = {column: _composed(entry, self._images) for column, entry in row.items()}
-        kept = {column: image for column, image in found.items() if image is not None}
-        return kept if len(kept) == len(found) else None
+        images = {column: _composed(entry, self._images) for column, entry in row.items()}
+        kept = {column: image for column, image in images.items() if image is not None}
+        return kept if len(kept) == len(images) else None
 
 
 def _composed(polynomial: fmpz_mpoly, images: Sequence[Image | None]) -> Image | None:

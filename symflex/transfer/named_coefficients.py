@@ -96,9 +96,9 @@ def named_coefficients(equations: Equations) -> tuple[Model, tuple[str, ...]]:
     naming = _Naming(varying, frozenset(constants - varying))
     elements = tuple(naming.element(use, laws.get(use.name)) for use in model.elements)
     fields = tuple(naming.field(problem, laws[problem.name]) for problem in model.fields)
-    found = tuple(naming.found.values())
-    named = replace(model, elements=elements, fields=fields, definitions=(*model.definitions, *found))
-    return named, tuple(d.name for d in found)
+    coefficients = tuple(naming.found.values())
+    named = replace(model, elements=elements, fields=fields, definitions=(*model.definitions, *coefficients))
+    return named, tuple(d.name for d in coefficients)
 
 
 def in_order_of_use(model: Model) -> tuple[str, ...]:
@@ -115,8 +115,8 @@ def in_order_of_use(model: Model) -> tuple[str, ...]:
     }
     for name, own in inside.items():
         inside[name] = dict.fromkeys(n for each in own for n in inside.get(each, {each: None}))
-    found = (n.name for e in used if e is not None for n in names(e) if isinstance(n, Name))
-    ordered = dict.fromkeys(n for each in found for n in inside.get(each, (each,)))
+    written = (n.name for e in used if e is not None for n in names(e) if isinstance(n, Name))
+    ordered = dict.fromkeys(n for each in written for n in inside.get(each, (each,)))
     declared = {p.name: None for p in model.parameters}
     return tuple(n for n in {**ordered, **declared} if n in declared)
 
@@ -124,10 +124,10 @@ def in_order_of_use(model: Model) -> tuple[str, ...]:
 def _laws(equations: Equations) -> dict[str, Hashable]:
     """Return what is equal of line elements and fields with equal equations, however they are written."""
     expansion, propagation = Expansion.of(equations), equations.propagation
-    found: dict[str, Hashable] = {}
+    laws: dict[str, Hashable] = {}
     if propagation is None:
-        return found
+        return laws
     for part in equations.continua:
         entries = map(propagation.embed, chain(*part.system.matrix, *part.system.loads))
-        found[part.name] = (part.kind, part.system.states, *(text(expansion.expanded(x)) for x in entries))
-    return found
+        laws[part.name] = (part.kind, part.system.states, *(text(expansion.expanded(x)) for x in entries))
+    return laws

@@ -173,12 +173,12 @@ class NestedTransferFunction:
     def operations(self) -> tuple[Operation, ...]:
         """The steps with their operands, and with the steps that nothing needs after each."""
         program, kept = self.program, set(self._roots)
-        found: list[Operation] = []
+        steps: list[Operation] = []
         for i in reversed(self.steps):
             gone = tuple(x for x in dict.fromkeys(program.inner(i)) if x not in kept)
             kept.update(gone)
-            found.append((program.kinds[i], i, program.operands[i], gone))
-        return tuple(reversed(found))
+            steps.append((program.kinds[i], i, program.operands[i], gone))
+        return tuple(reversed(steps))
 
     @property
     def size(self) -> int:
@@ -223,17 +223,17 @@ def derive_nested(
     cut = None if equations.propagation is None else CutModel(solve)
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
-    found = eliminate(equations, pairs)
+    elimination = eliminate(equations, pairs)
     outputs, inputs = {o.name: o for o in model.outputs}, {i.name: i for i in model.inputs}
     known = dict(model.quotients)
     made = []
-    for (output, source), (num, den) in zip(pairs, found.quotients, strict=True):
+    for (output, source), (num, den) in zip(pairs, elimination.quotients, strict=True):
         ends = outputs[output], inputs[source]
         dimension = known.get((output, source))
         made.append(
             NestedTransferFunction(
                 *ends,
-                found.program,
+                elimination.program,
                 num,
                 den,
                 name_quantity(*ends, dimension),
@@ -241,7 +241,7 @@ def derive_nested(
                 equations.constants,
                 model,
                 None if equations.propagation is None else equations,
-                found.waves,
+                elimination.waves,
                 cut,
             )
         )
@@ -284,11 +284,11 @@ class BoundNested:
     def _enclosures(self) -> dict[str, Callable[[], arb]]:
         """Per generator other than s, how to enclose it at the current precision."""
         values = {name: enclosure(value) for name, value in self.values}
-        found = {**values, "pi": arb.pi}
+        enclosures = {**values, "pi": arb.pi}
         for constant in self.source.constants:
             if constant.generator in self.source.generators:
-                found[constant.generator] = later(constant.expression, values)
-        return found
+                enclosures[constant.generator] = later(constant.expression, values)
+        return enclosures
 
     def enclosed(self, bits: int) -> EnclosedNested:
         """Return the function, evaluated in balls at the given precision."""
@@ -435,15 +435,15 @@ def _values(
     """Return numerator and denominator in whatever arithmetic the generators' values have."""
     names, wave_of = tf.program.names, tf.wave_of
     values: dict[int, Any] = {}
-    found: dict[Waves, tuple[Value, ...]] = {}
+    functions: dict[Waves, tuple[Value, ...]] = {}
 
     def generator(position: int) -> Any:  # noqa: ANN401 (whatever the values are)
         if position not in wave_of:
             return known[names[position]]
         waves, place = wave_of[position]
-        if waves not in found:
-            found[waves] = _functions(waves, [_complex(values[i]) for i in waves.arguments])
-        return found[waves][place]
+        if waves not in functions:
+            functions[waves] = _functions(waves, [_complex(values[i]) for i in waves.arguments])
+        return functions[waves][place]
 
     tf.program.values(tf.operations, name=generator, number=number, quotient=_quotient, known=values)
     return values[tf.num], values[tf.den]

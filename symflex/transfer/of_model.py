@@ -134,22 +134,22 @@ def _derive_expanded(
     model: Model, wanted: Sequence[tuple[str, str]], most: Terms | None = None
 ) -> tuple[TransferFunction, ...]:
     """Return what :func:`derive_all` does, of a model known not to be too large."""
-    found = derive_from(assemble(model), wanted, most)
+    derived = derive_from(assemble(model), wanted, most)
     if model.imaginary:
-        found[0].kernels.without_tapers(*LOSSY_TAPER)
-    mixed = [i for i, tf in enumerate(found) if tf.is_mixed or is_degenerate(tf)]
+        derived[0].kernels.without_tapers(*LOSSY_TAPER)
+    mixed = [i for i, tf in enumerate(derived) if tf.is_mixed or is_degenerate(tf)]
     if not mixed:
-        return found
+        return derived
     nameless = equations_room.assemble(model, nested_transfer, is_nameless=True)
     again = dict(zip(mixed, derive_from(nameless, [wanted[i] for i in mixed], most), strict=True))
-    return tuple(again.get(i, tf) for i, tf in enumerate(found))
+    return tuple(again.get(i, tf) for i, tf in enumerate(derived))
 
 
 def followed_along_x(tf: TransferFunction) -> TransferFunction:
     """Return a function of a model with members that taper, its uniform ones followed along x too."""
     equations = equations_room.assemble(tf.model, nested_transfer, is_followed=True)
-    (found,) = derive_from(equations, [(tf.output.name, tf.input.name)])
-    return found
+    (derived,) = derive_from(equations, [(tf.output.name, tf.input.name)])
+    return derived
 
 
 def assemble_sparse(model: Model) -> Equations:
@@ -212,14 +212,14 @@ def derive_as(
     try:
         if solves and not is_tapered(model) and assemble(with_numbers(model, in_kernels=True)).is_split:
             return derive_nested(model, pairs), SPLIT
-        found = _derive_expanded(model, pairs, UNASKED if has_nested else None)
+        derived = _derive_expanded(model, pairs, UNASKED if has_nested else None)
         # Where one beam's motion is another's, the estimate may be far too small.
-        if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:
+        if solves and _may_be_large(model) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
-        if is_read and _may_be_large(model, 1) and (terms := max(map(_terms, found))) > READABLE_TERMS:
+        if is_read and _may_be_large(model, 1) and (terms := max(map(_terms, derived))) > READABLE_TERMS:
             reason = f"in nested form: its formula would have {terms} terms (--representation expanded)"
             return derive_nested(model, pairs), reason
-        return found, ""
+        return derived, ""
     except BudgetError as error:
         spend()
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
@@ -316,34 +316,34 @@ def derive_for_roots(
         return derive_bound(model, pairs)
     is_small = not _may_be_large(model, 1)
     if is_small:
-        found = _expanded_unless_large(model, pairs, None)
-        if found is not None:
-            return found if is_named else _with_wavenumbers(model, pairs, found)
+        expanded = _expanded_unless_large(model, pairs, None)
+        if expanded is not None:
+            return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
     # Modes with loss factors are found in the expanded form alone.
     is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_small and _expanded_terms(equations, pairs[0]) <= most:
-        found = _expanded_unless_large(model, pairs, UNASKED)
-        if found is not None:
-            return found
+        expanded = _expanded_unless_large(model, pairs, UNASKED)
+        if expanded is not None:
+            return expanded
     return tuple(bind_nested(tf) for tf in nested_form.derive_nested(equations, pairs))
 
 
 def _with_wavenumbers(
-    model: Model, pairs: Sequence[tuple[str, str]], found: tuple[BoundTransferFunction, ...]
+    model: Model, pairs: Sequence[tuple[str, str]], expanded: tuple[BoundTransferFunction, ...]
 ) -> tuple[BoundTransferFunction, ...]:
     """Return functions as they are, or with numbers where only so all wavenumbers have formulas.
 
     Beams in a layer whose stiffnesses are as their masses by value alone have a law that splits.
     """
-    if all(_is_named(bound.kernels) for bound in found):
-        return found
+    if all(_is_named(bound.kernels) for bound in expanded):
+        return expanded
     numbers = with_numbers(model, in_kernels=True)
     propagation = assemble(numbers).propagation
     if propagation is None or not _is_named(propagation.table):
-        return found
-    return _expanded_unless_large(numbers, pairs, None) or found
+        return expanded
+    return _expanded_unless_large(numbers, pairs, None) or expanded
 
 
 def _is_named(table: KernelTable) -> bool:

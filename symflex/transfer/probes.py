@@ -139,37 +139,37 @@ class Probes:
         """Return s, pi and every parameter at some of the points."""
         with precision(bits):
             points = [self.points[i] for i in chosen]
-            found = {
+            values = {
                 LAPLACE: [acb(ball(re), ball(im)) for _, (re, im) in points],
                 "pi": [acb(arb.pi())] * len(points),
             }
             for parameter in self._tf.model.parameters:
-                found[parameter.name] = [acb(enclosure(s.values[parameter.name])()) for s, _ in points]
-            return found
+                values[parameter.name] = [acb(enclosure(s.values[parameter.name])()) for s, _ in points]
+            return values
 
     def values(self, bits: int, chosen: Sequence[int] | None = None) -> list[acb]:
         """Return balls around the function's values at some of the points, all by default."""
         wanted = range(len(self.points)) if chosen is None else chosen
         missing = [i for i in wanted if (i, bits) not in self._known]
-        found = self.values_of(None, bits, missing)
-        self._known.update(zip(((i, bits) for i in missing), found, strict=True))
+        missing_values = self.values_of(None, bits, missing)
+        self._known.update(zip(((i, bits) for i in missing), missing_values, strict=True))
         return [self._known[i, bits] for i in wanted]
 
     def values_of(self, value: Factored | None, bits: int, chosen: Sequence[int]) -> list[acb]:
         """Return balls around any function over the ring of the transfer function; None is that itself."""
         enclosed: dict[int, Callable[[acb], acb]] = {}
-        found = []
+        values = []
         for i in chosen:
             setting, (re, im) = self.points[i]
             with precision(bits):
                 function = enclosed.get(id(setting)) or setting.evaluate(value, bits)
                 enclosed[id(setting)] = function
-                found.append(function(acb(ball(re), ball(im))))
-        return found
+                values.append(function(acb(ball(re), ball(im))))
+        return values
 
     def along(self, value: Factored, x: Sequence[acb], bits: int, chosen: Sequence[int]) -> list[acb]:
         """Return balls around a function of s and the coordinate along a member, each point at its own x."""
-        found = []
+        values = []
         for i, place in zip(chosen, x, strict=True):
             setting, (re, im) = self.points[i]
             assert setting.bound is not None
@@ -181,8 +181,8 @@ class Probes:
                     own = {n: [acb(enclosure(v)())] for n, v in setting.values.items()}
                     own |= {COORDINATE: [place], "pi": [acb(arb.pi())]}
                     known[name] = principal_values(function, 1, own.__getitem__)[0]
-                found.append(evaluated(value, known.__getitem__, acb(1)))
-        return found
+                values.append(evaluated(value, known.__getitem__, acb(1)))
+        return values
 
 
 def _is_large(tf: AnyTransferFunction) -> bool:
@@ -249,17 +249,17 @@ class _Draw:
             size = scale * Fraction(self.random.randrange(PARTS // 2, 2 * PARTS), PARTS)
             points.append((size * Fraction(re), size * Fraction(im)))
         try:
-            found = self._evaluator(values)
-            if found is None:
+            evaluator = self._evaluator(values)
+            if evaluator is None:
                 return None
             # Where a constant is not real, or a coefficient not analytic along x, this says so.
             with precision(SOLVED_BITS if self.is_solved else FIRST_BITS):
-                function = found[0](None, current_bits())
+                function = evaluator[0](None, current_bits())
                 if self.is_solved:
                     function(acb(*map(ball, points[0])))
         except ModelError:
             return None
-        return ProbeSetting(values, tuple(points), *found)
+        return ProbeSetting(values, tuple(points), *evaluator)
 
     def _evaluator(self, values: Values) -> tuple[Evaluate, BoundTransferFunction | None] | None:
         tf, exact = self.tf, tuple(values.items())
@@ -298,8 +298,8 @@ def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:
                 key = bits, str(s)
                 if key not in known:
                     known[key] = _solved(bound, s) if is_solved else _arbitrary(bound, s)
-                found = {**kernels.at(s), **known[key]}
-                return at_centre(kernels.value(bound.ratio if value is None else value, found))
+                generators = {**kernels.at(s), **known[key]}
+                return at_centre(kernels.value(bound.ratio if value is None else value, generators))
 
         return at
 
@@ -319,15 +319,15 @@ def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
 
     values = {name: enclosure(value) for name, value in bound.values}
     minors = MinorSums(bound.ratio.ring, bound.kernels)
-    found = {}
+    entries = {}
     for law in VaryingMatrices(minors, dict(bound.constants), bound.along, values).laws:
         expansion = law.expanded_about(s, (abs(s) * TINY).upper(), 1)
         for kernel in bound.kernels.kernels_of(law.law):
             if kernel.length == law.length:
                 i, j = divmod(kernel.order, law.law.order)
                 entry = acb("nan") if expansion is None else expansion.series((i,), (j,), acb(0))[0]
-                found[kernel.generator] = entry
-    return found
+                entries[kernel.generator] = entry
+    return entries
 
 
 def _lumped(tf: TransferFunction, values: Values) -> Evaluate:

@@ -60,9 +60,9 @@ class ClosedForm:
     @cached_property
     def length(self) -> int | None:
         """How many terms both have at most when their sums are opened; None when no quick bound is known."""
-        found = [self.closure.opened_length(p) for p in (self.num, self.den)]
-        known = [n for n in found if n is not None]
-        return sum(known) if len(known) == len(found) else None
+        lengths = [self.closure.opened_length(p) for p in (self.num, self.den)]
+        known = [n for n in lengths if n is not None]
+        return sum(known) if len(known) == len(lengths) else None
 
     @property
     def is_large(self) -> bool:
@@ -238,9 +238,9 @@ class TransferFunction:
         """Return the parameters that polynomials over the function's ring hold."""
         return parameters_named(self.model, self.constants, self.ring.used_in(polynomials))
 
-    def parameters_below(self, found: frozenset[str]) -> tuple[ModelParameter, ...]:
+    def parameters_below(self, names_above: frozenset[str]) -> tuple[ModelParameter, ...]:
         """Return the parameters among names, in definitions among them, and in definitions of these."""
-        used = set(found)
+        used = set(names_above)
         for name, value in reversed(self.definitions):
             if name in used:
                 used |= value.ring.used_in(f for f, _ in value.factors)

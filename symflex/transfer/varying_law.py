@@ -99,17 +99,17 @@ class PartedLaw:
             return None
         # An entry of row i and column j is then times divisor^(w_j - w_i): that has to make it a power of u.
         apart = [(i, j, below - power) for i, j, power, below in self.places]
-        found: dict[int, int] = {}
+        by_state: dict[int, int] = {}
         for first in range(self.law.order):
-            pending = [] if first in found else [(first, 0)]
+            pending = [] if first in by_state else [(first, 0)]
             while pending:
                 state, weight = pending.pop()
-                if found.setdefault(state, weight) != weight:
+                if by_state.setdefault(state, weight) != weight:
                     return None
                 more = [(j, weight + n) for i, j, n in apart if i == state]
                 more += [(i, weight - n) for i, j, n in apart if j == state]
-                pending += [(k, w) for k, w in more if found.get(k) != w]
-        return tuple(found[i] for i in range(self.law.order))
+                pending += [(k, w) for k, w in more if by_state.get(k) != w]
+        return tuple(by_state[i] for i in range(self.law.order))
 
     @cached_property
     def step(self) -> int:
@@ -192,13 +192,13 @@ class BoundLaw(PartedLaw):
 
     def rate(self, s: Value) -> Value:
         """Return u, of which A is a polynomial once states are scaled by their weights."""
-        found: Value = raised(s, self.step) * raised(self.divisor(s), -1)
-        return found
+        rate: Value = raised(s, self.step) * raised(self.divisor(s), -1)
+        return rate
 
     def divisor(self, s: Value) -> Value:
         """Return what states are scaled by powers of."""
-        found: Value = self.value(self.divisors[0], {}, s) if self.divisors else s * 0 + 1
-        return found
+        divisor: Value = self.value(self.divisors[0], {}, s) if self.divisors else s * 0 + 1
+        return divisor
 
     def expanded(self, largest: arb, bits: int) -> PowerExpansion:
         """Return the fundamental matrix in powers of u, for abs(u) up to the largest.
@@ -370,16 +370,16 @@ class _InPowers:
         return self.law.ends()
 
     def series(self, x: arb, terms: int) -> list[Coefficients]:
-        found: list[Coefficients] = [{}]
+        coefficients: list[Coefficients] = [{}]
         with series_terms(terms):
             along = self.law.along(arb_series([x, 1], terms))
             for place, parts in self.law.summands.items():
                 for t in parts:
                     order = t.power // self.step
-                    found += [{} for _ in range(order + 1 - len(found))]
+                    coefficients += [{} for _ in range(order + 1 - len(coefficients))]
                     own = self.law.shifted(place, self.law.value(t.along, along).coeffs(), terms)
-                    found[order][place] = found[order].get(place, arb_poly([])) + own
-        return found
+                    coefficients[order][place] = coefficients[order].get(place, arb_poly([])) + own
+        return coefficients
 
     def parts(self, x: arb) -> list[RationalPart] | None:
         step = self.law.step
@@ -418,7 +418,7 @@ class _AboutMiddle:
         return self.law.ends() if self.within is None else self.within
 
     def series(self, x: arb, terms: int) -> list[Coefficients]:
-        found: list[Coefficients] = [{} for _ in range(self.orders)]
+        coefficients: list[Coefficients] = [{} for _ in range(self.orders)]
         with series_terms(terms):
             along = self.law.along(arb_series([x, 1], terms))
             parts = [
@@ -428,8 +428,8 @@ class _AboutMiddle:
             ]
         for place, t, coefficient in parts:
             for order, c in self._rates(t):
-                found[order][place] = found[order].get(place, acb_poly([])) + coefficient * c
-        return found
+                coefficients[order][place] = coefficients[order].get(place, acb_poly([])) + coefficient * c
+        return coefficients
 
     def parts(self, x: arb) -> list[RationalPart] | None:
         return self.law.rational_parts(x, self._rates)

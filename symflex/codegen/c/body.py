@@ -100,9 +100,9 @@ def _roots(s: Term, factor: tree.RootFactor) -> Term:
     s = complex_term(s)
     if not factor.is_pair:
         return _call("cx_mirrored", Kind.COMPLEX, s, *re)
-    found = _call("cx_pair", Kind.COMPLEX, s, *im, *re)
+    term = _call("cx_pair", Kind.COMPLEX, s, *im, *re)
     minus = [Term(repr(-x), Kind.REAL) for x in factor.re]
-    return product(found, _call("cx_pair", Kind.COMPLEX, s, *im, *minus)) if factor.is_mirrored else found
+    return product(term, _call("cx_pair", Kind.COMPLEX, s, *im, *minus)) if factor.is_mirrored else term
 
 
 def _infix(x: Term, operator: str, y: Term, kind: Kind) -> Term:
@@ -172,8 +172,8 @@ def product(x: Term, y: Term) -> Term:
         return _call(_PRODUCTS[first.kind], Kind.COMPLEX, first, second)
     if x.kind is not y.kind:
         return _infix(x, "*", y, Kind.IMAGINARY)
-    found = _infix(x, "*", y, Kind.REAL)
-    return negative(found) if x.kind is Kind.IMAGINARY else found
+    term = _infix(x, "*", y, Kind.REAL)
+    return negative(term) if x.kind is Kind.IMAGINARY else term
 
 
 def quotient(x: Term, y: Term) -> Term:
@@ -182,8 +182,8 @@ def quotient(x: Term, y: Term) -> Term:
         return _call("cx_div", Kind.COMPLEX, complex_term(x), y)
     if x.kind is Kind.COMPLEX:
         return _call("cx_over" if y.kind is Kind.REAL else "cx_under", Kind.COMPLEX, x, y)
-    found = _infix(x, "/", y, Kind.REAL if x.kind is y.kind else Kind.IMAGINARY)
-    return negative(found) if (x.kind, y.kind) == (Kind.REAL, Kind.IMAGINARY) else found
+    term = _infix(x, "/", y, Kind.REAL if x.kind is y.kind else Kind.IMAGINARY)
+    return negative(term) if (x.kind, y.kind) == (Kind.REAL, Kind.IMAGINARY) else term
 
 
 def _power(base: Term, exponent: int) -> Term:
@@ -326,15 +326,15 @@ class Body:
 
     def name(self, wanted: str) -> str:
         """Return an identifier that nothing else in the function has."""
-        found = wanted
+        name = wanted
         if not _NUMBERED.fullmatch(wanted):
-            found = identifiers({"": wanted}, self._taken)[""]
+            name = identifiers({"": wanted}, self._taken)[""]
         elif wanted in self._taken:
             stem, _, number = wanted.partition("_")
             others = (f"{stem}_{n}" for n in count(int(number)))
-            found = next(other for other in others if other not in self._taken)
-        self._taken.add(found)
-        return found
+            name = next(other for other in others if other not in self._taken)
+        self._taken.add(name)
+        return name
 
     @property
     def in_lanes(self) -> bool:
@@ -392,9 +392,9 @@ class Body:
         terms = [complex_term(self.term(c)) for c in node.coefficients]
         given, order = self.name("coefficients"), len(terms)
         self.say(f"const cx {given}[{order}] =", f"{{{', '.join(t.text for t in terms)}}}")
-        found = self.name(wanted)
-        self.add(f"cx {found}[{order}];", f"cx_series({given}, {order}, {node.terms}, {found});")
-        return Term(found, Kind.COMPLEX, any(t.varies for t in terms))
+        array = self.name(wanted)
+        self.add(f"cx {array}[{order}];", f"cx_series({given}, {order}, {node.terms}, {array});")
+        return Term(array, Kind.COMPLEX, any(t.varies for t in terms))
 
     # ---------------------------------------------------------------------------------------- expressions
 

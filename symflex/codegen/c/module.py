@@ -49,22 +49,22 @@ def c_files(contents: Contents) -> Export:
 
 def prefix_of(name: str | None) -> str:
     """Return what all public names begin with."""
-    found = identifiers({"": name or "model"}, KEYWORDS)[""]
+    prefix = identifiers({"": name or "model"}, KEYWORDS)[""]
     # Private functions are called value_of_... and piece_0_of_...
-    return f"{found}_" if found.endswith("_of") else found
+    return f"{prefix}_" if prefix.endswith("_of") else prefix
 
 
 def _function_names(wanted: Mapping[str, str]) -> dict[str, str]:
     """Return different identifiers that stay so when ``_freq`` is appended to some of them."""
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     taken: set[str] = set()
     for key, text in identifiers(wanted, RESERVED).items():
         name = text
         while name in taken or f"{name}_freq" in taken:
             name += "_"
-        found[key] = name
+        names[key] = name
         taken |= {name, f"{name}_freq"}
-    return found
+    return names
 
 
 def comment(lines: Sequence[str]) -> list[str]:

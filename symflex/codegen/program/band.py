@@ -195,8 +195,8 @@ class BandForm:
     @property
     def centers_hz(self) -> list[float]:
         """The frequencies of poles and zeros [Hz]: by their imaginary parts, and by their sizes."""
-        found = [(r.im[0], sqrt(r.re[0] ** 2 + r.im[0] ** 2)) for r in (*self.zeros, *self.poles)]
-        return sorted({x / tau for pair in found for x in pair if x})
+        centers = [(r.im[0], sqrt(r.re[0] ** 2 + r.im[0] ** 2)) for r in (*self.zeros, *self.poles)]
+        return sorted({x / tau for pair in centers for x in pair if x})
 
     def sentences(self) -> tuple[str, ...]:
         """Return what a docstring says of it, in paragraphs."""
@@ -294,17 +294,17 @@ def band_form(values: EnclosedValues, up_to: Fraction | None = None) -> BandForm
     Raises ModelError: SF910 where it is not.
     """
     bound = values.bound
-    found, end = _located(bound, up_to)
-    far = found.region.high if isinstance(found.region, Band) else end
+    located, end = _located(bound, up_to)
+    far = located.region.high if isinstance(located.region, Band) else end
     for _ in range(ROUNDS):
-        made = _fitted(values, found, end)
+        made = _fitted(values, located, end)
         if made is not None:
             return made
-        if isinstance(found.region, Everything):
+        if isinstance(located.region, Everything):
             break
         far *= FURTHER
-        found = locate(bound, Band(Fraction(0), far), DIGITS)
-    reason = found.certificate.reason or "what remains after dividing by its poles and zeros is not smooth"
+        located = locate(bound, Band(Fraction(0), far), DIGITS)
+    reason = located.certificate.reason or "what remains after dividing by its poles and zeros is not smooth"
     message = f"{bound.name} has no band form up to {float(end):.4g} Hz: {reason}"
     raise ModelError(Diagnostic("SF910", message, None, "ask for a lower --up-to, or export it to numpy"))
 
@@ -319,17 +319,17 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
     if up_to is not None:
         return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to
     modes = analysis.modes or DEFAULT_MODES
-    found = locate(bound, Modes(modes + BEYOND), DIGITS)
-    poles, zeros = ([root.frequency_hz() for root in modes_of(x)] for x in (found.poles, found.zeros))
+    located = locate(bound, Modes(modes + BEYOND), DIGITS)
+    poles, zeros = ([root.frequency_hz() for root in modes_of(x)] for x in (located.poles, located.zeros))
     # Where no wave is reflected there may be few poles, and zeros without end.
     told = poles if len(poles) > modes else zeros
     if len(told) <= modes:
-        return found, LUMPED_END
+        return located, LUMPED_END
     # Between two modes, where the function is neither large nor small.
     end = Fraction(f"{sqrt(told[modes - 1] * told[modes]):.3g}")
     if len(zeros) >= modes + BEYOND and max(zeros) < ENOUGH * end:
-        found = locate(bound, Band(Fraction(0), Fraction(max(told))), DIGITS)
-    return found, end
+        located = locate(bound, Band(Fraction(0), Fraction(max(told))), DIGITS)
+    return located, end
 
 
 def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
@@ -337,7 +337,7 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
 
     What cannot be told from zero is taken for it: values measured show whether it is.
     """
-    found = []
+    split = []
     at_zero = [root for root in roots if root.is_zero or root.enclosure().contains(0)]
     for group in groups([root for root in roots if root not in at_zero]):
         upper = [root for root in group if not root.im < 0]
@@ -346,8 +346,8 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
         for root in right if is_mirrored else upper:
             re = (0.0, 0.0) if root.on_imaginary_axis else _two_doubles(root.re)
             im = (0.0, 0.0) if root.is_real else _two_doubles(root.im)
-            found += [SplitRoot(Laplace(), re, im, is_mirrored)] * root.multiplicity
-    return sum(root.multiplicity for root in at_zero), tuple(found)
+            split += [SplitRoot(Laplace(), re, im, is_mirrored)] * root.multiplicity
+    return sum(root.multiplicity for root in at_zero), tuple(split)
 
 
 def _two_doubles(x: arb) -> tuple[float, float]:
@@ -358,11 +358,11 @@ def _two_doubles(x: arb) -> tuple[float, float]:
         return high, float((x.mid() - arb(high)).mid())
 
 
-def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandForm | None:
+def _fitted(values: EnclosedValues, located: PoleZeroMap, end: Fraction) -> BandForm | None:
     """Return the band form with given roots, None where what they leave is not smooth."""
-    (below, poles), (above, zeros) = _split(found.poles), _split(found.zeros)
-    reason = found.certificate.reason or "; ".join(
-        f"infinitely many accumulate about {complex(hole.re, hole.im):.4g} rad/s" for hole in found.excluded
+    (below, poles), (above, zeros) = _split(located.poles), _split(located.zeros)
+    reason = located.certificate.reason or "; ".join(
+        f"infinitely many accumulate about {complex(hole.re, hole.im):.4g} rad/s" for hole in located.excluded
     )
     made = BandForm(values.bound.name, end, 1.0, above - below, zeros, poles, (), (), reason)
     count = FIRST_NODES
@@ -374,7 +374,7 @@ def _fitted(values: EnclosedValues, found: PoleZeroMap, end: Fraction) -> BandFo
         kept = [_trimmed(part) for part in (even, odd)]
         if all(len(part) <= count - SPARE for part in kept):
             # All roots of a rational function leave nothing but the gain's rounding.
-            if isinstance(found.region, Everything) and not reason:
+            if isinstance(located.region, Everything) and not reason:
                 kept = [(), ()]
             return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
@@ -448,10 +448,10 @@ def _chebyshev(samples: Sequence[arb]) -> list[float]:
     [0.0, 1.0, 0.0, 0.0]
     """
     count = len(samples)
-    found = []
+    coefficients = []
     for k in range(count):
         angles = ((2 * i + 1) * k for i in range(count))
         turns = [(arb.pi() * n / (2 * count)).cos() for n in angles]
         total = sum((y * turn for y, turn in zip(samples, turns, strict=True)), arb(0))
-        found.append(float((total * (1 if k == 0 else 2) / count).mid()))
-    return found
+        coefficients.append(float((total * (1 if k == 0 else 2) / count).mid()))
+    return coefficients

@@ -228,10 +228,10 @@ class _PieceMaker:
         waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
         num, den = (v.filter(lambda f: not self._holds(f, self.waves)) for v in rest)
         plain = num / den * self.tf.num.unit / self.tf.den.unit
-        found = [expand(self.ring, k.expand(), self.families) for k in kernels]
-        sums = self._in_segments([terms for terms, _ in found])
+        expanded = [expand(self.ring, k.expand(), self.families) for k in kernels]
+        sums = self._in_segments([terms for terms, _ in expanded])
         halves = []
-        for side, (own, terms, (_, common)) in enumerate(zip(waves, sums, found, strict=True)):
+        for side, (own, terms, (_, common)) in enumerate(zip(waves, sums, expanded, strict=True)):
             # A common factor without wavenumbers leaves the half; wavenumbers stay, to balance its own.
             free = common.filter(lambda f: not self._holds(f, self.waves | self.kernels)) * common.unit
             plain = plain * free ** (-1 if side else 1)
@@ -265,9 +265,9 @@ class _PieceMaker:
                     matrix[j][k] = 1
             sorted_lengths = [family.lengths[j] for j in order]
             new = [x if not k else x - sorted_lengths[k - 1] for k, x in enumerate(sorted_lengths)]
-            found = [declared_length(self.tf, x) for x in new]
+            lengths = [declared_length(self.tf, x) for x in new]
             for _ in range(CUTS):
-                pair = _longer_and_shorter(sums, same, matrix, found)
+                pair = _longer_and_shorter(sums, same, matrix, lengths)
                 if pair is None:
                     break
                 # exp(a x + b y) = exp(a (x - y)) exp((a + b) y): the shorter one bears both.
@@ -275,7 +275,7 @@ class _PieceMaker:
                 for row in matrix:
                     row[shorter] += row[longer]
                 new[longer] = new[longer] - new[shorter]
-                found[longer] = found[longer] - found[shorter]
+                lengths[longer] = lengths[longer] - lengths[shorter]
             changes.append(matrix)
             families[i] = replace(family, lengths=tuple(new))
         self.families = tuple(families)
@@ -295,11 +295,11 @@ class _PieceMaker:
         )
 
     def _groups(self) -> Iterator[_Group]:
-        found: dict[Dispersion, list[int]] = {}
+        by_dispersion: dict[Dispersion, list[int]] = {}
         for i, family in enumerate(self.families):
             if family.wavenumber:
-                found.setdefault(family.dispersion, []).append(i)
-        for ids in found.values():
+                by_dispersion.setdefault(family.dispersion, []).append(i)
+        for ids in by_dispersion.values():
             family = self.families[ids[0]]
             for position, length in enumerate(family.lengths):
                 exponents = sorted(
@@ -355,8 +355,8 @@ class _PieceMaker:
         nothing = CodePiece(straight(forge, [forge.constant(0), forge.constant(1)]))
         program = self._assembled(forge, tests[: sum(counts)], [], [nothing], turn)
         with np.errstate(all="ignore"):
-            found = numbers_of_pieces(program, omega if program.is_real else 1j * omega, self.values)
-        bits = [[bool(number >> i & 1) for i in range(sum(counts))] for number in set(found.tolist())]
+            piece_numbers = numbers_of_pieces(program, omega if program.is_real else 1j * omega, self.values)
+        bits = [[bool(number >> i & 1) for i in range(sum(counts))] for number in set(piece_numbers.tolist())]
         return {self._near(own, counts) for own in bits}.__contains__
 
     def program(self) -> Piecewise:
@@ -402,12 +402,12 @@ class _PieceMaker:
         choice: Callable[[tuple[bool, ...], Sequence[bool]], Choice],
     ) -> list[Choice]:
         """Return what is chosen by the results of tests, for every number that these make."""
-        found = []
+        choices = []
         for number in range(2**count):
             bits = [bool(number >> i & 1) for i in range(count)]
             near = self._near(bits, counts)
-            found.append(choice(near if occurs(near) else (False,) * len(near), bits))
-        return found
+            choices.append(choice(near if occurs(near) else (False,) * len(near), bits))
+        return choices
 
     def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
         """Return the test that the smaller of a pair's arguments is small at every length."""
@@ -525,19 +525,19 @@ class _PieceMaker:
         return self._parts[key]
 
     def _new_parts(self, half: _Half, near: Sequence[_Group]) -> _LocalParts:
-        found: _LocalParts = {}
+        parts: _LocalParts = {}
         lone = [g.dispersion for g in near if isinstance(g, _Lone)]
         for orders, terms in self._derivatives(half.terms, near):
             spend()
-            if len(near) == 1 and self._is_negligible(orders[0], found):
+            if len(near) == 1 and self._is_negligible(orders[0], parts):
                 break
             values = {
                 k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
                 for k, p in terms.items()
             }
             if values := {k: v for k, v in values.items() if not v.is_zero}:
-                found[orders] = values
-        return found
+                parts[orders] = values
+        return parts
 
     def _derivatives(
         self, terms: KernelSum, near: Sequence[_Group]
@@ -554,9 +554,9 @@ class _PieceMaker:
             if derived := self._derivative(terms, first, order):
                 yield from (((order, *rest), own) for rest, own in self._derivatives(derived, others))
 
-    def _is_negligible(self, order: int, found: Iterable[tuple[int, ...]]) -> bool:
+    def _is_negligible(self, order: int, known_orders: Iterable[tuple[int, ...]]) -> bool:
         """Tell whether a derivative in a small length, and all that follow, add nothing to those found."""
-        if not (lower := [k for (k,) in found]) or order <= self.reach:
+        if not (lower := [k for (k,) in known_orders]) or order <= self.reach:
             return False
         largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
         return taylor_term(self.reach, order) < SERIES_ERROR + largest
@@ -564,7 +564,7 @@ class _PieceMaker:
     def _derivative(self, terms: KernelSum, group: _Group, order: int) -> KernelSum:
         """Return the derivative of a sum with respect to a length at zero."""
         gens = [self.ring.generator(self.families[i].wavenumber) for i in group.families]
-        found: KernelSum = {}
+        derivative: KernelSum = {}
         for key, polynomial in terms.items():
             if len(gens) == 1:
                 (i,) = group.families
@@ -578,8 +578,8 @@ class _PieceMaker:
                     rest[i] = ((*p[: group.position], (0, 0), *p[group.position + 1 :]), 0)
                 moved = [(tuple(rest), (gens[0] * a + gens[1] * b) ** order)]
             for k, factor in moved:
-                found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
-        return {k: p for k, p in found.items() if len(p)}
+                derivative[k] = derivative.get(k, self.ring.constant(0)) + polynomial * factor
+        return {k: p for k, p in derivative.items() if len(p)}
 
     def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
         """Return a value in normal form, free of wavenumbers where it is symmetric in them.
@@ -696,10 +696,10 @@ class _PieceMaker:
             values = list(site.real_sums([above, below]))
             turn = above.turn - below.turn
             waves = above.waves / below.waves
-        found = axis.real(gain)
-        if found is None:
+        real_gain = axis.real(gain)
+        if real_gain is None:
             return None
-        real, own = found[0] * waves, found[1]
+        real, own = real_gain[0] * waves, real_gain[1]
         is_negative, turn = divmod((turn + own) % 4, 2)
         if wanted is not None and turn != wanted:
             return None
@@ -718,10 +718,10 @@ class _PieceMaker:
         summands = []
         solution = cache(partial(self._solution, site))
         for orders, value in values.items():
-            found = axis.real(value / taken)
-            if found is None:
+            real_value = axis.real(value / taken)
+            if real_value is None:
                 return None
-            real, turn = found
+            real, turn = real_value
             first = turn if first is None else first
             if (turn - first) % 2:
                 return None

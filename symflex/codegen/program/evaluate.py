@@ -95,8 +95,8 @@ def evaluate(
             ]
             piece = program.code[program.pieces[int(n)]]
             place = 1j * chosen[0] if piece.is_complex else chosen[0]
-            found = value_of_piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
-            result[where] = found if piece.is_complex else turn * found
+            piece_values = value_of_piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
+            result[where] = piece_values if piece.is_complex else turn * piece_values
     return result.reshape(shape)
 
 
@@ -259,7 +259,7 @@ def series_solutions(coefficients: list[Values], terms: int) -> list[Values]:
     """
     n = len(coefficients)
     used = [i for i in range(n) if np.any(coefficients[i])]
-    found = []
+    solutions = []
     first = 1
     for k in range(n):
         zero = 0.0 * coefficients[0]
@@ -275,8 +275,8 @@ def series_solutions(coefficients: list[Values], terms: int) -> list[Values]:
                     following = following - coefficients[i] * derivatives[i]
                 derivatives = [*derivatives[1:], following]
                 total = total + following / factorial
-        found.append(total)
-    return found
+        solutions.append(total)
+    return solutions
 
 
 def scaled_sum(amplitudes: list[Values], exponents: list[Values]) -> list[Values]:

@@ -65,14 +65,14 @@ class Family:
 
 def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
     """Return the families of a table; fundamental functions have none."""
-    found: dict[tuple[str, Dispersion], dict[Factored, list[tuple[str, int]]]] = {}
+    by_wave: dict[tuple[str, Dispersion], dict[Factored, list[tuple[str, int]]]] = {}
     for kernel in table.kernels:
         if kernel.function != "fundamental":
-            family = found.setdefault((kernel.wavenumber, kernel.dispersion), {})
+            family = by_wave.setdefault((kernel.wavenumber, kernel.dispersion), {})
             family.setdefault(kernel.length, []).append((kernel.function, ring.index[kernel.generator]))
     return tuple(
         Family(dispersion, wavenumber, tuple(own), tuple(map(tuple, own.values())))
-        for (wavenumber, dispersion), own in found.items()
+        for (wavenumber, dispersion), own in by_wave.items()
     )
 
 
@@ -82,7 +82,7 @@ def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tu
     parts = coefficients_of(ring, polynomial, [i for _, i in kernels])
     halved = [n for n, (f, _) in enumerate(kernels) if f != "exp"]
     degree = max(sum(key[n] for n in halved) for key in parts)
-    found: KernelSum = {}
+    sums: KernelSum = {}
     for exponents, part in parts.items():
         scaled = part * 2 ** (degree - sum(exponents[n] for n in halved))
         of = {i: e for (_, i), e in zip(kernels, exponents, strict=True)}
@@ -91,12 +91,12 @@ def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tu
         ):
             key = tuple(t for t, _ in chosen)
             term = scaled * prod(n for _, n in chosen)
-            found[key] = found[key] + term if key in found else term
-    found = {key: p for key, p in found.items() if len(p)}
-    common = reduce(lambda x, y: x.gcd(y), found.values())
+            sums[key] = sums[key] + term if key in sums else term
+    sums = {key: p for key, p in sums.items() if len(p)}
+    common = reduce(lambda x, y: x.gcd(y), sums.values())
     if int(common.leading_coefficient()) < 0:
         common = -common
-    return {k: p / common for k, p in found.items()}, Factored.polynomial(ring, common) / 2**degree
+    return {k: p / common for k, p in sums.items()}, Factored.polynomial(ring, common) / 2**degree
 
 
 @cache
@@ -105,7 +105,7 @@ def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
 
     The numbers are over two to the power of the degree.
     """
-    found = []
+    terms = []
     # The greatest angles first, each before its opposite.
     pieces = (sorted(expanded(dict(own)), key=lambda x: (-x[0], -abs(x[1]), -x[1])) for own in powers)
     for chosen in product(*pieces):
@@ -117,8 +117,8 @@ def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
             pairs = tuple(
                 (-a if own[0][0] == "exp" else a, b) for (a, b, _), own in zip(chosen, powers, strict=True)
             )
-            found.append(((pairs, int(im != 0)), (re - im) * (2 if first else 1)))
-    return tuple(found)
+            terms.append(((pairs, int(im != 0)), (re - im) * (2 if first else 1)))
+    return tuple(terms)
 
 
 def in_lengths(terms: KernelSum, changes: Sequence[Sequence[Sequence[int]]]) -> KernelSum:
@@ -170,12 +170,12 @@ def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Ter
     rest = (*pairs[:position], (0, 0), *pairs[position + 1 :])
     # Re (z e^jR) = Re z cos R - Im z sin R, and Im (z e^jR) = Im z cos R + Re z sin R.
     parts = ((0, imaginary), (1, real)) if parity else ((0, real), (1, -imaginary))
-    found = []
+    images = []
     for kind, number in parts:
         image, sign = canonical(rest, kind)
         if number * sign:
-            found.append((image, number * sign))
-    return tuple(found)
+            images.append((image, number * sign))
+    return tuple(images)
 
 
 # ------------------------------------------------------------ the imaginary axis of lossless systems
@@ -216,8 +216,8 @@ class RealAxis:
         for d in self.table.dispersions:
             if d.kind not in ("wave", "bending") or not d.shift.is_zero:
                 return False
-            found = self.real(d.characteristic[0])
-            if found is None or found[1] % 2:
+            coefficient = self.real(d.characteristic[0])
+            if coefficient is None or coefficient[1] % 2:
                 return False
         return True
 
@@ -235,9 +235,9 @@ class RealAxis:
 
     def coefficient(self, dispersion: Dispersion) -> Factored:
         """Return ``c_0``, with the angular frequency in place of s."""
-        found = self.real(dispersion.characteristic[0])
-        assert found is not None  # without losses
-        value, turn = found
+        characteristic = self.real(dispersion.characteristic[0])
+        assert characteristic is not None  # without losses
+        value, turn = characteristic
         return -value if turn % 4 else value
 
     def real(self, value: Factored) -> tuple[Factored, int] | None:

@@ -255,14 +255,14 @@ class _Schedule:
         return constants, early, after
 
     def _reached(self, roots: list[int]) -> set[int]:
-        found: set[int] = set()
+        visited: set[int] = set()
         pending = list(roots)
         while pending:
             x = pending.pop()
-            if x not in found:
-                found.add(x)
+            if x not in visited:
+                visited.add(x)
                 pending += self.forge.operands(x)
-        return found
+        return visited
 
     def _uses(self, reached: set[int]) -> dict[int, tuple[int, bool]]:
         """Return how often each expression is used, and whether something that depends on s uses it."""

@@ -49,11 +49,11 @@ class CodeNode:
     @property
     def children(self) -> tuple[CodeNode, ...]:
         """The operands, from left to right; empty for a leaf."""
-        found: list[CodeNode] = []
+        children: list[CodeNode] = []
         for name in self.OPERANDS:
             value = getattr(self, name)
-            found += value if isinstance(value, tuple) else (value,)
-        return tuple(found)
+            children += value if isinstance(value, tuple) else (value,)
+        return tuple(children)
 
     def walk(self) -> Iterator[CodeNode]:
         """Yield the node and all it is made of, in no particular order."""

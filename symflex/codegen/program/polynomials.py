@@ -264,10 +264,10 @@ class _Planner:
     def plan_all(self, polynomials: Sequence[_Terms]) -> tuple[Scaled, ...]:
         """Return several polynomials, planned from the largest: smaller ones are often its parts."""
         self._wanted.update(polynomial.stripped()[2].key for polynomial in polynomials)
-        found: dict[int, Scaled] = {}
+        plans: dict[int, Scaled] = {}
         for i in sorted(range(len(polynomials)), key=lambda i: -len(polynomials[i].coefficients)):
-            found[i] = self.plan(polynomials[i])
-        return tuple(found[i] for i in range(len(polynomials)))
+            plans[i] = self.plan(polynomials[i])
+        return tuple(plans[i] for i in range(len(polynomials)))
 
     def plan(self, terms: _Terms) -> Scaled:
         """Return a polynomial in terms of the steps found so far and those it adds."""

@@ -43,17 +43,17 @@ class LocalBasis:
         """
         whole = [c.get((0, 0), 0) for c in self.coefficients]
         derivatives = [int(i == solution) for i in range(self.order)]
-        found: list[Fraction] = []
+        coefficients: list[Fraction] = []
         m = 0
         while m <= solution + self.step or taylor_term(size, m) > SERIES_ERROR:
             if m >= self.order:
                 derivatives.append(-sum(c * derivatives[m - self.order + i] for i, c in enumerate(whole)))
             if m >= solution and (m - solution) % self.step == 0:
-                found.append(Fraction(derivatives[m], factorial(m)))
+                coefficients.append(Fraction(derivatives[m], factorial(m)))
             m += 1
-        while len(found) > 1 and not found[-1]:
-            found.pop()
-        return tuple(found)
+        while len(coefficients) > 1 and not coefficients[-1]:
+            coefficients.pop()
+        return tuple(coefficients)
 
 
 def taylor_term(size: float, order: int) -> float:

@@ -342,11 +342,11 @@ class Site:
                 step = _common_step({abs(b) for _, b in pairs} | {most - a for a, _ in pairs})
                 scales[i, j] = (most, step, int(max(abs(b) for _, b in pairs) / step))
         images = [(lambda t, i=i: self._real_term(i, t, scales)) for i in range(len(self.families))]
-        found = []
+        real = []
         for s in sums:
             leaves = {key: self.polynomial(p) for key, p in s.terms.items()}
-            found.append(self._sum(leaves, images))
-        return tuple(found)
+            real.append(self._sum(leaves, images))
+        return tuple(real)
 
     def _real_term(
         self, i: int, term: RealTerm, scales: Mapping[tuple[int, int], tuple[Fraction, Fraction, int]]
@@ -393,10 +393,10 @@ class Site:
     def _oscillation(self, i: int, j: int, step: Fraction, multiple: int) -> tuple[int, int]:
         """Return cosine and sine of a multiple of an angle, times that power of the same factor."""
         even, odd, _ = self._half_angle(i, j, step)
-        found = first = (even, odd)
+        pair = first = (even, odd)
         for _ in range(multiple - 1):
-            found = self._turned(found, first)
-        return found
+            pair = self._turned(pair, first)
+        return pair
 
 
 def _common_step(values: set[Fraction]) -> Fraction:

@@ -397,7 +397,7 @@ def _extremes(
             return np.nan_to_num(np.log(np.abs(evaluate(program, tau * 1j * hertz, values))))
 
     grid = np.geomspace(low, high, int(SCAN * part))
-    found: list[float] = []
+    extremes: list[float] = []
     level = size(grid)
     for sign in (1, -1):
         inner = sign * level[1:-1]
@@ -410,8 +410,8 @@ def _extremes(
             near = np.linspace(left, right, 21)
             best = np.argmax(sign * size(near), axis=0)
             left, right = near[np.maximum(best - 1, 0), each], near[np.minimum(best + 1, 20), each]
-        found += ((left + right) / 2).tolist()
-    return found
+        extremes += ((left + right) / 2).tolist()
+    return extremes
 
 
 def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
@@ -454,9 +454,9 @@ class References:
 
     def __init__(self, values: EnclosedValues, points: NDArray[Any]) -> None:
         self.bound = values.bound
-        found = [(s, _reference(values, complex(s))) for s in points]
-        self._references = [reference for _, reference in found if reference is not None]
-        self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
+        references = [(s, _reference(values, complex(s))) for s in points]
+        self._references = [reference for _, reference in references if reference is not None]
+        self.s = np.array([s for s, reference in references if reference is not None], dtype=complex)
 
     @classmethod
     def over(
@@ -493,12 +493,12 @@ def _reference(values: EnclosedValues, s: complex) -> _Reference | None:
     """Return the value at ``s``, or ``None`` at a pole or zero."""
     if _vanishes(values.bound):
         return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-    found = values.at(s)
-    if found is None:
+    enclosed = values.at(s)
+    if enclosed is None:
         return None
-    with precision(found.bits):
-        size = found.value.abs_lower() * (1 + (acb(s.real, s.imag) * found.slope).abs_lower())
-        return _Reference(found.value, found.bits, size)
+    with precision(enclosed.bits):
+        size = enclosed.value.abs_lower() * (1 + (acb(s.real, s.imag) * enclosed.slope).abs_lower())
+        return _Reference(enclosed.value, enclosed.bits, size)
 
 
 @dataclass(frozen=True, slots=True)

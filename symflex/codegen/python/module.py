@@ -108,8 +108,8 @@ class Dialect:
                 continue
             for function in COPIED:
                 parts[f"_{function.__name__}",] = private_copy(function)
-        found = called_parts(code, parts, ("_numbers", "BLOCK"))
-        return found if self.is_argument else [for_one_library(text, self.space) for text in found]
+        texts = called_parts(code, parts, ("_numbers", "BLOCK"))
+        return texts if self.is_argument else [for_one_library(text, self.space) for text in texts]
 
 
 _PYTHON = frozenset({"s", "space", "arguments", "complex", "float"})
@@ -166,12 +166,12 @@ def private_copy(function: Callable[..., object]) -> str:
     """Return the text of a run-time function of this package as a private one, without annotations."""
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
-    found = signature.match(text)
-    assert found is not None
-    names = re.findall(r"(\w+): ", found.group(2))
-    body = re.sub(r"(\w): Any = ", r"\1 = ", text[found.end() :])
+    head = signature.match(text)
+    assert head is not None
+    names = re.findall(r"(\w+): ", head.group(2))
+    body = re.sub(r"(\w): Any = ", r"\1 = ", text[head.end() :])
     body = re.sub(rf"(?<!\.)\b({_OWN})\(", r"_\1(", body)
-    return f"def _{found.group(1)}({', '.join(names)}):\n{body}"
+    return f"def _{head.group(1)}({', '.join(names)}):\n{body}"
 
 
 def for_one_library(text: str, name: str) -> str:

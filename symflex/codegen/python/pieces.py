@@ -454,11 +454,11 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
     >>> cases_of(Piecewise((), Straight((), (), ()), (test, test), (0, 0, 0, 1), (piece, piece)))
     ((((0, False),), ((0, True), (1, False))), (((0, True), (1, True)),))
     """
-    found: list[list[tuple[tuple[int, bool], ...]]] = [[] for _ in program.code]
+    cases_by_piece: list[list[tuple[tuple[int, bool], ...]]] = [[] for _ in program.code]
 
     def split(table: tuple[int, ...], test: int, results: tuple[tuple[int, bool], ...]) -> None:
         if len(set(table)) == 1:
-            found[table[0]].append(results)
+            cases_by_piece[table[0]].append(results)
             return
         failed, held = table[::2], table[1::2]
         if failed == held:
@@ -468,7 +468,7 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
         split(held, test + 1, (*results, (test, True)))
 
     split(program.pieces, 0, ())
-    return tuple(tuple(cases) for cases in found)
+    return tuple(tuple(cases) for cases in cases_by_piece)
 
 
 def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex, ...]:

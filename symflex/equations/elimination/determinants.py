@@ -80,8 +80,8 @@ class Determinants:
         Over :attr:`den` it is ``output/input`` times the output's divisor.
         """
         # Cramer: det [C D; A B] over det A, up to the sign of moving the border from last row to first.
-        found = self.minors.bordered(self.reduced.outputs[self.position(output)], self.border(source))
-        return -found if len(self.reduced.columns) & 1 else found
+        minor = self.minors.bordered(self.reduced.outputs[self.position(output)], self.border(source))
+        return -minor if len(self.reduced.columns) & 1 else minor
 
     def position(self, output: str) -> int:
         """Return where an output stands among the rows of outputs."""

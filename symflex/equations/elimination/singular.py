@@ -137,10 +137,10 @@ def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:
 def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:
     """Say which conditions of fields follow from one another."""
     fields = {f.name: f for f in equations.model.fields}
-    found = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
-    conditions = [fields[name].conditions[number - 1] for name, number in found]
+    numbered = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
+    conditions = [fields[name].conditions[number - 1] for name, number in numbered]
     texts = [f"'{format_expression(c)}'" for c in conditions]
-    owners = [f"'{n}'" for n in dict.fromkeys(name for name, _ in found)]
+    owners = [f"'{n}'" for n in dict.fromkeys(name for name, _ in numbered)]
     of = f"{'field' if len(owners) == 1 else 'fields'} {listed(owners)}"
     message = (
         f"the conditions {listed(texts)} of {of} repeat or contradict each other: the state is not determined"
@@ -238,23 +238,23 @@ def _point_of_kernels(
 
     def define(values: dict[str, nmod_poly], field: TaylorField) -> bool:
         for name, value in equations.definitions:
-            found = field.rational(value, equations.ring.names, values)
-            if found is None:
+            image = field.rational(value, equations.ring.names, values)
+            if image is None:
                 return False
-            values[name] = found
+            values[name] = image
         return True
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
         values.update({p.generator: field.constant(0) for p in propagation.propagators})
         return define(values, field)
 
-    found = find_point(ring, propagation.table, 1, prepare)
-    if found is None:
+    image = find_point(ring, propagation.table, 1, prepare)
+    if image is None:
         field = TaylorField(1)
         values = random_values(equations.ring.names, Random(3), field)
         define(values, field)
         return field, values
-    field, values = found
+    field, values = image
     for p in propagation.propagators:
         values[p.generator] = field.polynomial(p.image, ring.names, values)
     return field, values
@@ -300,12 +300,12 @@ def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     if equations.unknowns:
         driven = whole.solve(matrix_of(forms, equations.inputs, prime, value))
         through = through - seen * driven
-    found = list(_zero_ends(equations, through))
+    diagnostics = list(_zero_ends(equations, through))
     if equations.unknowns and any(int(x) for x in through.entries()):
         felt = whole.transpose().solve(seen.transpose())
-        found += _idle_elements(equations, driven, felt)
+        diagnostics += _idle_elements(equations, driven, felt)
     told = {d.span for d in model.warnings}
-    return tuple(d for d in found if d.span not in told)
+    return tuple(d for d in diagnostics if d.span not in told)
 
 
 def _zero_ends(equations: Equations, through: nmod_mat) -> Iterator[Diagnostic]:

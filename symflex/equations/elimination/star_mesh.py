@@ -135,7 +135,7 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
     waves = () if equations.propagation is None else tuple(_waves(equations.propagation, bench))
     network = _Network.of(equations, bench)
     outputs = {o.name: o for o in equations.outputs}
-    found: dict[tuple[str, str], tuple[int, int]] = {}
+    fractions: dict[tuple[str, str], tuple[int, int]] = {}
     pivots: tuple[int, ...] = ()
     sources = dict.fromkeys(source for _, source in pairs)
     for source in sources:
@@ -145,8 +145,8 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
         pivots = tuple(solved.below for solved in run.solved)
         quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
         for name, (num, den) in zip(wanted, quotients, strict=True):
-            found[name, source] = (num, bench.multiply(bench.factored(outputs[name].divisor), den))
-    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs), pivots, waves)
+            fractions[name, source] = (num, bench.multiply(bench.factored(outputs[name].divisor), den))
+    return Elimination(bench.finished(), tuple(fractions[pair] for pair in pairs), pivots, waves)
 
 
 def _waves(propagation: Propagation, bench: Workbench) -> Iterable[Waves]:
@@ -281,8 +281,8 @@ class _Network:
                 terms.setdefault(column, []).append(step)
             elif variable.owner == source:
                 load.append(step)
-        found = {c: self.bench.add(steps) for c, steps in terms.items()}
-        return {c: step for c, step in found.items() if step}, self.bench.add(load)
+        sums = {c: self.bench.add(steps) for c, steps in terms.items()}
+        return {c: step for c, step in sums.items() if step}, self.bench.add(load)
 
 
 class _StarMesh:
@@ -548,15 +548,15 @@ class _StarMesh:
             if solved.load:
                 terms.append(bench.divide(solved.load, solved.below))
             unknowns[solved.column] = bench.add(terms) if terms else ZERO
-        found: list[tuple[int, int]] = []
+        fractions: list[tuple[int, int]] = []
         for row, load in zip(outputs, loads, strict=True):
             total = bench.add([ZERO, *(bench.multiply(value, unknowns[c]) for c, value in row.items())])
             if is_single and last is not None:
                 above = bench.add([bench.multiply(last.load, total), bench.multiply(load, last.below)])
-                found.append((above, last.below if above else ONE))
+                fractions.append((above, last.below if above else ONE))
                 continue
-            found.append(self._fraction(bench.add([total, load])))
-        return found
+            fractions.append(self._fraction(bench.add([total, load])))
+        return fractions
 
     def _fraction(self, value: int) -> tuple[int, int]:
         bench = self.bench

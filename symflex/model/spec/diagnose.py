@@ -77,9 +77,9 @@ def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Di
     name, start = _name(text, statement)
     span = Span(source, start, start + len(name))
     if message.startswith("Duplicate"):
-        found = message.rpartition("key ")[2]
+        key = message.rpartition("key ")[2]
         return Diagnostic(
-            "SF102", f"the key {found} appears twice in an inline table", _value_span(source, text, statement)
+            "SF102", f"the key {key} appears twice in an inline table", _value_span(source, text, statement)
         )
     first = _first(scan, statement, name)
     if first is None:
@@ -126,62 +126,62 @@ def _name(text: str, statement: Statement) -> tuple[str, int]:
 
 
 def _bad_header(source: Source, text: str, statement: Statement) -> Diagnostic:
-    found = _INLINE_COMMENT.sub("", text[statement.start : statement.end]).rstrip()
-    span = Span(source, statement.start, statement.start + len(found))
+    header = _INLINE_COMMENT.sub("", text[statement.start : statement.end]).rstrip()
+    span = Span(source, statement.start, statement.start + len(header))
     hint = (
         "a header is [name] or [name.name]; quote a name with other characters than letters, digits, _ and -"
     )
-    match = _HEADER.match(found)
-    if not found.startswith("["):
+    match = _HEADER.match(header)
+    if not header.startswith("["):
         hint = "begin it with '['"
-    elif match and match.end() < len(found):
+    elif match and match.end() < len(header):
         hint = f"begin a new line after {match[0]}"
-    return Diagnostic("SF101", f"{_shown(found)} is not a table header", span, hint)
+    return Diagnostic("SF101", f"{_shown(header)} is not a table header", span, hint)
 
 
 def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
     end = statement.end if statement.equals is None else statement.equals
-    found = text[statement.start : end].rstrip()
-    match = _ASSIGNMENT.match(found)
+    key = text[statement.start : end].rstrip()
+    match = _ASSIGNMENT.match(key)
     if statement.equals is not None:
-        if not found:
+        if not key:
             message, hint = "no key before '='", "write key = value"
         else:
-            quoted = found.replace("\\", "\\\\").replace('"', '\\"')
-            message = f"{_shown(found)} is not a key"
-            hint = name_hint(found) or f'put it in quotes: "{_cut(quoted)}"'
+            quoted = key.replace("\\", "\\\\").replace('"', '\\"')
+            message = f"{_shown(key)} is not a key"
+            hint = name_hint(key) or f'put it in quotes: "{_cut(quoted)}"'
     elif match and match[2] == ":":
         message = f"expected '=' after the key {_shown(match[1])}, found ':'"
         colon = statement.start + match.start(2)
         return Diagnostic("SF101", message, Span(source, colon, colon + 1), "write '=' instead of ':'")
     else:
-        found = _INLINE_COMMENT.sub("", found.partition("\n")[0]).rstrip()
-        message = f"{_shown(found)} is neither key = value nor a [table]"
-        is_comment = found.startswith(FOREIGN_COMMENTS)
+        key = _INLINE_COMMENT.sub("", key.partition("\n")[0]).rstrip()
+        message = f"{_shown(key)} is neither key = value nor a [table]"
+        is_comment = key.startswith(FOREIGN_COMMENTS)
         hint = "a comment begins with '#'" if is_comment else "write '=' between key and value"
-    width = max(1, len(found.partition("\n")[0]))
+    width = max(1, len(key.partition("\n")[0]))
     return Diagnostic("SF101", message, Span(source, statement.start, statement.start + width), hint)
 
 
 def _bad_value(source: Source, text: str, statement: Statement, message: str, offset: int) -> Diagnostic:
     whole = _value_span(source, text, statement)
-    found = text[whole.start : whole.end]
+    value = text[whole.start : whole.end]
     equals = whole.start if statement.equals is None else statement.equals
-    if not found:
+    if not value:
         hint = 'write a number, or text in quotes: "..."'
         return Diagnostic("SF101", "no value after '='", Span(source, equals, equals + 1), hint)
     place = Span(source, offset, min(offset + 1, len(text)))
-    if found.startswith("="):
+    if value.startswith("="):
         return Diagnostic("SF101", "found '=='", Span(source, equals, whole.start + 1), "write a single '='")
     if escape := _escape(text, statement, message, offset):
         hint = "write the text between single quotes '...', where a backslash is itself, or double it: \\\\"
         shown = text[escape[0] : escape[1]]
         return Diagnostic("SF101", f"{_shown(shown)} is not an escape sequence", Span(source, *escape), hint)
-    if found[0] in "\"'":
+    if value[0] in "\"'":
         message = f"unexpected text after the value: {_shown(text[offset : whole.end])}"
         return Diagnostic("SF101", message, Span(source, offset, max(offset + 1, whole.end)))
-    if found[0] not in "[{":
-        said, hint = _bad_scalar(found)
+    if value[0] not in "[{":
+        said, hint = _bad_scalar(value)
         return Diagnostic("SF101", said, whole, hint)
     return _bad_collection(source, text, whole, message, place)
 
@@ -200,27 +200,29 @@ def _escape_at(
     text: str, statement: Statement, offset: int, escape: re.Pattern[str]
 ) -> tuple[int, int] | None:
     # tomllib points behind the backslash, by a distance that depends on the escape.
-    found = [match.start() for match in escape.finditer(text, max(statement.start, offset - 12), offset + 1)]
-    if not found:
+    offsets = [
+        match.start() for match in escape.finditer(text, max(statement.start, offset - 12), offset + 1)
+    ]
+    if not offsets:
         return None
-    return found[-1], min(found[-1] + 2, statement.end)
+    return offsets[-1], min(offsets[-1] + 2, statement.end)
 
 
-def _bad_scalar(found: str) -> tuple[str, str]:
+def _bad_scalar(written: str) -> tuple[str, str]:
     for applies, hint in _SCALAR_HINTS:
-        if applies(found):
-            return f"{_shown(found)} is not a value", hint(found)
-    return f"{_shown(found)} is neither a number nor quoted text", f"put it in quotes: {_quoted(found)}"
+        if applies(written):
+            return f"{_shown(written)} is not a value", hint(written)
+    return f"{_shown(written)} is neither a number nor quoted text", f"put it in quotes: {_quoted(written)}"
 
 
-def _quoted(found: str) -> str:
-    shown = _cut(found)
+def _quoted(written: str) -> str:
+    shown = _cut(written)
     return f"'{shown}'" if '"' in shown or "\\" in shown else f'"{shown}"'
 
 
 def _matches(pattern: str) -> Callable[[str], bool]:
     compiled = re.compile(pattern)
-    return lambda found: compiled.fullmatch(found) is not None
+    return lambda written: compiled.fullmatch(written) is not None
 
 
 _DIGITS = r"[+-]?[0-9]++"
@@ -256,15 +258,15 @@ def _bad_collection(source: Source, text: str, whole: Span, message: str, place:
     if place.start >= whole.end or not place.text.strip():
         return Diagnostic("SF101", message[:1].lower() + message[1:], whole)
     word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, place.start)
-    found = word[0] if word and word[0] else place.text
-    span = Span(source, place.start, place.start + len(found))
+    written = word[0] if word and word[0] else place.text
+    span = Span(source, place.start, place.start + len(written))
     if message.startswith("Invalid value"):
-        said, hint = _bad_scalar(found)
+        said, hint = _bad_scalar(written)
         return Diagnostic("SF101", said, span, hint)
     if message.startswith("Unclosed"):
         closing = "]" if message.endswith("array") else "}"
-        return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(found)}", span)
-    return Diagnostic("SF101", f"unexpected {_shown(found)}: {message[:1].lower()}{message[1:]}", span)
+        return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(written)}", span)
+    return Diagnostic("SF101", f"unexpected {_shown(written)}: {message[:1].lower()}{message[1:]}", span)
 
 
 def _cut(text: str) -> str:

@@ -63,13 +63,13 @@ def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
     >>> spec.root.keys()
     ('m_1', 'm_2')
     """
-    found = scan(source)
-    repair = _Repair(source, found)
-    for statement in found.statements:
+    scanned = scan(source)
+    repair = _Repair(source, scanned)
+    for statement in scanned.statements:
         if statement.unclosed is not None:
             from symflex.model.spec.diagnose import diagnose_unclosed  # most texts are TOML
 
-            repair.report(statement, diagnose_unclosed(source, found.text, statement))
+            repair.report(statement, diagnose_unclosed(source, scanned.text, statement))
     decoded = repair.decode()
     document = repair.document()
     diagnostics = sorted(repair.diagnostics, key=lambda d: d.span.start if d.span else 0)

@@ -226,17 +226,17 @@ def _enter(
             table.add(name, span, _Tables(header))
         else:
             table.add(name, span, _Table(header))
-        found = table.entries[name][1]
-        if isinstance(found, _Tables):
+        entry = table.entries[name][1]
+        if isinstance(entry, _Tables):
             if last:
-                found.items.append(_Table(header, explicit=True))
-            inside = inside[len(found.items) - 1]
-            table = found.items[-1]
-        elif isinstance(found, _Table):
-            if last and not found.explicit:
-                found.span, found.explicit = header, True
-                table.entries[name] = (span, found)
-            table = found
+                entry.items.append(_Table(header, explicit=True))
+            inside = inside[len(entry.items) - 1]
+            table = entry.items[-1]
+        elif isinstance(entry, _Table):
+            if last and not entry.explicit:
+                entry.span, entry.explicit = header, True
+                table.entries[name] = (span, entry)
+            table = entry
         else:
             table = _Table(header)
     return table, inside
@@ -249,12 +249,12 @@ def _adopt(top: _Table, path: tuple[str, ...], header: Span) -> _Table:
     table = top
     for name in path:
         table.add(name, header, _Table(header))
-        found = table.entries[name][1]
-        if isinstance(found, _Tables):
-            found = found.items[-1]
-        if not isinstance(found, _Table):
+        entry = table.entries[name][1]
+        if isinstance(entry, _Tables):
+            entry = entry.items[-1]
+        if not isinstance(entry, _Table):
             return _Table(header)
-        table = found
+        table = entry
     return table
 
 
