@@ -104,8 +104,8 @@ class InputShaper:
         """Return the shaper as ``symflex shape --json`` prints it."""
 
         def told(name: str, value: arb) -> dict[str, str]:
-            found = decimals(value, arb(0), self.digits)
-            return {name: found.re, f"{name}_radius": found.radius}
+            printed = decimals(value, arb(0), self.digits)
+            return {name: printed.re, f"{name}_radius": printed.radius}
 
         modes: list[dict[str, object]] = []
         for pole in self.poles:

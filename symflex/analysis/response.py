@@ -386,8 +386,8 @@ def _network_turns(
     if highest == 0:
         return None
     sought = (Band(Fraction(0), Fraction(share * highest / (2 * pi))) for share in BEYOND_BAND)
-    found = (roots_if_found(bound, band) for band in sought)
-    roots = next((roots for roots in found if roots.certificate.certified), None)
+    maps = (roots_if_found(bound, band) for band in sought)
+    roots = next((roots for roots in maps if roots.certificate.certified), None)
     if roots is None:
         return None
     steps, first, places = np.unique(np.abs(omega), return_index=True, return_inverse=True)
@@ -477,17 +477,17 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     0.300 30.000
     """
     lows, highs = [], []
-    for found in maps:
-        moving = [root for root in (*found.poles, *found.zeros) if not root.is_zero]
+    for located in maps:
+        moving = [root for root in (*located.poles, *located.zeros) if not root.is_zero]
         far = 10 * max((root.frequency_hz() for root in moving if not root.is_real), default=inf)
         counted = [root for root in moving if root.frequency_hz() <= far]
         if not counted:
             continue
-        poles = [root for root in counted if root in found.poles]
+        poles = [root for root in counted if root in located.poles]
         ends = [root.frequency_hz() for root in counted]
-        order = _order_at_rest(found)
+        order = _order_at_rest(located)
         lows.append(min(ends) / _room(order))
-        if found.is_infinite and poles:
+        if located.is_infinite and poles:
             highs.append(max(root.frequency_hz() for root in poles) * BEYOND_LAST_POLE)
         else:
             slope = order + sum(-r.multiplicity if r in poles else r.multiplicity for r in counted)
@@ -543,7 +543,7 @@ def adaptive_grid(
 
 
 def grid_about(
-    found: PoleZeroMap,
+    located: PoleZeroMap,
     values: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.complex128]],
     low_hz: float,
     high_hz: float,
@@ -558,7 +558,7 @@ def grid_about(
     step = log(high / low) / (points - 1)
     parts = [np.geomspace(low, high, points)]
     on_axis: list[float] = []
-    for root in (*found.poles, *found.zeros):
+    for root in (*located.poles, *located.zeros):
         damping = root.damping_ratio()
         if root.is_real or root.im < 0 or damping is None or abs(damping) > REFINED_DAMPING:
             continue
@@ -572,7 +572,7 @@ def grid_about(
     for centre in on_axis:
         # A hair less than the gap, so that the points placed at the gap itself survive rounding.
         grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
-    return _followed(values, grid) if found.certificate.is_exceeded else grid
+    return _followed(values, grid) if located.certificate.is_exceeded else grid
 
 
 def real_numbers(given: npt.ArrayLike, name: str, code: str = "SF902") -> npt.NDArray[np.float64]:

@@ -167,9 +167,9 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
         bits = 2 * bits_for_digits(digits)
         with precision(bits):
             given = _continuous(bound, digits, bits)
-            found = MAPS[sampling.method](bound, given, sampling)
-            if found is not None:
-                numerator, denominator, poles, zeros, late = found
+            mapped = MAPS[sampling.method](bound, given, sampling)
+            if mapped is not None:
+                numerator, denominator, poles, zeros, late = mapped
                 above, below = _told(numerator), _told(denominator)
                 if above is not None and below is not None:
                     zeros = _roots_of(above) if zeros is None else zeros
@@ -319,9 +319,9 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
     """Return a dead time as a number; one that no precision tells from whole samples is so many."""
     ratio = late / sampling.seconds
     near = round(float(ratio.mid()))
-    found = near * sampling.sample if ratio.contains(near) else exact_fraction(late.mid())
-    sampling.check_delay(found)
-    return found
+    delay = near * sampling.sample if ratio.contains(near) else exact_fraction(late.mid())
+    sampling.check_delay(delay)
+    return delay
 
 
 def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
@@ -337,34 +337,34 @@ def _leading(given: _Continuous) -> acb:
 
 
 def _mapped(roots: Sequence[Root], move: Callable[[acb], acb]) -> tuple[acb, ...]:
-    found = []
+    mapped = []
     for root in roots:
         s = root.enclosure()
         z = acb(move(s).real) if root.is_real else move(s)
-        found += [z] * root.multiplicity
-    return tuple(found)
+        mapped += [z] * root.multiplicity
+    return tuple(mapped)
 
 
 def monic(roots: Sequence[acb]) -> list[arb]:
     """Return the monic polynomial with conjugate or real roots, in descending powers."""
-    found = prod((acb_poly([-root, acb(1)]) for root in roots), start=acb_poly([1]))
-    return [c.real for c in found.coeffs()[::-1]]
+    polynomial = prod((acb_poly([-root, acb(1)]) for root in roots), start=acb_poly([1]))
+    return [c.real for c in polynomial.coeffs()[::-1]]
 
 
 def _told(coefficients: Sequence[arb]) -> tuple[arb, ...] | None:
     """Return coefficients that are known well, zeros that are nothing beside the others; else None."""
     largest = max((c.abs_upper() for c in coefficients), default=arb(0))
-    found = []
+    real = []
     for c in coefficients:
         if c.contains(0):
             if c != 0 and not c.abs_upper() < largest * arb(2) ** -NOTHING_BITS:
                 return None
-            found.append(arb(0))
+            real.append(arb(0))
         elif c.rel_accuracy_bits() < GOOD_BITS:
             return None
         else:
-            found.append(c)
-    return tuple(found)
+            real.append(c)
+    return tuple(real)
 
 
 def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:
@@ -379,9 +379,9 @@ def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:
     if not left:
         return ()
     try:
-        found = acb_poly([acb(c) for c in left[::-1]]).roots(tol=arb(2) ** -GOOD_BITS, maxprec=LAST_DIGITS)
+        roots = acb_poly([acb(c) for c in left[::-1]]).roots(tol=arb(2) ** -GOOD_BITS, maxprec=LAST_DIGITS)
     except ValueError:
         return None
     # Of isolated roots one whose ball meets the real axis is its own conjugate.
-    real = (acb(z.real) if z.imag.contains(0) else z for z in found)
+    real = (acb(z.real) if z.imag.contains(0) else z for z in roots)
     return (*real, *(acb(0) for _ in range(at_zero)))

@@ -131,8 +131,8 @@ def open_circuit(model: Model, source: Input) -> Constraint | None:
 
 def _is_read(model: Model, owner: str) -> bool:
     """Tell whether a quantity of an element or input is read by anything but an output."""
-    found = (n for _, e in expressions_of(model, with_outputs=False) for n in names(e))
-    return any(isinstance(n, Attribute) and n.owner == owner for n in found)
+    read = (n for _, e in expressions_of(model, with_outputs=False) for n in names(e))
+    return any(isinstance(n, Attribute) and n.owner == owner for n in read)
 
 
 @dataclass(frozen=True, slots=True)

@@ -109,13 +109,13 @@ def holds(expression: Expression, name: str) -> bool:
 
 def _at(model: Model, references: tuple[NodeReference, ...], domain: Domain) -> Coordinates:
     nodes = {n.name: n for n in model.nodes}
-    found = [
+    signed = [
         (variable_of(r, nodes[r.node], domain), sign)
         for r, sign in zip(references, (1, -1), strict=False)
         if not r.is_ground
     ]
-    found.sort(key=lambda coordinate: str(coordinate[0]))
-    return tuple((v, sign * found[0][1]) for v, sign in found)
+    signed.sort(key=lambda coordinate: str(coordinate[0]))
+    return tuple((v, sign * signed[0][1]) for v, sign in signed)
 
 
 def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
@@ -135,12 +135,12 @@ def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Facto
     laws = {row.about: row.form for row in equations.rows if row.role == "signal"}
     terms = collected(form)
     for _ in range(len(laws) + 1):
-        found = next((v for v in terms if v in laws), None)
-        if found is None:
+        dependent = next((v for v in terms if v in laws), None)
+        if dependent is None:
             return terms
-        coefficient = terms.pop(found)
-        law = collected(laws[found])
-        own = law.pop(found, None)
+        coefficient = terms.pop(dependent)
+        law = collected(laws[dependent])
+        own = law.pop(dependent, None)
         if own is None:
             return None
         for variable, value in law.items():
@@ -152,10 +152,10 @@ def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Facto
 
 def collected(form: LinearForm) -> dict[Variable, Factored]:
     """Return the coefficient of every variable in a form, those that are zero left out."""
-    found: dict[Variable, Factored] = {}
+    total: dict[Variable, Factored] = {}
     for variable, coefficient in form.terms:
-        found[variable] = found[variable] + coefficient if variable in found else coefficient
-    return {v: c for v, c in found.items() if not c.is_zero}
+        total[variable] = total[variable] + coefficient if variable in total else coefficient
+    return {v: c for v, c in total.items() if not c.is_zero}
 
 
 def in_one_way(model: Model) -> Model:

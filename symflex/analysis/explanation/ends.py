@@ -132,8 +132,8 @@ def _single(condition: Equation, unknown: str) -> Call | None:
 
 
 def _is_load(side: Expression) -> bool:
-    found = names(side)
-    return len(found) == 1 and isinstance(found[0], Name)
+    read = names(side)
+    return len(read) == 1 and isinstance(read[0], Name)
 
 
 BENDING_ORDER = 4
@@ -176,16 +176,16 @@ def _driven(model: Model, source: Input) -> set[Variable]:
             for x in model.signals
             if any(isinstance(n, Name) and n.name in mentioned for n in names(x.expression))
         }
-    found: set[Variable] = set()
+    driven: set[Variable] = set()
     for use in model.elements:
         written = {n.name for _, e in use.values for n in names(e) if isinstance(n, Name)}
         if written & mentioned:
-            found |= set(coordinates_of(model, use))
+            driven |= set(coordinates_of(model, use))
     nodes = {n.name: n for n in model.nodes}
     for reference in source.nodes:
         if not reference.is_ground:
-            found |= {Variable("node", reference.node, c) for c in nodes[reference.node].components}
-    return found
+            driven |= {Variable("node", reference.node, c) for c in nodes[reference.node].components}
+    return driven
 
 
 def _reach(model: Model, starts: Collection[Variable], without: PlacedElement | None) -> set[Variable]:

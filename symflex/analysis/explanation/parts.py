@@ -101,9 +101,9 @@ class _Matrix:
         for i, row in self.rows.items():
             for variable in row:
                 users.setdefault(variable, []).append(i)
-        for variable, found in users.items():
-            if len(found) == 1 and len(self.rows[found[0]]) > 1:
-                (i,) = found
+        for variable, users_of in users.items():
+            if len(users_of) == 1 and len(self.rows[users_of[0]]) > 1:
+                (i,) = users_of
                 if self._is_static(self.rows[i][variable]):
                     del self.rows[i]
                     return True
@@ -168,8 +168,8 @@ def _determinant(
     ]
     unknowns = tuple(v for v in equations.unknowns if v in variables)
     part = replace(equations, unknowns=unknowns, inputs=(), rows=tuple(forms), outputs=())
-    found = Determinants.of(part)
-    return varying(equations, opened(equations, found.opened(found.den)))
+    determinants = Determinants.of(part)
+    return varying(equations, opened(equations, determinants.opened(determinants.den)))
 
 
 def _order(equations: Equations, determinant: Factored) -> int | None:
@@ -198,17 +198,17 @@ def coordinates_of(model: Model, use: PlacedElement) -> tuple[Variable, ...]:
     """Return the coordinates of nodes that an element acts on."""
     nodes = {n.name: n for n in model.nodes}
     domains: Mapping[str, str] = dict(use.domains)
-    found: list[Variable] = []
+    coordinates: list[Variable] = []
     for port, references in use.nodes:
         for reference in references:
             if reference.is_ground:
                 continue
             node = nodes[reference.node]
             if domains[port] in COMPONENTS:
-                found += [Variable("node", node.name, c) for c in node.components]
+                coordinates += [Variable("node", node.name, c) for c in node.components]
             else:
-                found.append(variable_of(reference, node, domains[port]))  # type: ignore[arg-type]
-    return tuple(found)
+                coordinates.append(variable_of(reference, node, domains[port]))  # type: ignore[arg-type]
+    return tuple(coordinates)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,5 +296,5 @@ def varying(equations: Equations, value: Factored) -> Factored:
 def exponentials(equations: Equations) -> list[fmpz_mpoly]:
     """Return the generators that are exponentials of s times a constant, such as delays."""
     waves = equations.propagation
-    found = () if waves is None else waves.propagators
-    return [equations.ring.generator(p.generator) for p in found if p.order == EXPONENTIAL]
+    propagators = () if waves is None else waves.propagators
+    return [equations.ring.generator(p.generator) for p in propagators if p.order == EXPONENTIAL]

@@ -91,7 +91,7 @@ class _Case:
         return ZeroExplanation("/".join(self.pair), kind, status, *self.pair, is_direct, *held, order)
 
 
-def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
+def explain_zeros(model: Model, bound: BoundTransferFunction, located: PoleZeroMap) -> ZeroExplanation:
     """Explain the zeros of a transfer function; the model's numbers are those of ``bound``.
 
     A determinant that would be too large raises a BudgetError, SF50x.
@@ -128,7 +128,7 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
     has_zeros = bound.is_distributed or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
     complete = replace(explained or plain, has_zeros=has_zeros, has_hidden=bool(bound.hidden))
-    return _with_roots(case, complete, found)
+    return _with_roots(case, complete, located)
 
 
 # ------------------------------------------------------------------------------ what the zeros are poles of
@@ -262,20 +262,20 @@ def _end_changes(case: _Case, separation: Separation) -> tuple[EndChange, ...]:
     """Return the line elements whose ends the constraint changes, parts with the input left out."""
     before = separate(case.equations, case.pair[1]).resting
     driven = {name for part in separation.parts if part.has_input for name in part.elements}
-    found = []
+    changes = []
     for use in case.model.elements:
         if is_line(use) and use.name not in driven:
             ends = [ends_of_element(case.model, use, resting) for resting in (before, separation.resting)]
             if ends[0] != ends[1]:
-                found.append(EndChange(use.name, *ends))
-    return tuple(found)
+                changes.append(EndChange(use.name, *ends))
+    return tuple(changes)
 
 
-def _with_roots(case: _Case, explained: ZeroExplanation, found: PoleZeroMap) -> ZeroExplanation:
+def _with_roots(case: _Case, explained: ZeroExplanation, located: PoleZeroMap) -> ZeroExplanation:
     """Return the explanation with what there is to say about the zeros in the region shown."""
-    right = [root for root in found.zeros if root.re > 0]
+    right = [root for root in located.zeros if root.re > 0]
     real = [root for root in right if root.is_real]
-    negative = [root for root in found.zeros if root.is_real and root.re < 0]
+    negative = [root for root in located.zeros if root.is_real and root.re < 0]
     pairs = tuple(
         RealZero(root, any(bool((-other.re).overlaps(root.re)) for other in negative)) for root in real
     )
@@ -283,7 +283,7 @@ def _with_roots(case: _Case, explained: ZeroExplanation, found: PoleZeroMap) -> 
         explained,
         right_half_plane=sum(root.multiplicity for root in right),
         real_zeros=pairs,
-        on_axis=sum(r.multiplicity for r in found.zeros if r.on_imaginary_axis and not r.is_zero),
+        on_axis=sum(r.multiplicity for r in located.zeros if r.on_imaginary_axis and not r.is_zero),
         bending=bending_between(case.model, case.equations, case.output, case.input)
         if explained.kind in ("noncolocated", "partly", "beyond")
         else None,

@@ -98,8 +98,8 @@ def _solve(matrix: list[list[acb]], wanted: list[list[acb]]) -> list[list[acb]] 
     try:
         if all(x.imag == 0 for row in matrix for x in row):
             real = arb_mat([[x.real for x in row] for row in matrix])
-            found = real.solve(arb_mat([[x.real for x in row] for row in wanted]))
-            return [[acb(x) for x in row] for row in found.tolist()]
+            solution = real.solve(arb_mat([[x.real for x in row] for row in wanted]))
+            return [[acb(x) for x in row] for row in solution.tolist()]
         solved: list[list[acb]] = acb_mat(matrix).solve(acb_mat(wanted)).tolist()
     except ZeroDivisionError:
         return None
@@ -150,12 +150,12 @@ class BoundEquations:
 
     def _constants(self) -> Mapping[str, arb]:
         later: dict[str, Callable[[], arb]] = {name: enclosure(v) for name, v in self.values}
-        found = {name: evaluate() for name, evaluate in later.items()}
-        found["pi"] = arb.pi()
+        constants = {name: evaluate() for name, evaluate in later.items()}
+        constants["pi"] = arb.pi()
         for constant in self.equations.constants:
             if constant.generator not in self._along:
-                found[constant.generator] = enclose(constant.expression, later)
-        return found
+                constants[constant.generator] = enclose(constant.expression, later)
+        return constants
 
     @property
     def _along(self) -> Mapping[str, Call]:
@@ -228,8 +228,8 @@ class SystemAt:
 
 def _evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
     """Return a rational function with a ball in place of every generator; KeyError where one has no value."""
-    found: acb = evaluated(value, values.__getitem__, acb(1))
-    return found
+    enclosed: acb = evaluated(value, values.__getitem__, acb(1))
+    return enclosed
 
 
 def _define(name: str, value: Factored, values: Values) -> bool:
@@ -247,14 +247,14 @@ def _constant(value: arb) -> Callable[[], arb]:
 
 def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values:
     """Return the fundamental functions and exponentials at s."""
-    found: Values = {}
+    propagators: Values = {}
     matrices: dict[tuple[int, int], list[list[acb]]] = {}
     columns: dict[tuple[int, int], tuple[Value, ...]] = {}
     for p in propagation.propagators:
         law = propagation.table.dispersions[p.dispersion]
         length = _evaluated(propagation.lengths[p.dispersion][p.length], values)
         if p.order == EXPONENTIAL:
-            found[p.generator] = (-_evaluated(law.shift, values) * length).exp()
+            propagators[p.generator] = (-_evaluated(law.shift, values) * length).exp()
             continue
         key = (p.dispersion, p.length)
         if law in laws:
@@ -262,13 +262,13 @@ def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values
                 start, _ = laws[law].ends()
                 matrices[key] = laws[law].matrix_at(values[LAPLACE], (start, start + length.real))
             row, column = divmod(p.order, law.order)
-            found[p.generator] = matrices[key][row][column]
+            propagators[p.generator] = matrices[key][row][column]
             continue
         if key not in columns:
             coefficients = [_evaluated(c, values) for c in law.characteristic]
             columns[key] = fundamental_functions(coefficients, length)
-        found[p.generator] = at_centre(columns[key][p.order])
-    return found
+        propagators[p.generator] = at_centre(columns[key][p.order])
+    return propagators
 
 
 def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:

@@ -116,8 +116,8 @@ def lowest_modes(
     them.
     """
     search = _ModeSearch(bound)
-    found = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
-    candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
+    located = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
+    candidates = [(root, False) for root in located.all_poles] + [(h.root, True) for h in located.hidden]
     chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
     chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))
     shapes: list[NumberedShape] = []
@@ -133,7 +133,7 @@ def lowest_modes(
             continue  # a common factor that is not a mode of the model
         shapes += [NumberedShape(shape, is_hidden) for shape in found_here]
     kept = tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0)
-    return kept, found.verdict
+    return kept, located.verdict
 
 
 def _shapes(
@@ -177,10 +177,10 @@ class _ModeSearch:
         if number < 0:
             message = f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}"
             raise UsageError(Diagnostic("SF902", message))
-        found = self.map(Modes(max(number, 1)), digits)
-        poles = found.poles
+        located = self.map(Modes(max(number, 1)), digits)
+        poles = located.poles
         if number == 0:
-            hidden = (h.root for h in found.hidden)
+            hidden = (h.root for h in located.hidden)
             rigid = next((p for p in (*poles, *hidden) if p.is_zero), None)
             if rigid is None:
                 message = "the model has no pole at 0, so no rigid-body motion"
@@ -209,11 +209,11 @@ class _ModeSearch:
             frequency = Fraction(root.frequency_hz())
             region = Band(frequency * (1 - NEIGHBOURHOOD), frequency * (1 + NEIGHBOURHOOD))
         try:
-            found = self.map(region, digits)
+            located = self.map(region, digits)
         except (BudgetError, UncertifiedError):
             spend()
             return root
-        nearest = min(_poles_of(found), key=lambda r: _distance(r, root), default=root)
+        nearest = min(_poles_of(located), key=lambda r: _distance(r, root), default=root)
         return nearest if _is_same(nearest, root) else root
 
     def shapes(self, pole: Callable[[int], Root], digits: int) -> tuple[EnclosedModeShape, ...]:
@@ -227,9 +227,9 @@ class _ModeSearch:
                 if best:
                     break
                 raise
-            found = self._at(root, digits)
-            best = found or best
-            if found and all(_is_accurate(shape, digits) for shape in found):
+            enclosed = self._at(root, digits)
+            best = enclosed or best
+            if enclosed and all(_is_accurate(shape, digits) for shape in enclosed):
                 break
             working *= 2
         if not best:
@@ -276,9 +276,9 @@ class _ModeSearch:
         return EnclosedModeShape(root, motions, distributed, "", is_proved)
 
 
-def _poles_of(found: PoleZeroMap) -> list[Root]:
+def _poles_of(located: PoleZeroMap) -> list[Root]:
     """Return all poles found, hidden ones among them."""
-    return [*found.all_poles, *(h.root for h in found.hidden)]
+    return [*located.all_poles, *(h.root for h in located.hidden)]
 
 
 def _name(variable: Variable, starts: Mapping[str, float]) -> str:

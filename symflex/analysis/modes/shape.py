@@ -54,15 +54,15 @@ class VaryingCarrier:
 
     def started(self, initial: tuple[acb, ...]) -> tuple[acb, ...]:
         """Return the whole state at the start, given what is free there: at a tip others follow."""
-        found = list(initial)
+        state = list(initial)
         for states, law in self.parts:
             if law.law.singular is None:
                 continue
             rows = law.law.singular.at_start()
             for i, row in zip(states, rows, strict=False):
                 terms = (law.value(x, {}, self.s) * initial[j] for x, j in zip(row, states, strict=False))
-                found[i] = sum(terms, acb(0))
-        return tuple(found)
+                state[i] = sum(terms, acb(0))
+        return tuple(state)
 
     def step(self, first: arb, second: arb) -> list[list[acb]]:
         """Return what takes the state, and the loads, from one distance from the start to another."""
@@ -183,8 +183,8 @@ class DistributedShape:
         if all(x.imag == 0 for row in rows for x in row):
             real = arb_mat([[x.real for x in row] for row in rows]).exp().tolist()
             return [[acb(x) for x in row] for row in real]
-        found: list[list[acb]] = acb_mat(rows).exp().tolist()
-        return found
+        propagator: list[list[acb]] = acb_mat(rows).exp().tolist()
+        return propagator
 
     def _carried(self, step: Sequence[Sequence[acb]], state: tuple[acb, ...]) -> tuple[acb, ...]:
         whole = (*state, *((acb(1),) if self.varying is None else self.load))[: len(step[0])]
@@ -330,11 +330,11 @@ def _along(part: DistributedShape) -> Iterator[_PlacedAmplitude]:
 
 
 def _largest(places: list[_PlacedAmplitude]) -> _PlacedAmplitude | None:
-    found: _PlacedAmplitude | None = None
+    largest: _PlacedAmplitude | None = None
     for place in places:
-        if found is None or place.size > found.size * TIE:
-            found = place
-    return found
+        if largest is None or place.size > largest.size * TIE:
+            largest = place
+    return largest
 
 
 def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:

@@ -80,34 +80,36 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
         raise UsageError(Diagnostic("SF902", f"the number of modes cannot be {modes}"))
     for further in FURTHER:
         region = Modes(modes + further) if bound.is_distributed else Everything()
-        found = locate(bound, region, digits)
-        poles, left_out = _lowest(found, modes)
+        located = locate(bound, region, digits)
+        poles, left_out = _lowest(located, modes)
         if left_out or not bound.is_distributed:
             break
     omitted = min((root.frequency_hz() for root in left_out), default=None)
-    zeros, above = _zeros_below(bound, found, omitted, digits)
+    zeros, above = _zeros_below(bound, located, omitted, digits)
     is_exact = not left_out and not bound.is_distributed
     if not is_exact:
         zeros = _no_more_than(zeros, count_roots(poles))
     excess = max(count_roots(zeros) - count_roots(poles), 0) if is_exact else 0
-    known = replace(found, zeros=above)
+    known = replace(located, zeros=above)
     return KeptRoots(len(modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
 
 
-def _lowest(found: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
+def _lowest(located: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
     """Return the poles of the lowest modes with those at 0 and in the right half plane, and the others."""
-    positions = Modes(modes).classify(found.poles)
-    is_kept = [p is not Position.OUTSIDE or is_right(r) for r, p in zip(found.poles, positions, strict=True)]
-    kept = tuple(r for r, keep in zip(found.poles, is_kept, strict=True) if keep)
-    left_out = tuple(r for r, keep in zip(found.poles, is_kept, strict=True) if not keep)
-    return (*kept, *found.unstable), left_out
+    positions = Modes(modes).classify(located.poles)
+    is_kept = [
+        p is not Position.OUTSIDE or is_right(r) for r, p in zip(located.poles, positions, strict=True)
+    ]
+    kept = tuple(r for r, keep in zip(located.poles, is_kept, strict=True) if keep)
+    left_out = tuple(r for r, keep in zip(located.poles, is_kept, strict=True) if not keep)
+    return (*kept, *located.unstable), left_out
 
 
 def _zeros_below(
-    bound: AnyBoundFunction, found: PoleZeroMap, limit_hz: float | None, digits: int
+    bound: AnyBoundFunction, located: PoleZeroMap, limit_hz: float | None, digits: int
 ) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
     """Return the zeros with natural frequencies below a limit, and all that are known."""
-    known = found.zeros
+    known = located.zeros
     if limit_hz is None:
         return known, known
     if bound.is_distributed and all(root.frequency_hz() < limit_hz for root in known):
@@ -260,7 +262,7 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
     residues = residues_at(bound, kept.poles, digits)
     start = expand_at_zero(bound, kept.excess, digits)
     roots = _repeated(kept.poles)
-    terms = [(found, power, c) for found in residues for power, c in enumerate(found.coefficients, 1)]
+    terms = [(part, power, c) for part in residues for power, c in enumerate(part.coefficients, 1)]
     with precision(BITS + BITS_PER_ROOT * len(roots)):
         correction = [start.coefficient(i) for i in range(kept.excess + 1)]
         whole = acb_poly.from_roots(roots)
@@ -357,10 +359,10 @@ def _zeros_of(coefficients: Sequence[acb]) -> list[acb]:
     at_zero = next((i for i, c in enumerate(middle) if c != 0), 0)
     rest = middle[at_zero:]
     if not any(c != 0 for c in rest[1::2]):
-        found = [root for square in _isolated(rest[::2]) for root in _square_roots(square)]
+        zeros = [root for square in _isolated(rest[::2]) for root in _square_roots(square)]
     else:
-        found = _isolated(rest)
-    upper = sorted((z for z in found if not z.imag < 0), key=lambda z: float(abs(z).mid()))
+        zeros = _isolated(rest)
+    upper = sorted((z for z in zeros if not z.imag < 0), key=lambda z: float(abs(z).mid()))
     pairs = [[z] if z.imag == 0 else [z, z.conjugate()] for z in upper]
     return [acb(0)] * at_zero + [z for pair in pairs for z in pair]
 
@@ -379,11 +381,11 @@ def _isolated(coefficients: Sequence[acb]) -> list[acb]:
         return []
     polynomial = acb_poly(coefficients)
     try:
-        found = polynomial.roots()
-        smallest = min(float(abs(z).mid()) for z in found)
-        found = polynomial.roots(tol=smallest * FINEST)
+        roots = polynomial.roots()
+        smallest = min(float(abs(z).mid()) for z in roots)
+        roots = polynomial.roots(tol=smallest * FINEST)
     except ValueError:
         # Zeros that coincide are not isolated.
         return [acb(complex(z)) for z in np.roots([complex(c) for c in reversed(coefficients)])]
     # Its conjugate would be another root in the same disc.
-    return [acb(z.real) if z.imag.contains(0) else z for z in found]
+    return [acb(z.real) if z.imag.contains(0) else z for z in roots]

@@ -121,17 +121,17 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
         with precision(bits), series_terms(terms):
             evaluator = bound.kernel_values()
             values = local_values(evaluator, acb(0), terms, branches)
-            found = None
+            expansion = None
             if values is not None:
                 series = [_coefficients(evaluator.polynomial(f, values)) for f, _ in bound.ratio.factors]
-                found = _quotient(bound.ratio, series, orders, branches, last, terms)
-        if isinstance(found, LaurentSeries) and _is_accurate(found.coefficients, digits, bits):
-            return found
-        if found == "longer" and terms < LONGEST:
+                expansion = _quotient(bound.ratio, series, orders, branches, last, terms)
+        if isinstance(expansion, LaurentSeries) and _is_accurate(expansion.coefficients, digits, bits):
+            return expansion
+        if expansion == "longer" and terms < LONGEST:
             terms *= 2
         else:
             bits = next(finer, None)
-            if found == "unproved":
+            if expansion == "unproved":
                 orders = [None] * len(orders)
     message = f"the behaviour of {bound.name} near s = 0 could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
@@ -146,9 +146,9 @@ def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeri
         series = [part(acb(0), side.at_zero + count) for part, side in ((above, num), (below, den))]
         with precision(num.series.bits):
             first, second = ((c or [])[side.at_zero :] for c, side in zip(series, (num, den), strict=True))
-            found = [acb(c.real) for c in series_quotient(first, second, count)]
-        if _is_accurate(found, digits, bits_for_digits(digits)):
-            return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found))
+            coefficients = [acb(c.real) for c in series_quotient(first, second, count)]
+        if _is_accurate(coefficients, digits, bits_for_digits(digits)):
+            return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in coefficients))
     message = f"the behaviour of {sides.bound.name} near s = 0 could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
 
@@ -191,13 +191,13 @@ def _quotient(
             total = total * raised(acb_series(coefficients[first:], len(coefficients) - first), exponent)
     if total.prec < wanted:
         return "longer"
-    found = tuple(total[branches * i] for i in range(count))
+    quotient = tuple(total[branches * i] for i in range(count))
     # A factor is of the order found where the coefficients before it are nothing but zero.
     is_estimate = any(
         known is None and not _all_zero(coefficients[:first])
         for coefficients, known, first in zip(series, orders, firsts, strict=True)
     )
-    return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found), is_estimate)
+    return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in quotient), is_estimate)
 
 
 def _all_zero(coefficients: Sequence[acb]) -> bool:
@@ -223,13 +223,13 @@ def expand_at_pole(
                 known = _expanded(above, below, root, is_refined=is_refined)
                 if known is None:
                     continue
-                pole, found, extra = known
+                pole, principal, extra = known
                 if root.is_real:
-                    found = [acb(c.real) for c in found]
-                is_known = _is_accurate(found, digits, bits)
-                if is_known or (bits >= DETECTION_BITS and _is_unseen(found, above, below, pole, extra)):
-                    found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
-                    return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
+                    principal = [acb(c.real) for c in principal]
+                is_known = _is_accurate(principal, digits, bits)
+                if is_known or (bits >= DETECTION_BITS and _is_unseen(principal, above, below, pole, extra)):
+                    principal = [acb(about_zero(c.real), about_zero(c.imag)) for c in principal]
+                    return pole, LaurentSeries(-root.multiplicity, tuple(principal), is_estimate=extra > 0)
     re, im = float(root.re.mid()), float(root.im.mid())
     message = f"the residue of {name} at {re:g} {im:+g} j rad/s could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
@@ -263,20 +263,22 @@ def _expanded(
     for extra in range(COINCIDENT + 1):
         order = root.multiplicity + extra
         pole = _refined(below, root, order) if is_refined else _on_axis(root, root.enclosure())
-        found = principal_part(above, below, pole, root.multiplicity, extra)
-        if found is not None:
-            return pole, found, extra
+        principal = principal_part(above, below, pole, root.multiplicity, extra)
+        if principal is not None:
+            return pole, principal, extra
     return None
 
 
-def _is_unseen(found: Sequence[acb], above: Taylor, below: Taylor, pole: acb, extra: int) -> bool:
+def _is_unseen(coefficients: Sequence[acb], above: Taylor, below: Taylor, pole: acb, extra: int) -> bool:
     """Tell whether a principal part is next to nothing beside what it is where no zero is near."""
-    first = len(found) + extra
+    first = len(coefficients) + extra
     num, den = above(pole, first + 1), below(pole, first + 1)
     if num is None or den is None:
         return False
-    nothing = abs(num[first] * pole ** len(found) / den[first]).mid() * arb(2) ** (-(current_bits() // 3))
-    return all(c.abs_upper() < nothing for c in found)
+    nothing = abs(num[first] * pole ** len(coefficients) / den[first]).mid() * arb(2) ** (
+        -(current_bits() // 3)
+    )
+    return all(c.abs_upper() < nothing for c in coefficients)
 
 
 def _refined(below: Taylor, root: Root, order: int) -> acb:
@@ -315,8 +317,8 @@ def principal_part(
     first = multiplicity + extra
     if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
         return None
-    found = series_quotient(num[extra:], den[first:], multiplicity)
-    return found if all(c.is_finite() for c in found) else None
+    coefficients = series_quotient(num[extra:], den[first:], multiplicity)
+    return coefficients if all(c.is_finite() for c in coefficients) else None
 
 
 def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> list[acb] | None:
@@ -325,8 +327,8 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
     if values is None:
         return None
     with series_terms(terms):
-        found = _coefficients(evaluator.value(part, values))[:terms]
-    return found if len(found) == terms else None  # roots of what vanishes lose some
+        coefficients = _coefficients(evaluator.value(part, values))[:terms]
+    return coefficients if len(coefficients) == terms else None  # roots of what vanishes lose some
 
 
 def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[Taylor, Taylor] | None:
@@ -343,21 +345,21 @@ def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[
     centre = root.enclosure().mid()
     reach = (centre.abs_upper() * REACH).mid()
     points = SERIES_POINTS + bits // BITS_A_POINT
-    found = [local_series(side, centre, reach, bits + SERIES_BITS, points) for side in sides]
-    if found[0] is None or found[1] is None:
+    series = [local_series(side, centre, reach, bits + SERIES_BITS, points) for side in sides]
+    if series[0] is None or series[1] is None:
         return None
     # The series are of the factors, without the numbers in front.
-    return partial(_of_series, found[0], _fraction(above)), partial(_of_series, found[1], _fraction(below))
+    return partial(_of_series, series[0], _fraction(above)), partial(_of_series, series[1], _fraction(below))
 
 
 def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[acb] | None:
     """Return the Taylor coefficients at a point close to where a series was found."""
     off = (centre - series.centre).abs_upper()
     radius = (2 * off).max(series.reach * arb(2) ** -(current_bits() // TERMS)).upper()
-    found = series.around(centre, radius)
-    if found is None or terms > len(found[0]):
+    around = series.around(centre, radius)
+    if around is None or terms > len(around[0]):
         return None
-    coefficients, missing = found
+    coefficients, missing = around
     # What is missed is analytic, and no larger than that on the circle: Cauchy's estimate.
     errors = [(missing / radius**k).upper() for k in range(terms)]
     return [unit * (c + acb(arb(0, e), arb(0, e))) for c, e in zip(coefficients, errors, strict=False)]
@@ -436,7 +438,7 @@ def find_residues(
 
 def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at known poles; see :func:`find_residues`."""
-    found: list[PrincipalPart] = []
+    parts: list[PrincipalPart] = []
     source: BoundTransferFunction | NetworkSides
     if isinstance(bound, BoundNested):
         source = NetworkSides(bound, max((2 * pi * root.frequency_hz() for root in poles), default=0.0))
@@ -444,15 +446,15 @@ def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> 
         source = bound
     for root in poles:
         spend()
-        upper = next((r for r in found if _are_conjugate(r.root, root)), None)
+        upper = next((r for r in parts if _are_conjugate(r.root, root)), None)
         if upper is not None:
-            found.append(upper.conjugate(root))
+            parts.append(upper.conjugate(root))
         elif root.is_zero:
-            found.append(_at_zero(bound, root, digits))
+            parts.append(_at_zero(bound, root, digits))
         else:
             pole, series = expand_at_pole(source, root, digits)
-            found.append(PrincipalPart(root, pole, series.principal_part, series.is_estimate))
-    return tuple(found)
+            parts.append(PrincipalPart(root, pole, series.principal_part, series.is_estimate))
+    return tuple(parts)
 
 
 def _at_zero(bound: AnyBoundFunction, root: Root, digits: int) -> PrincipalPart:

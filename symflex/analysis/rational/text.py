@@ -27,7 +27,7 @@ JSON_DIGITS = 17
 Row = tuple[str, ...]
 
 
-def rational_text(found: RationalApproximation) -> str:
+def rational_text(approximation: RationalApproximation) -> str:
     r"""Return an approximation as tables, with the frequencies up to which it is valid, in 80 columns.
 
     Examples
@@ -48,63 +48,64 @@ def rational_text(found: RationalApproximation) -> str:
     <BLANKLINE>
       zeros: none
     """
-    return passages_text(_passages(found))
+    return passages_text(_passages(approximation))
 
 
-def rational_html(found: RationalApproximation) -> str:
+def rational_html(approximation: RationalApproximation) -> str:
     """Return the same for a notebook: paragraphs and tables."""
     from symflex.print.html import passages_html  # only notebooks ask
 
-    return passages_html(_passages(found))
+    return passages_html(_passages(approximation))
 
 
-def _passages(found: RationalApproximation) -> Iterator[Passage]:
-    head, *said = _said(found)
+def _passages(approximation: RationalApproximation) -> Iterator[Passage]:
+    head, *said = _said(approximation)
     yield Passage([head])
     yield Passage([INDENT + line for line in said])
-    if found.residues:
-        yield Passage([_counted("poles and residues", found.poles)], _residue_rows(found))
+    if approximation.residues:
+        yield Passage([_counted("poles and residues", approximation.poles)], _residue_rows(approximation))
     else:
-        yield Passage([_counted("poles", found.poles)], _root_rows(found.poles))
-    yield Passage([_counted("zeros", found.zeros)], _root_rows(found.zeros))
-    if found.is_estimate:
+        yield Passage([_counted("poles", approximation.poles)], _root_rows(approximation.poles))
+    yield Passage([_counted("zeros", approximation.zeros)], _root_rows(approximation.zeros))
+    if approximation.is_estimate:
         yield Passage([f"{INDENT}{ESTIMATE}"])
 
 
-def _said(found: RationalApproximation) -> list[str]:
+def _said(approximation: RationalApproximation) -> list[str]:
     """Return a heading, how good the approximation is, and its behaviour at low frequency."""
-    source = found.bound.source
+    source = approximation.bound.source
     quantity = source.quantity + (f" [{source.unit}]" if source.unit else "")
-    modes = "1 mode" if found.modes == 1 else f"{found.modes} modes"
-    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}; {found.stability.headline}"]
-    lines += [*_validity(found), f"gain: {_decimal(found.gain)}"]
-    leading = f"{found.leading_coefficient:.{DIGITS}g}"
-    order = found.order_at_zero
+    modes = "1 mode" if approximation.modes == 1 else f"{approximation.modes} modes"
+    headline = approximation.stability.headline
+    lines = [f"{approximation.tf}   {quantity}, {approximation.form} form, {modes}; {headline}"]
+    lines += [*_validity(approximation), f"gain: {_decimal(approximation.gain)}"]
+    leading = f"{approximation.leading_coefficient:.{DIGITS}g}"
+    order = approximation.order_at_zero
     lines.append(f"near s = 0: {leading}*s^{order}" if order else f"static gain: {leading}")
-    for i, constant in enumerate(found.correction):
+    for i, constant in enumerate(approximation.correction):
         name = "static correction" if i == 0 else f"and of s^{i}"
         lines.append(f"{name}: {_decimal(constant)}")
     return lines
 
 
-def _validity(found: RationalApproximation) -> list[str]:
-    if found.is_exact:
+def _validity(approximation: RationalApproximation) -> list[str]:
+    if approximation.is_exact:
         return ["exact: nothing is left out of this rational function"]
     lines = []
     for percent in PERCENTS:
-        limit = found.valid_to(percent / 100)
+        limit = approximation.valid_to(percent / 100)
         if not limit:
-            lines.append(f"already off by more than {percent} % at {found.scan.low_hz:.4g} Hz")
+            lines.append(f"already off by more than {percent} % at {approximation.scan.low_hz:.4g} Hz")
         else:
-            least = "at least " if limit == found.scan.high_hz else ""
+            least = "at least " if limit == approximation.scan.high_hz else ""
             lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz")
-    error, scan = found.error, found.scan
+    error, scan = approximation.error, approximation.scan
     band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
     lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz")
     sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
     lines.append(f"sampled, not proved: {sampled}")
-    if found.omitted_hz is not None:
-        lines.append(f"the first pole left out is at {found.omitted_hz:.6g} Hz")
+    if approximation.omitted_hz is not None:
+        lines.append(f"the first pole left out is at {approximation.omitted_hz:.6g} Hz")
     return lines
 
 
@@ -142,12 +143,12 @@ def _root_cells(root: mpmath.mpc, count: int, paired: bool) -> tuple[str, str, s
     return times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta
 
 
-def _residue_rows(found: RationalApproximation) -> list[Row]:
-    highest = max(len(residue.coefficients) for residue in found.residues)
+def _residue_rows(approximation: RationalApproximation) -> list[Row]:
+    highest = max(len(residue.coefficients) for residue in approximation.residues)
     rows: list[Row] = [
         ("Re [rad/s]", "Im [rad/s]", "power" if highest > 1 else "", "Re residue", "Im residue")
     ]
-    for residue in found.residues:
+    for residue in approximation.residues:
         if residue.root.im < 0:
             continue
         pole = _middle(residue.root)
@@ -166,24 +167,24 @@ def _middle(root: Root) -> mpmath.mpc:
     return to_complex_mpmath(root.enclosure())
 
 
-def rational_json(found: RationalApproximation) -> dict[str, object]:
+def rational_json(approximation: RationalApproximation) -> dict[str, object]:
     """Return an approximation in the schema ``symflex.rational/1``, ready for :func:`json.dumps`."""
-    error, scan = found.error, found.scan
+    error, scan = approximation.error, approximation.scan
     return {
         "schema": SCHEMA,
-        "tf": found.tf,
-        "quantity": found.bound.source.quantity,
-        "unit": found.bound.source.unit,
-        "form": found.form,
-        "modes": found.modes,
-        "stability": found.stability.to_json_dict(),
-        "exact": found.is_exact,
-        "certified": not found.is_estimate,
-        "gain": _exact(found.gain),
-        "num": [_exact(c) for c in found.num],
-        "den": [_exact(c) for c in found.den],
-        "poles": [_complex(root) for root in found.poles],
-        "zeros": [_complex(root) for root in found.zeros],
+        "tf": approximation.tf,
+        "quantity": approximation.bound.source.quantity,
+        "unit": approximation.bound.source.unit,
+        "form": approximation.form,
+        "modes": approximation.modes,
+        "stability": approximation.stability.to_json_dict(),
+        "exact": approximation.is_exact,
+        "certified": not approximation.is_estimate,
+        "gain": _exact(approximation.gain),
+        "num": [_exact(c) for c in approximation.num],
+        "den": [_exact(c) for c in approximation.den],
+        "poles": [_complex(root) for root in approximation.poles],
+        "zeros": [_complex(root) for root in approximation.zeros],
         "residues": [
             {
                 "pole": _complex(_middle(residue.root)),
@@ -192,12 +193,14 @@ def rational_json(found: RationalApproximation) -> dict[str, object]:
                     for c in residue.coefficients
                 ],
             }
-            for residue in found.residues
+            for residue in approximation.residues
         ],
-        "correction": [_exact(c) for c in found.correction],
-        "order_at_zero": found.order_at_zero,
-        "leading_coefficient": found.leading_coefficient,
-        "valid_to_hz": {f"{percent} %": _finite(found.valid_to(percent / 100)) for percent in PERCENTS},
+        "correction": [_exact(c) for c in approximation.correction],
+        "order_at_zero": approximation.order_at_zero,
+        "leading_coefficient": approximation.leading_coefficient,
+        "valid_to_hz": {
+            f"{percent} %": _finite(approximation.valid_to(percent / 100)) for percent in PERCENTS
+        },
         "error": {
             "band_hz": [error.low_hz, error.high_hz],
             "worst": _finite(error.worst),
@@ -205,7 +208,7 @@ def rational_json(found: RationalApproximation) -> dict[str, object]:
             "rigorous": error.is_rigorous,
         },
         "sampled": {"low_hz": scan.low_hz, "high_hz": scan.high_hz, "samples": len(scan.error)},
-        "omitted_hz": found.omitted_hz,
+        "omitted_hz": approximation.omitted_hz,
     }
 
 

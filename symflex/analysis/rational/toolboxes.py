@@ -175,8 +175,8 @@ class RationalFunction(ABC):
             if not (np.isfinite(exact) and np.isfinite(slope) and exact):
                 continue
             with np.errstate(all="ignore"):
-                found = np.polyval(num, 1j * omega) / np.polyval(den, 1j * omega)
-            error = abs(found - exact) / (abs(exact) * (1 + abs(omega * slope)))
+                computed = np.polyval(num, 1j * omega) / np.polyval(den, 1j * omega)
+            error = abs(computed - exact) / (abs(exact) * (1 + abs(omega * slope)))
             worst = max(worst, float(error)) if np.isfinite(error) else np.inf
         return {"coefficients_error": worst, "coefficients_error_band_hz": (low, high)}
 
@@ -234,10 +234,10 @@ class ExactFunction(RationalFunction):
         """Return the nearest doubles to zeros, poles and gain."""
         if self._bound.ratio.is_zero:
             return [], [], 0.0
-        found = locate(self._bound, None, DIGITS)
+        located = locate(self._bound, None, DIGITS)
         zeros, poles = (
             [complex(to_complex_mpmath(r.enclosure())) for r in roots for _ in range(r.multiplicity)]
-            for roots in (found.zeros, found.poles)
+            for roots in (located.zeros, located.poles)
         )
         (gain,) = self._rounded(self._parts[0][:1])
         return zeros, poles, float(gain)

@@ -167,7 +167,7 @@ MOST_TIMES = 8
 def differentiate(
     tf: TransferFunction,
     values: Mapping[str, ExactValue],
-    found: PoleZeroMap,
+    located: PoleZeroMap,
     parameters: Sequence[ModelParameter] | None = None,
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
@@ -182,8 +182,8 @@ def differentiate(
         return ()
     tangents = Tangents(tf, values)
     sides: tuple[tuple[Kind, Factored, Sequence[Root]], ...] = (
-        ("pole", tf.den, found.poles),
-        ("zero", tf.num, found.zeros),
+        ("pole", tf.den, located.poles),
+        ("zero", tf.num, located.zeros),
     )
     moved: list[RootDerivative] = []
     for kind, part, roots in sides:
@@ -305,14 +305,14 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | 
     """
     place, first = root.enclosure(), root.working_bits()
     for bits in precisions(first, MOST_TIMES * first):
-        found = _meeting(tangents, [f for f, _ in part.factors], place, bits)
-        if found is not None and len(found) == 1 and root.multiplicity > 1:
+        meeting = _meeting(tangents, [f for f, _ in part.factors], place, bits)
+        if meeting is not None and len(meeting) == 1 and root.multiplicity > 1:
             # Twice the same factor, multiplied out: such a root stays double, and moves.
-            _, square_free = square_free_factors(found[0])
-            found = _meeting(tangents, [f for f, _ in square_free], place, bits)
-        if found is not None and len(found) == 1 and _is_simple(tangents, found[0], place, bits):
-            return RootBranch(tangents, found[0], place)
-        if found == []:
+            _, square_free = square_free_factors(meeting[0])
+            meeting = _meeting(tangents, [f for f, _ in square_free], place, bits)
+        if meeting is not None and len(meeting) == 1 and _is_simple(tangents, meeting[0], place, bits):
+            return RootBranch(tangents, meeting[0], place)
+        if meeting == []:
             return "undecided"
     return "multiple" if root.multiplicity > 1 and root.certified else "undecided"
 
@@ -336,7 +336,7 @@ def _is_simple(tangents: Tangents, factor: fmpz_mpoly, s: acb, bits: int) -> boo
 def sensitivities(
     model: Model,
     bound: BoundTransferFunction,
-    found: PoleZeroMap,
+    located: PoleZeroMap,
     names: Sequence[str] = (),
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
@@ -352,13 +352,13 @@ def sensitivities(
     known = {name: value for name, value in values.items() if value is not None}
     chosen = [p for p in model.parameters if p.name in known and (not names or p.name in names)]
     if model.is_distributed:
-        return differentiate(bound.symbolic or bound.source, known, found, chosen, digits)
+        return differentiate(bound.symbolic or bound.source, known, located, chosen, digits)
     # One symbol at a time, among numbers, is far less than all at once.
     pair = (bound.source.output.name, bound.source.input.name)
     moved: list[RootDerivative] = []
     for parameter in chosen:
         (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
-        moved += differentiate(tf, known, found, [parameter], digits)
+        moved += differentiate(tf, known, located, [parameter], digits)
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
 
 
@@ -425,7 +425,7 @@ class Tangents:
             places = [minors[self.tf.ratio.ring.index[k.generator]] for k in kernels]
             values = (self._varying.value(place, s) for place in places)
             return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
-        n, found = law.order, dict[str, Value]()
+        n, entries = law.order, dict[str, Value]()
         own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
         known: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
         for kernel in kernels:
@@ -441,8 +441,8 @@ class Tangents:
                 known[kernel.length] = matrix, slopes
             matrix, slopes = known[kernel.length]
             row, column = divmod(kernel.order, n)
-            found[kernel.generator] = _series(matrix[row][column], slopes[row, column])
-        return found
+            entries[kernel.generator] = _series(matrix[row][column], slopes[row, column])
+        return entries
 
     def _tangent_law(self, law: Dispersion, parameter: str) -> BoundLaw:
         """Return the law of states, and after them of their derivatives with respect to a parameter.

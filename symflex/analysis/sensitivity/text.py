@@ -58,8 +58,8 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
         if mirrored and im.startswith("-"):
             continue
         place = (re, f"+-{im}" if mirrored else im)
-        for n, found in enumerate(_rows(roots[index], list(group))):
-            rows.append((*(place if n == 0 else ("", "")), *found))
+        for n, cells in enumerate(_rows(roots[index], list(group))):
+            rows.append((*(place if n == 0 else ("", "")), *cells))
     numbers = [row for row in rows if len(row) == len(HEAD)]
     columns = [max(len(row[i]) for row in numbers) for i in range(len(HEAD))]
     places_width = [max(len(row[i]) for row in rows) for i in (0, 1)]
@@ -89,19 +89,19 @@ def _rows(root: Root, moved: Sequence[RootDerivative]) -> list[tuple[str, ...]]:
     return [_row(m) for m in moved]
 
 
-def _row(found: RootDerivative) -> tuple[str, ...]:
-    name = found.parameter.name
-    if found.derivative is None:
-        return (f"{name}: {OBSTACLES[found.status]}",)
-    relative, damping = found.relative, found.damping_ratio
+def _row(derivative: RootDerivative) -> tuple[str, ...]:
+    name = derivative.parameter.name
+    if derivative.derivative is None:
+        return (f"{name}: {OBSTACLES[derivative.status]}",)
+    relative, damping = derivative.relative, derivative.damping_ratio
     if relative is None:
-        slope = decimals(found.derivative.real, found.derivative.imag, DIGITS).told
+        slope = decimals(derivative.derivative.real, derivative.derivative.imag, DIGITS).told
         shown = slope.re if slope.im == "0" else f"{slope.re} + ({slope.im}) j"
         return (f"{name}: ds/dp = {shown}",)
-    if _is_zero(found):
+    if _is_zero(derivative):
         return (f"{name}*", _number(relative.real), "" if damping is None else _number(damping))
     with precision(max(relative.bits(), 1) + 64):
-        value = found.exact_value()
+        value = derivative.exact_value()
         change = relative.real * value
         turned = None if damping is None else damping * value
     return (name, _number(change), "" if turned is None else _number(turned))
@@ -115,8 +115,8 @@ def _negated(text: str) -> str:
     return text.removeprefix("-") if text.startswith("-") else f"-{text}"
 
 
-def _is_zero(found: RootDerivative) -> bool:
-    return found.value.rational == 0
+def _is_zero(derivative: RootDerivative) -> bool:
+    return derivative.value.rational == 0
 
 
 def sensitivity_formula(

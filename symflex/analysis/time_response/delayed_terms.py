@@ -55,13 +55,13 @@ class Durations:
     def polynomial(self, amplitude: Amplitude) -> arb_poly:
         """Return an amplitude as a polynomial in s, at the current precision."""
         values = [evaluate() for evaluate in self.constants]
-        found = [arb(0)] * (1 + max((exponents[0] for exponents in amplitude), default=0))
+        coefficients = [arb(0)] * (1 + max((exponents[0] for exponents in amplitude), default=0))
         for (power, *others), number in amplitude.items():
             term = ball(number)
             for value, exponent in zip(values, others, strict=True):
                 term = term * value**exponent if exponent else term
-            found[power] = found[power] + term
-        return arb_poly(found)
+            coefficients[power] = coefficients[power] + term
+        return arb_poly(coefficients)
 
     def exact(self, amplitude: Amplitude) -> PolynomialInS:
         """Return an amplitude without negative exponents as an exact polynomial, but for a factor."""
@@ -91,10 +91,10 @@ def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
     law_of = {kernel.wavenumber: kernel.dispersion for kernel in bound.kernels.kernels if kernel.wavenumber}
     slowness: dict[str, Factored] = {}
     for name, law in law_of.items():
-        found = _squared_slowness(law)
-        if found is None:
+        squared = _squared_slowness(law)
+        if squared is None:
             return None
-        slowness[name] = found
+        slowness[name] = squared
     reader = DelayReader.of(bound, arguments, slowness)
     if reader is None:
         return None
@@ -187,9 +187,9 @@ class DelayReader:
         terms = exponential_sum(self.bound.ratio.ring, self.bound.kernels, self.arguments, factor)
         if terms is None:
             return None
-        found: dict[Delay, Amplitude] = {}
+        by_delay: dict[Delay, Amplitude] = {}
         for exponent, amplitude in terms.terms.items():
-            own = found.setdefault(self.delay_of(exponent), {})
+            own = by_delay.setdefault(self.delay_of(exponent), {})
             for monomial, (number, _) in amplitude.items():
                 exponents = [0] * (1 + len(self.durations.names))
                 for x, a, _ in exponent:
@@ -201,15 +201,15 @@ class DelayReader:
                     if i:
                         exponents[self.places[i]] += e
                 _add(own, tuple(exponents), Fraction(number, 2**terms.halvings))
-        return {delay: own for delay, own in found.items() if own}
+        return {delay: own for delay, own in by_delay.items() if own}
 
 
 def _squared_slowness(law: Dispersion) -> Factored | None:
     """Return 1/c^2 of a law ``gamma^2 = s^2/c^2``, None of any other."""
     if law.kind != "wave" or not law.shift.is_zero or not all(c.is_zero for c in law.characteristic[1:]):
         return None
-    found = polynomial_in_s(-law.characteristic[0], 2)
-    return found[2] if found is not None and found[0].is_zero and found[1].is_zero else None
+    powers = polynomial_in_s(-law.characteristic[0], 2)
+    return powers[2] if powers is not None and powers[0].is_zero and powers[1].is_zero else None
 
 
 def polynomial_in_s(value: Factored, degree: int) -> list[Factored] | None:
@@ -234,11 +234,11 @@ def _ratio(square: Fraction | None, other: Fraction | None) -> Fraction | None:
 
 def sum_of(*delays: Delay) -> Delay:
     """Return delays one after the other."""
-    found: dict[int, Fraction] = {}
+    multiples: dict[int, Fraction] = {}
     for delay in delays:
         for i, multiple in delay:
-            found[i] = found.get(i, Fraction(0)) + multiple
-    return tuple(sorted((i, multiple) for i, multiple in found.items() if multiple))
+            multiples[i] = multiples.get(i, Fraction(0)) + multiple
+    return tuple(sorted((i, multiple) for i, multiple in multiples.items() if multiple))
 
 
 def _add(amplitude: Amplitude, exponents: tuple[int, ...], number: Fraction) -> None:
@@ -250,14 +250,14 @@ def _add(amplitude: Amplitude, exponents: tuple[int, ...], number: Fraction) -> 
 
 
 def _product(a: Mapping[Delay, Amplitude], b: Mapping[Delay, Amplitude]) -> dict[Delay, Amplitude]:
-    found: dict[Delay, Amplitude] = {}
+    product: dict[Delay, Amplitude] = {}
     for first, one in a.items():
         for second, other in b.items():
-            own = found.setdefault(sum_of(first, second), {})
+            own = product.setdefault(sum_of(first, second), {})
             for m, x in one.items():
                 for n, y in other.items():
                     _add(own, tuple(i + k for i, k in zip(m, n, strict=True)), x * y)
-    return {delay: own for delay, own in found.items() if own}
+    return {delay: own for delay, own in product.items() if own}
 
 
 def later(delay: Delay, other: Delay) -> Delay:

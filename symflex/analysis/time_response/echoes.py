@@ -85,14 +85,14 @@ def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo]:
         later(delay, first): (quotient.durations.polynomial(p), 1) for delay, p in quotient.above.items()
     }
     check_order(begun, quotient.durations)
-    found: list[Echo] = []
+    echoes_so_far: list[Echo] = []
     powers = 0
     for delay, (numerator, power) in arriving(begun, below, joined, followed, quotient.durations, last):
-        found.append(Echo(delay, numerator, power))
+        echoes_so_far.append(Echo(delay, numerator, power))
         powers += power if leading.degree() else 0
         if powers > EFFORT.powers:
             raise TooManyEchoesError
-    return found
+    return echoes_so_far
 
 
 def check_order(begun: Iterable[Delay], durations: Durations) -> None:

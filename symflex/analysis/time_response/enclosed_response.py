@@ -169,25 +169,28 @@ class EnclosedResponse:
         return "\n".join([*heads, "time_s,value,radius", *rows]) + "\n"
 
 
-def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
+def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     """Return a response as the command line prints it, with notes between its head and its table."""
-    unit = f" [{found.unit}]" if found.unit else ""
-    trust = "certified" if found.certified else f"NOT CERTIFIED: {found.reason}"
-    head = [f"{found.tf}   {found.title}{unit}, {trust}", *(f"  not by {why}" for why in found.refused)]
+    unit = f" [{response.unit}]" if response.unit else ""
+    trust = "certified" if response.certified else f"NOT CERTIFIED: {response.reason}"
+    head = [
+        f"{response.tf}   {response.title}{unit}, {trust}",
+        *(f"  not by {why}" for why in response.refused),
+    ]
     lines = [*(piece for line in head for piece in broken(line)), ""]
-    if found.impulses:
-        lines += [f"  {_impulse(found, impulse)}" for impulse in found.impulses[:ROWS]]
-        lines += _more(found.impulses)
-    if found.jumps:
-        lines += [f"  jumps by {_short(j.height)} at {_short(j.time)} s" for j in found.jumps[:ROWS]]
-        lines += _more(found.jumps)
+    if response.impulses:
+        lines += [f"  {_impulse(response, impulse)}" for impulse in response.impulses[:ROWS]]
+        lines += _more(response.impulses)
+    if response.jumps:
+        lines += [f"  jumps by {_short(j.height)} at {_short(j.time)} s" for j in response.jumps[:ROWS]]
+        lines += _more(response.jumps)
     lines += [f"  {note}" for note in notes]
-    lines += [""] if found.impulses or found.jumps or notes else []
-    count = len(found.enclosures)
+    lines += [""] if response.impulses or response.jumps or notes else []
+    count = len(response.enclosures)
     step = max(1, -(-(count - 1) // (ROWS - 1)))
     rows = [("t [s]", "value", "radius")]
     for i in range(0, count, step):
-        rows.append((f"{found.times[i]:.6g}", *_told(found.enclosures[i], found.digits)))
+        rows.append((f"{response.times[i]:.6g}", *_told(response.enclosures[i], response.digits)))
     lines += aligned(rows, "  ")
     if step > 1:
         lines += ["", f"  every {step} of {count} points; --json and -o FILE.csv have them all"]
@@ -204,7 +207,7 @@ def _short(ball: arb) -> str:
     return decimals(ball, arb(0), SHORT_DIGITS).told.re
 
 
-def _impulse(found: EnclosedResponse, impulse: ImpulseAt) -> str:
+def _impulse(response: EnclosedResponse, impulse: ImpulseAt) -> str:
     order = impulse.order
     what = IMPULSES[order] if order < len(IMPULSES) else f"derivative {order} of an impulse"
     return f"also, at {_short(impulse.time)} s, {what} of weight {_short(impulse.weight)}"

@@ -45,13 +45,13 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     """
     few, many = EFFORT.few_estimated, EFFORT.estimated_modes
     count = few if isinstance(bound, BoundNested) else many
-    found = _summed(bound, integrations, times, count)
-    left = sorted(found.at_times or (found.rest,), key=arb.mid)
+    modal_sum = _summed(bound, integrations, times, count)
+    left = sorted(modal_sum.at_times or (modal_sum.rest,), key=arb.mid)
     typical = left[len(left) // 2]
-    if count == few and EFFORT.little * found.largest <= typical < EFFORT.hopeless * found.largest:
-        found, count = _summed(bound, integrations, times, many), many
-    told = sum(bool(y.rad() < EFFORT.too_much * found.largest) for y in found.sampled.values)
-    if 2 * told < len(found.values):
+    if count == few and EFFORT.little * modal_sum.largest <= typical < EFFORT.hopeless * modal_sum.largest:
+        modal_sum, count = _summed(bound, integrations, times, many), many
+    told = sum(bool(y.rad() < EFFORT.too_much * modal_sum.largest) for y in modal_sum.sampled.values)
+    if 2 * told < len(modal_sum.values):
         message = f"the modes of {bound.name} decay too slowly to determine its response in time"
         # The smoother the input is, the less high modes add.
         smoother = ("a step in place of an impulse", "a ramp in place of a step")[
@@ -60,7 +60,7 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
         hint = " or ".join([*(f"ask for {each}," for each in smoother), "filter the output"])
         raise UncertifiedError(Diagnostic("SF810", message, None, hint))
     reason = f"the contribution of modes beyond the lowest {count} is estimated"
-    return replace(found.sampled, modes=None, reason=reason)
+    return replace(modal_sum.sampled, modes=None, reason=reason)
 
 
 def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, count: int) -> PartialSum:
@@ -117,10 +117,10 @@ def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -
     # Between many members exponentials take each other out, and so far out these are large.
     for bits in precisions(BITS, EFFORT.begun_bits):
         spend()
-        found = (bound.enclosed(bits)(acb(far)) / far ** (integrations - 1)).real
-        if found.rad() <= max(small, EFFORT.begun_closely * float(abs(found).mid())):
+        initial = (bound.enclosed(bits)(acb(far)) / far ** (integrations - 1)).real
+        if initial.rad() <= max(small, EFFORT.begun_closely * float(abs(initial).mid())):
             break
-    return found
+    return initial
 
 
 def _rings(
@@ -132,8 +132,8 @@ def _rings(
     reached = max((root.natural_frequency() for root in poles), default=arb(0), key=arb.mid)
     places = [root.enclosure() for root in poles]
     with precision(2 * EFFORT.bits):
-        found = [ring_about(hole, places) for hole in holes_about(accumulation_points(bound))]
-        rings = [ring for ring in found if ring is not None and ring.reach < reached]
+        annuli = [ring_about(hole, places) for hole in holes_about(accumulation_points(bound))]
+        rings = [ring for ring in annuli if ring is not None and ring.reach < reached]
         return [
             (ring, ring.terms(bound, integrations)) for ring in rings if None not in map(ring.holds, places)
         ]

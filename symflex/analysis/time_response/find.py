@@ -118,26 +118,26 @@ def time_response(
         return _shaped(bound, kind, times, digits, shaper)
     integrations = INTEGRATIONS[kind]
     if bound.is_zero or not len(times):
-        found = Sampled((arb(0),) * len(times))
+        sampled = Sampled((arb(0),) * len(times))
     elif isinstance(bound, BoundNested) and bound.is_distributed:
-        found = _of_network(bound, integrations, times)
+        sampled = _of_network(bound, integrations, times)
     else:
         written = of_numbers(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
-        found = _answer(Asked(written, integrations, times, digits))
+        sampled = _answer(Asked(written, integrations, times, digits))
     return EnclosedResponse(
         bound.name,
         kind,
         unit_of_response(bound.source.output, bound.source.input),
         times.seconds,
-        found.values,
-        found.impulses,
-        found.jumps,
-        found.reason is None,
-        found.reason,
+        sampled.values,
+        sampled.impulses,
+        sampled.jumps,
+        sampled.reason is None,
+        sampled.reason,
         digits,
-        modes=found.modes,
-        method=found.method,
-        refused=found.refused,
+        modes=sampled.modes,
+        method=sampled.method,
+        refused=sampled.refused,
     )
 
 
@@ -218,14 +218,14 @@ def _answer(asked: Asked) -> Sampled:
     for way in WAYS:
         plan = way.applies(asked)
         try:
-            found = plan if isinstance(plan, Refused) else plan()
+            answer = plan if isinstance(plan, Refused) else plan()
         except TooManyEchoesError:
-            found = Refused("too many echoes arrive by then")
-        if isinstance(found, Sampled):
+            answer = Refused("too many echoes arrive by then")
+        if isinstance(answer, Sampled):
             reasons = tuple(f"{', '.join(names)}: {reason}" for reason, names in refused.items())
-            return replace(found, refused=found.refused or reasons) if found.reason else found
-        if found.reason:
-            refused.setdefault(found.reason, []).append(way.name)
+            return replace(answer, refused=answer.refused or reasons) if answer.reason else answer
+        if answer.reason:
+            refused.setdefault(answer.reason, []).append(way.name)
         spend()
     message = f"poles of {asked.bound.name} cannot be told apart: its response is not known"
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
@@ -265,8 +265,8 @@ def _by_modes(
 ) -> Plan | Refused:
     if asked.has_delays or not asked.bound.is_distributed:
         return Refused("there is a delay in a loop")
-    found = find(asked.bound, asked.integrations)
-    return found if isinstance(found, Refused) else partial(_summed, asked, *found)
+    bound = find(asked.bound, asked.integrations)
+    return bound if isinstance(bound, Refused) else partial(_summed, asked, *bound)
 
 
 def _by_estimate(asked: Asked) -> Plan | Refused:
@@ -287,9 +287,11 @@ WAYS = (
 
 
 def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:
-    found = summed(bounding, integrations, asked.times, asked.digits)
+    modal_sum = summed(bounding, integrations, asked.times, asked.digits)
     return (
-        Refused("the contributions of the modes do not decay fast enough") if found is None else found.sampled
+        Refused("the contributions of the modes do not decay fast enough")
+        if modal_sum is None
+        else modal_sum.sampled
     )
 
 
@@ -297,11 +299,11 @@ def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -
     """Return a response from ever more digits and sharper times, until it is precise."""
     times, wanted = asked.times, asked.digits + EFFORT.guard_digits
     for _ in range(EFFORT.attempts):
-        found = find(times, wanted)
-        if found is not None:
-            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
-            if is_precise(apart, asked.digits) and (times.is_exact or not found.at_jumps):
-                return found
+        sampled = find(times, wanted)
+        if sampled is not None:
+            apart = [y for i, y in enumerate(sampled.values) if i not in sampled.at_jumps]
+            if is_precise(apart, asked.digits) and (times.is_exact or not sampled.at_jumps):
+                return sampled
             times = times if times.is_exact else times.one_by_one()
         wanted *= 2
     return Refused("the poles between the delays lie too close together")
@@ -322,7 +324,7 @@ def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransf
             mixed = mixed * factor**exponent
         else:
             plain = plain * Factored.polynomial(ring, factor) ** exponent
-    parts, found = coefficients_of(ring, mixed, tuple(delays)), []
+    parts, delayed = coefficients_of(ring, mixed, tuple(delays)), []
     for exponents, coefficient in parts.items():
         num = plain * Factored.polynomial(ring, coefficient)
         ratio = num / bound.den
@@ -337,14 +339,14 @@ def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransf
             hidden=(),
             is_of_model=bound.is_of_model and len(parts) == 1,
         )
-        found.append(([(k, e) for k, e in zip(delays.values(), exponents, strict=True) if e], part))
-    return found
+        delayed.append(([(k, e) for k, e in zip(delays.values(), exponents, strict=True) if e], part))
+    return delayed
 
 
 def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> Sampled:
     """Return the sum of responses that come after delays."""
     bits, evaluator = bits_for_digits(2 * asked.digits), asked.bound.kernel_values()
-    found = Sampled(())
+    sampled = Sampled(())
     with precision(bits):
         total = Gathered(asked.times.enclosed())
         constants = {name: acb(c) for name, c in evaluator.constants.items()}
@@ -364,12 +366,12 @@ def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> S
         with precision(bits):
             start, later = asked.times.since(wait)
         if len(later):
-            found = _answer(replace(asked, bound=part, times=later))
-            reason, refused = reason or found.reason, refused or found.refused
+            sampled = _answer(replace(asked, bound=part, times=later))
+            reason, refused = reason or sampled.reason, refused or sampled.refused
             with precision(bits):
-                own = [gain * y for y in found.values[: len(asked.times) - start]]
+                own = [gain * y for y in sampled.values[: len(asked.times) - start]]
                 total.add(wait, (), arb(0), own, is_late=bool(wait > 0))
-    return replace(total.sampled(found.method), reason=reason, refused=refused)
+    return replace(total.sampled(sampled.method), reason=reason, refused=refused)
 
 
 def _of_lumped(asked: Asked) -> Sampled | Refused:
@@ -390,9 +392,9 @@ def _of_lumped(asked: Asked) -> Sampled | Refused:
                 impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
                 # Residues may need all bits that poles have; sums of exponentials need those of their result.
                 with precision(bits_for_digits(wanted + decimal_exponent(exact_fraction(turned + 1)) + 1)):
-                    found = Sampled(tuple(values_of(terms, times)), impulses, method="partial fractions")
-                if is_precise(found.values, digits):
-                    return found
+                    sampled = Sampled(tuple(values_of(terms, times)), impulses, method="partial fractions")
+                if is_precise(sampled.values, digits):
+                    return sampled
                 if not times.is_exact:
                     times = times.one_by_one()
         wanted = max(

@@ -105,13 +105,13 @@ def forced_response(
             total = [y + begun * s for y, s in zip(total, sudden.enclosures, strict=False)]
             impulses = tuple(ImpulseAt(i.time + origin, i.order, i.weight * begun) for i in sudden.impulses)
             jumps = tuple(JumpAt(j.time + origin, j.height * begun) for j in sudden.jumps)
-        found = tuple(total[i] if i >= 0 else arb(0) for i in moments)
+        response = tuple(total[i] if i >= 0 else arb(0) for i in moments)
     reason = next((r for r in reasons if r is not None), None)
     return replace(
         ramp,
         input=FORCED,
         times=np.array([float(t) for t in times]),
-        enclosures=found,
+        enclosures=response,
         impulses=impulses,
         jumps=jumps,
         certified=reason is None,

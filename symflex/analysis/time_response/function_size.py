@@ -59,11 +59,11 @@ class SizeOfExponentials:
     @classmethod
     def of(cls, bound: BoundTransferFunction) -> SizeOfExponentials | None:
         """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
-        found = exponential_sums(bound.ratio, bound.kernels)
-        if found is None:
+        sums = exponential_sums(bound.ratio, bound.kernels)
+        if sums is None:
             return None
         with precision(EFFORT.bits):
-            return cls(bound, ExponentialValues(bound.kernel_values(), *found))
+            return cls(bound, ExponentialValues(bound.kernel_values(), *sums))
 
     @cached_property
     def is_even(self) -> bool:
@@ -103,8 +103,8 @@ class SizeOfExponentials:
                 grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
         # Added up first: the balls of what grows above and below would not cancel.
         rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
-        found = total if rest is None else total * at_centre(rest).real.exp()
-        return found.upper() if found.is_finite() else None
+        bound = total if rest is None else total * at_centre(rest).real.exp()
+        return bound.upper() if bound.is_finite() else None
 
     def on_arc(self, reached: float, start: float, end: float) -> arb | None:
         """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
@@ -261,12 +261,12 @@ class Annulus:
     def terms(self, bound: BoundTransferFunction, integrations: int) -> list[ExponentialTerm]:
         """Return what poles within add, as a sum over points of the ring, in conjugate pairs."""
         count = 2 * int(EFFORT.ring_power / float(self.width.log().mid()) / 2 + 1)
-        values, found = bound.enclosed(2 * EFFORT.bits), []
+        values, terms = bound.enclosed(2 * EFFORT.bits), []
         for k in range(count // 2):
             off = self.radius * acb(0, arb(2 * k + 1) * arb.pi() / count).exp()
             s = self.centre + off
-            found.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
-        return found
+            terms.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
+        return terms
 
     def holds(self, point: acb) -> bool | None:
         """Tell whether a point lies within; None on the ring."""

@@ -184,17 +184,17 @@ class LosslessModes(ModesBound):
             return None
         with precision(BITS):
             t = (root.im / 2).sqrt()
-            found, steep = self.constant * (self.growth * t).exp(), 0
+            residue, steep = self.constant * (self.growth * t).exp(), 0
             for factor in self.factors:
                 values = factor.function.values(BITS)
                 value = values.value(t)
                 if value.contains(0) and factor.exponent < 0:
                     value, steep = values.slope(t), steep - factor.exponent
-                found = found * value**factor.exponent
+                residue = residue * value**factor.exponent
             s = acb(0, root.im)
             # ds = 4 j t dt
-            found = 2 * found * acb(0, 4 * t) / s**integrations
-            return ExponentialTerm(s, (found,)) if steep == 1 and found.is_finite() else None
+            residue = 2 * residue * acb(0, 4 * t) / s**integrations
+            return ExponentialTerm(s, (residue,)) if steep == 1 and residue.is_finite() else None
 
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
         """Return a bound of all modes beyond a radius together."""
@@ -218,10 +218,10 @@ class LosslessModes(ModesBound):
             return None
         largest, places, most = arb(0), 0, 0
         for factor in self.poles:
-            found = self._largest(factor, least)
-            if found is None or factor.exponent != -1:
+            size = self._largest(factor, least)
+            if size is None or factor.exponent != -1:
                 return None
-            largest, places, most = largest.max(found[0]), places + found[1], most + 2 * factor.turns
+            largest, places, most = largest.max(size[0]), places + size[1], most + 2 * factor.turns
         if places != most:
             return None
         return abs(self.constant) * (self.growth * least).exp() * 8 * largest * (places + 1)
@@ -276,16 +276,16 @@ def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
     function = None if whole is None else KernelFunction(bound, whole)
     if whole is None or function is None or function.power != 1 or not (function.part / whole).is_one:
         return Refused("poles may be multiple")
-    found = lossless_function(function, BITS)
-    if found is None:
+    lossless = lossless_function(function, BITS)
+    if lossless is None:
         return Refused("something loses energy, or waves have two wavenumbers")
-    enclosures = found.enclosures
+    enclosures = lossless.enclosures
     if len(enclosures.rates) != 1 or enclosures.degrees[0] != 1:
         return Refused("waves are of other kinds than bending, or of several lengths")
     factors = []
     with precision(BITS):
-        for i, (terms, exponent) in enumerate(found.factors):
-            on_axis = found.on_axis(i, IMAGINARY)
+        for i, (terms, exponent) in enumerate(lossless.factors):
+            on_axis = lossless.on_axis(i, IMAGINARY)
             waves = terms.turned(UNITS[IMAGINARY], enclosures.degrees).waves(1)
             if on_axis is None or not on_axis.waves or waves is None:
                 return Refused("it is not real on the imaginary axis")

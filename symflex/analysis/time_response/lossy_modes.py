@@ -87,7 +87,7 @@ class LossyBound(BoundBySize):
             if falls == 1:
                 limit = self.far_out.size(VAST)
                 start = limit.lead.real if limit is not None and limit.power == size.power else None
-            found = []
+            tails = []
             for t in times.enclosed():
                 own = always
                 if is_tilted and t > 0:
@@ -95,9 +95,9 @@ class LossyBound(BoundBySize):
                     own = (-turned).exp() * own.min(arc + ray / turned)
                 if not own.is_finite() and not (t == 0 and start is not None):
                     return None
-                found.append(own.upper())
+                tails.append(own.upper())
             fade = SLOPE * radius if is_tilted else ZERO
-            return Rest(always, tuple(found), start, fade)
+            return Rest(always, tuple(tails), start, fade)
 
 
 def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyBound, int] | Refused:
@@ -106,12 +106,12 @@ def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyB
     if function is None:
         return Refused("it is not a short sum of exponentials")
     start = KernelFunction(bound, bound.den).frequency_of(1.0)
-    found = []
+    bounds = []
     for sectors in (TILTED, SECTORS):
         far_out = FunctionFarOut.of(bound, sectors)
         least = None if far_out is None else far_out.least(start)
         if far_out is not None and least is not None:
-            found.append(LossyBound(function, far_out, log(least)))
-    if not found:
+            bounds.append(LossyBound(function, far_out, log(least)))
+    if not bounds:
         return Refused("some waves have no material loss")
-    return found[-1 if found[0].least > found[-1].least + log(FAR) else 0], integrations
+    return bounds[-1 if bounds[0].least > bounds[-1].least + log(FAR) else 0], integrations

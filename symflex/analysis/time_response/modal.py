@@ -70,9 +70,9 @@ def proved_modes(
     At most so many modes are summed, where so many digits would need more.
     """
     for find in BOUNDS.values():
-        found = find(bound, integrations)
-        if not isinstance(found, Refused):
-            total = summed(*found, times, digits, most)
+        bounding = find(bound, integrations)
+        if not isinstance(bounding, Refused):
+            total = summed(*bounding, times, digits, most)
             if total is not None:
                 return total
     return None
@@ -88,20 +88,22 @@ def summed(
     if first is None:
         return None
     goal = EFFORT.enough * float(first.largest) * 10.0 ** -min(digits, EFFORT.mode_digits)
-    found = first if first.left <= goal else modes.summed(many)
-    if found is None:
+    partial = first if first.left <= goal else modes.summed(many)
+    if partial is None:
         return first if modes.is_exhausted else None
     counts = few, many
-    for _ in range(EFFORT.rounds if found is not first else 0):
-        wanted = _needed((counts[0], float(first.left)), (counts[1], float(found.left)), goal, bounding.most)
+    for _ in range(EFFORT.rounds if partial is not first else 0):
+        wanted = _needed(
+            (counts[0], float(first.left)), (counts[1], float(partial.left)), goal, bounding.most
+        )
         wanted = min(bounding.slow, wanted) if wanted == bounding.most else wanted
         wanted = min(wanted, limit or wanted)
-        falls = bool(found.left < first.left)
+        falls = bool(partial.left < first.left)
         more = modes.summed(wanted) if falls and wanted > counts[1] else None
         if more is None:
             break
-        counts, first, found = (counts[1], wanted), found, more
-    return found
+        counts, first, partial = (counts[1], wanted), partial, more
+    return partial
 
 
 class BoundedModes:
@@ -204,15 +206,15 @@ class BoundedModes:
         for hole in self._side.holes:
             if hole.low > reached:
                 continue
-            found = self._rings.get(hole)
-            if found is None:
-                found = self._bounding.ring(hole, poles, self._integrations)
-            if found is None or not found[0].reach < arb(reached).exp():
+            ring = self._rings.get(hole)
+            if ring is None:
+                ring = self._bounding.ring(hole, poles, self._integrations)
+            if ring is None or not ring[0].reach < arb(reached).exp():
                 return None
-            self._rings[hole] = found
-            rings.append(found[0])
-            terms += found[1]
-            missing += found[2]
+            self._rings[hole] = ring
+            rings.append(ring[0])
+            terms += ring[1]
+            missing += ring[2]
         return rings, terms, missing
 
     def _continued(self, count: int) -> tuple[float, list[Root]] | None:
@@ -237,13 +239,13 @@ class BoundedModes:
             places = [_root_of(root) for root in [*chain, *added][-len(CONTINUATION) :]]
             while len(chain) + len(added) <= count:
                 place = sum(c * z for c, z in zip(CONTINUATION, places, strict=True))
-                found = prove_simple(side.function, acb(place**2), EFFORT.pole_digits)
-                if found is None or not found.certified:
+                proved = prove_simple(side.function, acb(place**2), EFFORT.pole_digits)
+                if proved is None or not proved.certified:
                     return None
-                places = [*places[1:], _root_of(found)]
+                places = [*places[1:], _root_of(proved)]
                 if not abs(places[-1] - place) < EFFORT.next_to * abs(places[-1] - places[-2]):
                     return None
-                added.append(found)
+                added.append(proved)
             ends = [float(root.natural_frequency().log().mid()) for root in added[-2:]]
             reached = sum(ends) / len(ends)
             between = sum(1 if root.is_real else 2 for root in added[:-1])
@@ -285,8 +287,8 @@ def term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> Expo
 def term_of(part: PrincipalPart, integrations: int) -> ExponentialTerm:
     """Return what a principal part and that of the conjugate pole add."""
     share = 1 if part.root.is_real else 2
-    found = over_powers(part.pole, part.coefficients, integrations)
-    return ExponentialTerm(part.pole, tuple(share * c for c in found))
+    coefficients = over_powers(part.pole, part.coefficients, integrations)
+    return ExponentialTerm(part.pole, tuple(share * c for c in coefficients))
 
 
 def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: int = 2000) -> int:
@@ -330,10 +332,10 @@ def over_powers(pole: acb, coefficients: tuple[acb, ...], integrations: int) -> 
     >>> [complex(c) for c in over_powers(acb(2), (acb(1), acb(4)), 1)]  # 1/x + 4/x^2, over 2 + x
     [(-0.5+0j), (2+0j)]
     """
-    found = list(coefficients)
+    divided = list(coefficients)
     for _ in range(integrations):
         # With s = p + x: the part of 1/x^k over p + x begins with c_k/p, and takes from those before it.
-        for k in range(len(found) - 1, -1, -1):
-            above = found[k + 1] if k + 1 < len(found) else acb(0)
-            found[k] = (found[k] - above) / pole
-    return found
+        for k in range(len(divided) - 1, -1, -1):
+            above = divided[k + 1] if k + 1 < len(divided) else acb(0)
+            divided[k] = (divided[k] - above) / pole
+    return divided

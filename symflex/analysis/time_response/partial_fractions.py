@@ -90,8 +90,8 @@ def values_of(
             right += [[w.real for w in column], [w.imag for w in column]]
     if not right or not count:
         return [arb(0)] * count
-    found: list[arb] = (arb_mat(left) * arb_mat(right)).entries()
-    return found[:count]
+    values: list[arb] = (arb_mat(left) * arb_mat(right)).entries()
+    return values[:count]
 
 
 @dataclass(frozen=True)
@@ -136,14 +136,14 @@ def partial_fractions(
         for root in poles
         if not (root.im < 0 or root.is_zero)
     ]
-    found = []
+    terms = []
     for pole, order, share in places:
         above, below = (partial(_taylor, side) for side in (divided.above, divided.below))
         coefficients = principal_part(above, below, pole, order)
         if coefficients is None:
             return None
-        found.append(ExponentialTerm(pole, tuple(c * divided.unit * share for c in coefficients[::-1])))
-    return found
+        terms.append(ExponentialTerm(pole, tuple(c * divided.unit * share for c in coefficients[::-1])))
+    return terms
 
 
 def _taylor(factors: Sequence[tuple[acb_poly, int]], centre: acb, count: int) -> list[acb]:
@@ -166,5 +166,5 @@ def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[ar
     surplus = int(num.degree()) - int(den.degree()) - integrations
     if surplus < -1:
         return (), arb(0)
-    *found, last = (c.real for c in series_quotient(num.coeffs()[::-1], den.coeffs()[::-1], surplus + 2))
-    return tuple(found[::-1]), last
+    *impulses, last = (c.real for c in series_quotient(num.coeffs()[::-1], den.coeffs()[::-1], surplus + 2))
+    return tuple(impulses[::-1]), last

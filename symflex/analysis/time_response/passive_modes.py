@@ -134,8 +134,8 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
         return Refused("an end is a coordinate on which no force or torque does work")
     if len(ends) == 1:
         return PassiveBound(function, order, size, ()), integrations
-    found = (SizeOfExponentials.of(c) for c in _colocated(bound, model, ends))
-    sizes = tuple(each for each in found if each is not None)
+    of_functions = (SizeOfExponentials.of(c) for c in _colocated(bound, model, ends))
+    sizes = tuple(each for each in of_functions if each is not None)
     if len(sizes) < PAIR:
         return Refused(
             "the two ends are not reciprocal: a force at one does not move the other as much as the reverse"
@@ -162,8 +162,8 @@ def _colocated(
     # A model of which some numbers are written into the wavenumbers has no longer all parameters.
     left = {p.name for p in given.parameters}
     values = {name: value for name, value in bound.values if name in left}
-    found = [bind(tf, values) for tf in derive_all(given, pairs)]
-    return [found[0], found[-1]] if (found[1].ratio / found[2].ratio).is_one else []
+    derived = [bind(tf, values) for tf in derive_all(given, pairs)]
+    return [derived[0], derived[-1]] if (derived[1].ratio / derived[2].ratio).is_one else []
 
 
 def force_on(model: Model, variable: Variable) -> str | None:

@@ -196,10 +196,10 @@ def default_until(bound: AnyBoundFunction, roots: PoleZeroMap | None = None) -> 
 def _delays(bound: AnyBoundFunction) -> list[float]:
     if isinstance(bound, BoundNested) or not bound.is_distributed:
         return []
-    evaluator, found = bound.kernel_values(), []
+    evaluator, delays = bound.kernel_values(), []
     values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
     for kernel in bound.kernels.kernels:
         if kernel.function == "exp":
             delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
-            found.append(abs(float(at_centre(delay).real)))
-    return found
+            delays.append(abs(float(at_centre(delay).real)))
+    return delays

@@ -138,8 +138,8 @@ def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) 
     """Return the poles right of a line, of which there are so many; fewer where these are not the lowest."""
     poles: list[Root] = []
     for more in (0, EFFORT.line_modes) if count else ():
-        found = locate(bound, Modes(count + more), digits)
-        poles = [p for p in found.all_poles if p.enclosure().real + rate > 0]
+        located = locate(bound, Modes(count + more), digits)
+        poles = [p for p in located.all_poles if p.enclosure().real + rate > 0]
         if sum(p.multiplicity for p in poles) == count:
             break
     return poles
@@ -196,7 +196,7 @@ def pieces_of(
     """
     loop = _Loop(quotient, digits)
     below = acb_poly(loop.leading)
-    found: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
+    pieces: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
     known: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
     before = arb(0)
     for echo in echoes(quotient, until):
@@ -205,12 +205,12 @@ def pieces_of(
         terms = terms_of_echo(echo, below, loop.poles, 1)
         if terms is None:
             return None
-        if not found and start > 0:
-            found.append((arb(0), ()))
+        if not pieces and start > 0:
+            pieces.append((arb(0), ()))
         known = {key: term.later(start - before) for key, term in known.items()}
         for term in terms:
             key = tuple(tuple(map(int, x.mid().man_exp())) for x in (term.rate.real, term.rate.imag))
             known[key] = known[key] + term if key in known else term
-        found.append((start, tuple(known.values())))
+        pieces.append((start, tuple(known.values())))
         before = start
-    return found
+    return pieces

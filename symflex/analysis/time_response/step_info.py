@@ -125,17 +125,17 @@ class StepInfo:
             ("rise time, 10 % to 90 %", self.rise_time, "s", "not found"),
             ("settling time, to 2 %", self.settling_time, "s", "not found"),
         ]
-        found = []
+        rows = []
         for name, ball, of, without in shown:
             if ball is None:
-                found += [(name, without)] if without else []
+                rows += [(name, without)] if without else []
                 continue
             if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
                 said = decimals(ball, arb(0), digits).re
-            found.append((name, said if of in ("", "1") else f"{said} {of}"))
-        return found
+            rows.append((name, said if of in ("", "1") else f"{said} {of}"))
+        return rows
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
         """Return every number as ``value`` and ``radius``, null where it is not found."""
@@ -174,20 +174,22 @@ def _of_modes(bound: BoundTransferFunction, known: PartialSum | None) -> StepInf
     """Return the properties of a sum over modes; high ones, which make it rough, are a part of its rest."""
     if any(law.kind == "exponential" for law in bound.kernels.dispersions):
         return _of_delays(bound)
-    found = known
-    if found is None:
-        found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS, MOST_MODES)
-    if found is None:
+    modal_sum = known
+    if modal_sum is None:
+        modal_sum = proved_modes(
+            bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS, MOST_MODES
+        )
+    if modal_sum is None:
         return None
     with precision(MODES_BITS):
-        final = _resting(found.terms)
+        final = _resting(modal_sum.terms)
         if final is None:
             return None
-        moving = [_scaled(t, final) for t in found.terms if not t.rate.is_zero()]
-        rest = (found.rest / abs(final)).upper()
+        moving = [_scaled(t, final) for t in modal_sum.terms if not t.rate.is_zero()]
+        rest = (modal_sum.rest / abs(final)).upper()
         best: StepInfo | None = None
         for count in SMOOTH_MODES:
-            info = _told(final, NormalisedResponse(_pieces(moving, count, rest, found.fade)))
+            info = _told(final, NormalisedResponse(_pieces(moving, count, rest, modal_sum.fade)))
             best = info if best is None or info.missing < best.missing else best
             if not best.missing:
                 break
@@ -212,13 +214,13 @@ def _pieces(terms: Sequence[ExponentialTerm], count: int, rest: arb, fade: arb) 
     starts = [each.mid() for each in lasting[-1:]]
     while starts and starts[-1] > lasting[0] and len(starts) < MOST_PIECES:
         starts.append(starts[-1] / 2)
-    found = []
+    pieces = []
     for begins in (arb(0), *reversed(starts)):
         sizes = sorted(((_size(t, begins), t) for t in terms), key=lambda own: float(own[0]), reverse=True)
         kept = [t for size, t in sizes[:count] if not size < DEAD]
         left = sum((size for size, _ in sizes[len(kept) :]), rest * (-fade * begins).exp())
-        found.append(Piece(tuple(kept), begins, constant=1, rest=left.upper()))
-    return found
+        pieces.append(Piece(tuple(kept), begins, constant=1, rest=left.upper()))
+    return pieces
 
 
 def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:

@@ -116,8 +116,8 @@ class WaveQuotient:
                 radius = EFFORT.wave_circles * radius
                 continue
             echoes = arriving(*sizes, _total, lambda own, q: (own * q).upper(), durations, last)
-            found = [size for _, size in echoes]
-            return radius, max(found, default=arb(1), key=arb.mid).max(1), len(found)
+            echo_sizes = [size for _, size in echoes]
+            return radius, max(echo_sizes, default=arb(1), key=arb.mid).max(1), len(echo_sizes)
         return None
 
     def _sizes(
@@ -203,12 +203,12 @@ def _real(series: Value) -> arb_series:
 
 
 def _product(a: Mapping[Delay, Value], b: Mapping[Delay, Value]) -> dict[Delay, Value]:
-    found: dict[Delay, Value] = {}
+    product: dict[Delay, Value] = {}
     for first, one in a.items():
         for second, other in b.items():
             delay, term = sum_of(first, second), one * other
-            found[delay] = found[delay] + term if delay in found else term
-    return found
+            product[delay] = product[delay] + term if delay in product else term
+    return product
 
 
 Sum = TypeVar("Sum", arb, arb_series)
@@ -244,16 +244,16 @@ class _AtInfinity:
         A ball is one on a circle about the ``origin``, at which ``spread`` is not told.
         """
         values = waves.values
-        found: dict[str, Value] = {}
+        roots: dict[str, Value] = {}
         for law in values.evaluator.table.dispersions:
             if law.wavenumbers:
                 try:
                     over = [_over(waves.bound, c, law.order - i, x) for i, c in enumerate(law.characteristic)]
-                    found.update(law.roots(over, _root))
+                    roots.update(law.roots(over, _root))
                 except _BranchError:
                     return None
         slopes: dict[str, Value] = {}
-        for name, g in found.items():
+        for name, g in roots.items():
             if isinstance(g, acb_series):
                 slopes[name] = acb_series(g.coeffs()[1:], g.prec - 1)
             elif origin is not None:
@@ -261,13 +261,13 @@ class _AtInfinity:
         # A delay is proportional to s.
         rates = [slopes.get(argument.wavenumber, acb(0)) for argument in values.arguments]
         spread = [rate * length for rate, length in zip(rates, values.lengths, strict=True)]
-        return cls(waves, values, x, found, spread)
+        return cls(waves, values, x, roots, spread)
 
     def sum(self, number: int) -> dict[Delay, Value]:
         """Return one factor over the highest power of s, by delays."""
         terms, _ = self.values.sums[number]
         top = self.waves.degrees[number]
-        found: dict[Delay, Value] = {}
+        amplitudes: dict[Delay, Value] = {}
         for (exponent, _), valued in zip(terms.terms.items(), self.values.coefficients[number], strict=True):
             amplitude: Value = acb(0)
             for number_, powers in valued:
@@ -279,8 +279,8 @@ class _AtInfinity:
             for i, a, _ in exponent:
                 amplitude = amplitude * (self.spread[i] * a).exp()
             delay = self.waves.reader.delay_of(exponent)
-            found[delay] = found[delay] + amplitude if delay in found else amplitude
-        return found
+            amplitudes[delay] = amplitudes[delay] + amplitude if delay in amplitudes else amplitude
+        return amplitudes
 
     @staticmethod
     def _power(value: Value, exponent: int) -> Value:
