@@ -44,6 +44,7 @@ from symflex.analysis.time_response.sampled import (
     Sampled,
     is_precise,
 )
+from symflex.analysis.time_response.settling import settled
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.balls import at_centre, bits_for_digits, precision
 from symflex.budget import spend
@@ -241,6 +242,15 @@ def _by_echoes(asked: Asked) -> Plan | Refused:
     return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
 
 
+def _by_settling(asked: Asked) -> Plan | Refused:
+    if asked.quotient is None or not asked.has_delays:
+        return Refused()
+    if not asked.integrations:
+        return Refused("the bound on all other poles is one on steps and ramps")
+    goal = asked.digits + EFFORT.guard_digits
+    return partial(_closely, asked, partial(settled, asked.bound, asked.quotient, asked.integrations, goal))
+
+
 def _by_wave_echoes(asked: Asked) -> Plan | Refused:
     if not asked.bound.is_distributed or asked.quotient is not None:
         return Refused()
@@ -278,6 +288,7 @@ def _by_estimate(asked: Asked) -> Plan | Refused:
 WAYS = (
     Way("partial fractions", _by_partial_fractions),
     Way("echoes", _by_echoes),
+    Way("settled echoes", _by_settling),
     Way("wave echoes", _by_wave_echoes),
     Way("delayed parts", _by_delays),
     *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),

@@ -8,21 +8,24 @@ it is made of at first, as exponentials.
 
 with the residues at poles right of that line. The integral is at most ``e^(-c t)`` times that of abs(H/s)
 over pi. The poles right of the line are counted by how often ``F = 1 + D_1/D_0 e^(-s d_1) + ...`` turns about
-zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0, and so must H.
+zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0. What passes straight
+through, such as 1 in ``s/(s + e^(-s))``, is no part of the integral: once it came, its residue is all of it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
 
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
-from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
+from symflex.analysis.time_response.echoes import earliest, echoed, echoes, terms_of_echo
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.modal import proved_at_origin, term_at
-from symflex.balls import UndecidedError, covered
+from symflex.analysis.time_response.partial_fractions import values_of
+from symflex.analysis.time_response.sampled import Sampled
+from symflex.balls import UndecidedError, bits_for_digits, covered, precision
 from symflex.budget import spend
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -34,17 +37,19 @@ if TYPE_CHECKING:
 
     from symflex.analysis.time_response.delayed_terms import Amplitude, Delay, DelayedQuotient
     from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+    from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, slots=True)
 class LateResponse:
-    """A step response within ``size * e^(-rate t)`` of some terms, at every time t [s]."""
+    """A step response within ``size * e^(-rate t)`` of some terms, once what passes straight through came."""
 
     terms: tuple[ExponentialTerm, ...]
     size: arb
     rate: arb
+    passed: tuple[arb, ...]  # times when that comes [s]
 
 
 @dataclass(frozen=True)
@@ -67,14 +72,26 @@ class _Loop:
             )
 
         self.leading = durations.polynomial(quotient.below[self.first])
-        self.above = [late(d, p) for d, p in quotient.above.items()]
         self.below = [late(d, p) for d, p in quotient.below.items() if later(d, self.first) != NO_DELAY]
+        self.above: list[LatePolynomial] = []
+        self.passed: list[arb] = []
+        n = self.leading.degree()
+        for part in (late(d, p) for d, p in quotient.above.items()):
+            if part.polynomial.degree() != n:
+                self.above.append(part)
+                continue
+            # c e^(-s T) passes straight through: H - c e^(-s T) is left, whose numerator is of lower degree.
+            c = part.polynomial[n] / self.leading[n]
+            left = (part.polynomial - c * self.leading).coeffs()[:n]
+            self.above.append(LatePolynomial(arb_poly(left), part.seconds))
+            self.above += [LatePolynomial(-c * p.polynomial, part.seconds + p.seconds) for p in self.below]
+            self.passed.append(part.seconds)
         exact = durations.exact(quotient.below[self.first])
         self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
 
     @property
     def falls_off(self) -> bool:
-        """Whether delayed terms, and H, fall off far out, so that nothing passes straight through."""
+        """Whether delayed terms, and H without what passes straight through, fall off far out."""
         n = self.leading.degree()
         parts = (*self.above, *self.below)
         return all(p.polynomial.degree() < n for p in parts) and all(p.seconds >= 0 for p in self.above)
@@ -84,7 +101,7 @@ class _Loop:
         return 1 + _at(self.below, s) / acb_poly(self.leading)(s)
 
     def value(self, s: acb) -> acb:
-        """Return H."""
+        """Return H without what passes straight through."""
         return _at(self.above, s) / (acb_poly(self.leading)(s) + _at(self.below, s))
 
     def far(self, parts: Sequence[LatePolynomial], rate: arb, radius: arb) -> arb:
@@ -104,11 +121,12 @@ def _at(parts: Sequence[LatePolynomial], s: acb) -> acb:
 
 
 def late_response(
-    bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int
+    bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int, integrations: int = 1
 ) -> LateResponse | None:
     """Return what a step response settles into, at the current precision, from poles of so many digits.
 
-    None where that is not proved: delayed terms do not fall off against D_0, or H does not.
+    With more integrations it is that of a ramp, on whose line H/s is divided by s, and s is no smaller than
+    the rate. None where that is not proved: delayed terms do not fall off against D_0, or H does not.
     """
     loop = _Loop(quotient, digits)
     if not loop.falls_off:
@@ -127,11 +145,49 @@ def late_response(
         poles = _right_of(bound, rate, count, digits)
         if sum(p.multiplicity for p in poles) != count or not all(p.certified for p in poles):
             continue
-        terms = [term_at(bound, root, 1) for root in poles if not root.im < 0 and not root.is_zero]
-        origin = proved_at_origin(bound, 1)
+        terms = [term_at(bound, root, integrations) for root in poles if not root.im < 0 and not root.is_zero]
+        origin = proved_at_origin(bound, integrations)
         if origin is not None and None not in terms:
-            return LateResponse((*origin, *filter(None, terms)), size, rate)
+            return LateResponse(
+                (*origin, *filter(None, terms)), size / rate ** (integrations - 1), rate, tuple(loop.passed)
+            )
     return None
+
+
+def settled(
+    bound: BoundTransferFunction,
+    quotient: DelayedQuotient,
+    integrations: int,
+    goal: int,
+    times: SampleTimes,
+    digits: int,
+) -> Sampled | None:
+    """Return a response to a step or ramp: echoes at first, then residues; None where there is no bound.
+
+    Residues begin when the bound on the other poles is below the ``goal``, in digits of the largest value.
+    Raises TooManyEchoesError when too many echoes arrive until then.
+    """
+    with precision(bits_for_digits(2 * digits)):
+        late = late_response(bound, quotient, digits, integrations)
+        if late is None:
+            return None
+        seconds, summed = times.enclosed(), values_of(late.terms, times)
+        largest = max((abs(y.mid()) for y in summed), default=arb(0))
+        rests = [(late.size * (-late.rate * t).exp()).upper() for t in seconds]
+        negligible = largest * arb(10) ** -goal
+        begins = next(
+            (
+                i
+                for i, (t, rest) in enumerate(zip(seconds, rests, strict=True))
+                if rest < negligible and all(t > passed for passed in late.passed)
+            ),
+            len(rests),
+        )
+        values = [y + arb(0, rest) for y, rest in zip(summed[begins:], rests[begins:], strict=True)]
+    early = echoed(quotient, integrations, replace(times, seconds=times.seconds[:begins]), digits)
+    if early is None:
+        return None
+    return replace(early, values=(*early.values, *values), method="settled echoes")
 
 
 def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) -> list[Root]:

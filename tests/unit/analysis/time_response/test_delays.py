@@ -197,6 +197,21 @@ def test_even_and_single_times_agree():
     assert np.all(np.abs(even.values - single.values) <= even.radius + single.radius)
 
 
+SPEED_LOOP = """
+symflex = 1
+parameters = { J = "1.2e-3 kg*m^2", b = "2e-3 N*m*s", k_p = "0.35 N*m*s", T_i = "60 ms", T_d = "0.5 ms" }
+inputs.r = { unit = "rad/s" }
+outputs.w = "s*phi"
+[blocks]
+D = { type = "delay", T = "T_d" }
+C = { type = "pid", k_p = "k_p", k_i = "k_p/T_i" }
+[elements]
+rotor = { type = "inertia", at = "phi", J = "J" }
+friction = { type = "rotary_damper", between = ["phi", "ground"], b = "b" }
+drive = { type = "torque_source", at = "phi", tau = "C*D*(r - s*phi)" }
+"""
+
+
 @pytest.mark.slow
 def test_a_neutral_loop_of_too_many_echoes_is_estimated_by_its_modes():
     text = 'symflex = 1\nparameters = { T = "1 ms", w = "1 1/s" }\ninputs.u = {}\n'
@@ -237,21 +252,46 @@ def test_where_nobody_says_how_long_a_slow_loop_is_followed_until_it_has_settled
     ids=["through", "unstable"],
 )
 @pytest.mark.slow
-def test_a_loop_run_through_many_times_is_the_sum_of_its_residues(gain, law, kind):
+def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind):
     signals = 'signals.x = "k*(u - D*x)/s"\n'
     found = time_response(
         bound(f'parameters.k = "{gain} 1/s"\nparameters.a = "{gain}"\n'
               f'blocks.D = {{ type = "delay", T = "1 s" }}\ninputs.u = {{}}\n{signals}outputs.y = "{law}"\n'),
-        kind, SampleTimes.of([55.0, 80.5, 300.0]),
+        kind, SampleTimes.of([0.4, 7.3, 55.0, 80.5, 300.0]),
     )  # fmt: skip
     # K/(s + K e^-s): s = W_n(-K) are its poles (Corless et al. 1996), K/(1 + s) its residues.
     s = np.array([complex(lambertw(-gain, n)) for n in range(-60, 60)])[:, None]
     order = 2 if kind == "ramp" else 0  # x goes through the integrator as well, and a ramp through another
-    expected = np.sum(gain / (s**order * (1 + s)) * np.exp(s * found.times), axis=0).real
+    later = found.times[1:]  # before the first delay the loop is open
+    expected = np.sum(gain / (s**order * (1 + s)) * np.exp(s * later), axis=0).real
     if kind == "ramp":
-        expected = expected + found.times - (1 - gain) / gain
-    assert not found.certified
-    assert found.values == pytest.approx(expected, rel=1e-11, abs=1e-12)
+        expected = expected + later - (1 - gain) / gain
+    assert found.certified
+    assert found.values[0] == pytest.approx(
+        gain * 0.4**2 / 2 if kind == "ramp" else gain, abs=found.radius[-1]
+    )
+    assert found.values[1:] == pytest.approx(expected, rel=1e-11, abs=1e-12)
+    assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
+
+
+def test_a_speed_loop_with_dead_time_is_what_small_steps_give():
+    # 0.28 s are 560 dead times, whose echoes are too many; the pole of friction is next to one at 0.
+    found = loads(SPEED_LOOP).transfer_function("w", "r").bind().step_response()
+    info = loads(SPEED_LOOP).transfer_function("w", "r").bind().step_info()
+    step, late = 1e-5, 50
+    speed, integral, torques, speeds = 0.0, 0.0, [], []
+    for k in range(int(0.03 / step)):
+        error = 1 - speed
+        torques.append(0.35 * error + 0.35 / 0.06 * integral)
+        speed += step * ((torques[k - late] if k >= late else 0) - 2e-3 * speed) / 1.2e-3
+        integral += step * error
+        speeds.append(speed)
+    assert found.certified
+    assert float(info.peak.mid()) == pytest.approx(max(speeds), rel=1e-3)
+    assert float(info.peak_time.mid()) == pytest.approx(step * np.argmax(speeds), rel=3e-3)
+    assert np.interp(found.times[1:20], step * np.arange(1, 1 + len(speeds)), speeds) == pytest.approx(
+        found.values[1:20], rel=3e-3
+    )
 
 
 @pytest.mark.slow
