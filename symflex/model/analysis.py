@@ -24,14 +24,7 @@ from symflex.expressions import (
     names_among,
     nodes,
 )
-from symflex.model.model import (
-    PI_NEARLY,
-    TRANSFORMER_SYMBOLS,
-    Analysis,
-    DrawingHints,
-    Figure,
-    Published,
-)
+from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
 from symflex.model.spec import BooleanValue, NumberValue, TableValue

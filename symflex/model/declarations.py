@@ -128,9 +128,7 @@ def read_label(reader: Reader, table: TableValue | None, what: str) -> str:
     return reader.read(check_label, reader.text(table, "latex", what)) or ""
 
 
-def with_formulas_defined(
-    sections: Mapping[str, TableValue | None],
-) -> dict[str, TableValue | None]:
+def with_formulas_defined(sections: Mapping[str, TableValue | None]) -> dict[str, TableValue | None]:
     """Return the sections with formulas among the parameters, as ``A = "b*h"``, among the definitions.
 
     A formula holds names that are declared, and no others. What may be a quantity written wrongly, as

@@ -9,15 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, nearest
 from symflex.library.blocks import BLOCKS
-from symflex.library.elements import (
-    CIRCUITS,
-    COMPONENT_DOMAIN,
-    COMPONENTS,
-    ELEMENTS,
-    Element,
-    Port,
-    Variable,
-)
+from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
@@ -298,10 +290,7 @@ def _references(
             rests = RESTS.get(port.domain, "an end that does not move")
             hint = f'{rests} is at "ground": [{ends}]'
         reader.note(
-            "SF217",
-            f"{what} takes {wanted} {plural}, found {len(texts)}",
-            entry_given.value.span,
-            hint,
+            "SF217", f"{what} takes {wanted} {plural}, found {len(texts)}", entry_given.value.span, hint
         )
         return None
     references = [_reference(reader, t, port.domain, what) for t in texts]

@@ -170,27 +170,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     loads = {x.name for x in signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
-        reader,
-        read_fields(reader, sections["fields"], taken),
-        has_coordinate=COORDINATE not in taken | loads,
+        reader, read_fields(reader, sections["fields"], taken), has_coordinate=COORDINATE not in taken | loads
     )
     measure = constant_measure(declared, inherited, definitions)
     attachments = [a for element in elements for a in element.attachments(measure)]
     attachments += [a for source in inputs for a in source.attachments()]
     nodes, contradictions = infer_nodes(attachments)
     reader.take(contradictions)
-    draft = Draft(
-        declared,
-        inherited,
-        definitions,
-        nodes,
-        elements,
-        inputs,
-        blocks,
-        signals,
-        outputs,
-        fields,
-    )
+    draft = Draft(declared, inherited, definitions, nodes, elements, inputs, blocks, signals, outputs, fields)
     draft = with_dead_times(draft, taken | loads | {n.name for n in nodes})
     draft = with_imaginary_unit(reader, draft)
     broken = broken_names(sections, draft) | twins

@@ -317,14 +317,10 @@ class Piezo(Element):
         (p, q), (a, b) = use.across("terminals"), use.across("between")
         alpha, one = use.values["alpha"], use.one
         force, current = use.unknown("f"), use.unknown("i")
-        laws = (
-            (force, alpha, use.values["k"]),
-            (current, use.values["C"] * use.s, alpha * use.s * -1),
-        )
+        laws = ((force, alpha, use.values["k"]), (current, use.values["C"] * use.s, alpha * use.s * -1))
         rows = tuple(
             EquationRow(
-                out,
-                LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)),
+                out, LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre))
             )
             for out, per_volt, per_metre in laws
         )

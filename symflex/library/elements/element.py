@@ -29,12 +29,7 @@ COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x
 COMPONENT_DOMAIN: dict[str, Domain] = {"x": "translation", "y": "translation", "theta": "rotation"}
 
 ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V", "acoustic": "Pa"}
-THROUGH_UNIT: dict[str, str] = {
-    "translation": "N",
-    "rotation": "N*m",
-    "electrical": "A",
-    "acoustic": "m^3/s",
-}
+THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A", "acoustic": "m^3/s"}
 THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i", "acoustic": "q"}
 CIRCUITS: tuple[Domain, ...] = ("electrical", "acoustic")
 """Domains of nodes whose voltage or pressure is an effort; mechanical ones have a motion."""
