@@ -105,12 +105,8 @@ def _callback(builder: object, name: str, *, is_single: bool) -> Callable[..., A
     """Return what makes the value of a rule: one part is handed on as it is."""
     if not name:
         return None
-    made = getattr(builder, name, _listed)
+    made = getattr(builder, name, lambda *parts: parts)
     return (lambda *parts: parts[0] if len(parts) == 1 else made(*parts)) if is_single else made
-
-
-def _listed(*parts: object) -> tuple[object, ...]:
-    return parts
 
 
 class Reading:
