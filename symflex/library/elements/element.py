@@ -323,12 +323,19 @@ def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored
     if not denominator.depends_on("s"):
         form = LinearForm.of((a, admittance), (b, -admittance))
         return Stamp(branches=(Admittance(a, b, admittance),), through=((quantity, form),))
+    law = LinearForm.of((use.unknown(quantity), denominator))
+    return determined(use, port, quantity, law + difference(use, port, -admittance * denominator), -use.one)
+
+
+def determined(
+    use: ElementUse, port: str, quantity: str, law: LinearForm, sign: Factored, role: Role = "law"
+) -> Stamp:
+    """Return the stamp of a through unknown that a law determines, delivered at a port with a sign."""
     through = use.unknown(quantity)
-    law = LinearForm.of((through, denominator)) + difference(use, port, -admittance * denominator)
     flow = LinearForm.of((through, use.one))
     return Stamp(
         unknowns=(through,),
-        rows=(EquationRow(through, law),),
-        injections=delivered(use, port, flow * (-use.one)),
+        rows=(EquationRow(through, law, role),),
+        injections=delivered(use, port, flow * sign),
         through=((quantity, flow),),
     )
