@@ -328,7 +328,9 @@ class SweepOptions:
     gain: str | None = option(
         None, "--gain", metavar="K", help="margins: the parameter that is the loop's gain."
     )
-    output: str | Path | None = file_option("File to write: .nc, .npz, .csv or .parquet.")
+    output: str | Path | None = option(
+        None, "-o", "--output", is_path=True, help="File to write: .nc, .npz, .csv or .parquet."
+    )
     fresh: bool = option(False, "--fresh", help="Discard the points that an earlier run kept in FILE.part.")
     workers: int | None = option(
         None, "--workers", least=1, most=1024, help="Number of processes.  [default: one per processor]"
