@@ -85,9 +85,8 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     expression = _read(text, limits, "sum").node
     if bracket := next((n for n in nodes(expression) if isinstance(n, Differentiated)), None):
         message = "a derivative of a bracket along x belongs in the equations and conditions of [fields]"
-        raise SpecError(
-            Diagnostic("SF223", message, bracket.span, "a derivative in time is written with s: s*x")
-        )
+        hint = "a derivative in time is written with s: s*x"
+        raise SpecError(Diagnostic("SF223", message, bracket.span, hint))
     return expression
 
 

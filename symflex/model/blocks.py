@@ -277,9 +277,8 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
         return None
     if len(origin.ancestors) >= NESTING_LIMIT:
         message = f"model blocks are nested deeper than {NESTING_LIMIT}"
-        reader.note(
-            "SF103", message, path_text.span, "copy the innermost models into the files that use them"
-        )
+        hint = "copy the innermost models into the files that use them"
+        reader.note("SF103", message, path_text.span, hint)
         return None
     loads, own = origin.loads, origin.ancestors[-1]
     if path not in loads.models and path not in loads.failed:

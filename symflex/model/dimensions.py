@@ -198,9 +198,8 @@ class DimensionSystem:
         if not self._learn(reduced):
             given = self._reduce(measure).dimension
             message = f"{what} is in '{given}'; {a_what} is in '{unit}'"
-            self._note(
-                "SF203", message, expression.span, self._declaration(expression, given, wanted.dimension)
-            )
+            hint = self._declaration(expression, given, wanted.dimension)
+            self._note("SF203", message, expression.span, hint)
 
     def read(self, expression: Expression) -> None:
         """Take an expression as whole: nothing around it tells how cycles in it are meant."""
@@ -465,9 +464,8 @@ class DimensionSystem:
             elif not self._learn(self._reduce(ratio)):
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
                 message = f"terms of a sum disagree: {_said(first_term)}'{there}' and {_said(term)}'{here}'"
-                self._note(
-                    "SF205", message, term.span or expression.span, _gain_hint(expression, here, there)
-                )
+                hint = _gain_hint(expression, here, there)
+                self._note("SF205", message, term.span or expression.span, hint)
         result = self._reduce(first)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())

@@ -275,9 +275,8 @@ def _references(
             ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
             rests = RESTS.get(port.domain, "an end that does not move")
             hint = f'{rests} is at "ground": [{ends}]'
-        reader.note(
-            "SF217", f"{what} takes {wanted} {plural}, found {len(texts)}", entry_given.value.span, hint
-        )
+        message = f"{what} takes {wanted} {plural}, found {len(texts)}"
+        reader.note("SF217", message, entry_given.value.span, hint)
         return None
     references = [_reference(reader, t, port.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)
@@ -613,12 +612,8 @@ def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
         hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
     elif "acoustic" in claims:
         hint = "use two nodes and couple them with a piston"
-    return Diagnostic(
-        "SF220",
-        f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}",
-        other.reference.span,
-        hint,
-    )
+    message = f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}"
+    return Diagnostic("SF220", message, other.reference.span, hint)
 
 
 @dataclass(frozen=True, slots=True)

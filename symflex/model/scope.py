@@ -232,13 +232,9 @@ def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
 
 def outside(written: str, described: str, span: Span | None) -> Diagnostic:
     """Return the diagnostic of what may not stand in the equations of a field."""
-    return Diagnostic(
-        "SF245",
-        f"'{written}' is {described}; the equations of a field may use only its unknowns, parameters, "
-        "inputs and signals",
-        span,
-        "what acts at a point belongs in the conditions; a load along x is an input or a signal",
-    )
+    allowed = "the equations of a field may use only its unknowns, parameters, inputs and signals"
+    hint = "what acts at a point belongs in the conditions; a load along x is an input or a signal"
+    return Diagnostic("SF245", f"'{written}' is {described}; {allowed}", span, hint)
 
 
 def nearest_name(name: str, known: Sequence[str]) -> str | None:

@@ -249,9 +249,8 @@ def _checked_unit(placed: PlacedUnit) -> PlacedUnit:
     parts = (part for e in unit.dimension.exponents for part in (e.numerator, e.denominator))
     if size > MAXIMUM_BITS or any(abs(power) > MAXIMUM_UNIT_EXPONENT for power in (*powers, *parts)):
         message = "the unit's powers are too large"
-        raise RejectedError(
-            "SF103", message, placed.start, placed.end, "write it in lower powers of SI units"
-        )
+        hint = "write it in lower powers of SI units"
+        raise RejectedError("SF103", message, placed.start, placed.end, hint)
     return placed
 
 
@@ -410,6 +409,5 @@ _PLAIN_DIGITS: Final = str.maketrans(f"{_SUPERSCRIPTS}\u207a\u207b", "0123456789
 
 def _require_one(number: Token) -> None:
     if number != "1":
-        raise RejectedError(
-            "SF202", f"the number '{number}' in a unit", number.start, number.end, _ONE_NUMBER
-        )
+        message = f"the number '{number}' in a unit"
+        raise RejectedError("SF202", message, number.start, number.end, _ONE_NUMBER)

@@ -81,9 +81,8 @@ class Grammar:
         while start < len(text):
             token = self._first(text, start, kept)
             if token is None:
-                raise UnexpectedError(
-                    start, self._first(text, start, self._terminals.keys()), self.expected(state)
-                )
+                other = self._first(text, start, self._terminals.keys())
+                raise UnexpectedError(start, other, self.expected(state))
             if token.type not in self._ignored:
                 return token
             start = token.end

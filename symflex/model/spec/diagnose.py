@@ -83,16 +83,14 @@ def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Di
     span = Span(source, start, start + len(name))
     if message.startswith("Duplicate"):
         key = message.rpartition("key ")[2]
-        return Diagnostic(
-            "SF102", f"the key {key} appears twice in an inline table", _value_span(source, text, statement)
-        )
+        message = f"the key {key} appears twice in an inline table"
+        return Diagnostic("SF102", message, _value_span(source, text, statement))
     first = _first(scan, statement, name)
     if first is None:
         what = "table" if statement.header else "key"
         hint = "it is in an inline table, or already has a value; write it there"
-        return Diagnostic(
-            "SF102", f"{what} '{_cut(name)}' cannot be added to what is defined above", span, hint
-        )
+        message = f"{what} '{_cut(name)}' cannot be added to what is defined above"
+        return Diagnostic("SF102", message, span, hint)
     hint = f"it is first defined in line {Span(source, first.start, first.end).line}"
     shown = f"table [{_cut(name)}]" if statement.header else f"key '{_cut(name)}'"
     return Diagnostic("SF102", f"{shown} is defined twice", span, hint)
@@ -244,9 +242,8 @@ def _bad_collection(source: Source, text: str, whole: Span, message: str, place:
             hint = "write it on one line, or as a table with its own [header]"
             return Diagnostic("SF101", "an inline table must end on the line where it begins", whole, hint)
         if place.text == "}":
-            return Diagnostic(
-                "SF101", "an inline table has no comma before its '}'", place, "remove the comma"
-            )
+            message = "an inline table has no comma before its '}'"
+            return Diagnostic("SF101", message, place, "remove the comma")
     if place.start >= whole.end or not place.text.strip():
         return Diagnostic("SF101", message[:1].lower() + message[1:], whole)
     word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, place.start)
