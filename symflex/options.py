@@ -49,12 +49,14 @@ def option(default: T, *flags: str, **said: object) -> T:
     return found  # type: ignore[no-any-return]
 
 
+def file_option(about: str) -> str | None:
+    """Return the field of a file to write, with what is said of it."""
+    return option(None, "-o", "--output", is_path=True, help=about)
+
+
 ONE_TF: Final = {"metavar": "OUT/IN", "help": "Transfer function.  [default: the first one]"}
-SOME_TFS: Final = {
-    "metavar": "OUT/IN",
-    "multiple": True,
-    "help": "Only this transfer function; may be repeated.",
-}
+SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True}
+ONLY_TFS: Final = {**SOME_TFS, "help": "Only this transfer function; may be repeated."}
 JSON: Final = {"help": "Print the result as JSON."}
 OUTSIDE: Final = {
     "multiple": True,
@@ -65,12 +67,7 @@ OUTSIDE: Final = {
 TWO: Final = {"nargs": 2, "metavar": "LO HI"}
 SHOWN: Final = {"show_default": True}
 SHAPERS: Final = ("zv", "zvd", "ei")
-SHAPED_MODES: Final = {
-    "least": 1,
-    "most": 20,
-    **SHOWN,
-    "help": "Shape the N lowest modes.",
-}
+SHAPED_MODES: Final = {"least": 1, "most": 20, **SHOWN, "help": "Shape the N lowest modes."}
 MOST_DIGITS: Final = 10_000
 JOINT: Final = {"help": "Has no effect any more: shapers of several modes are convolved."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
@@ -91,7 +88,7 @@ class CheckOptions:
 class DeriveOptions:
     """Options of ``symflex derive``."""
 
-    tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
+    tfs: Sequence[str] = option((), "--tf", **ONLY_TFS)
     form: str | None = option(
         None,
         "--form",
@@ -124,7 +121,7 @@ class ExportOptions:
     """Options of ``symflex export``."""
 
     target: str = option("", "--to", metavar="TARGET", help="One of the targets below.  [required]")
-    tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
+    tfs: Sequence[str] = option((), "--tf", **ONLY_TFS)
     form: str | None = option(
         None,
         "--form",
@@ -148,18 +145,14 @@ class ExportOptions:
         **SHOWN,
         help="Quotients of polynomials or nested expressions, as for derive.",
     )
-    output: str | None = option(
-        None, "-o", "--output", is_path=True, help="File to write.  [default: standard output]"
-    )
+    output: str | None = file_option("File to write.  [default: standard output]")
     is_minimal: bool = option(False, "--minimal", help="state-space: leave out hidden states.")
     sample: str | None = option(
         None,
         "--sample",
         metavar="TIME",
-        help=(
-            "state-space, c, numpy: sampling time, such as 1ms; writes difference equations with the "
-            "declared values."
-        ),
+        help="state-space, c, numpy: sampling time, such as 1ms; writes difference equations with the "
+        "declared values.",
     )
     method: str | None = option(
         None,
@@ -266,9 +259,7 @@ class RespondOptions:
     digits: int = option(
         12, "--digits", least=1, most=1000, **SHOWN, help="Correct digits of the largest value."
     )
-    output: str | None = option(
-        None, "-o", "--output", is_path=True, help="File to write: .csv, .pdf, .pgf, .png or .svg."
-    )
+    output: str | None = file_option("File to write: .csv, .pdf, .pgf, .png or .svg.")
     xlim: Ends | None = option(None, "--xlim", **TWO, help="Time axis of a figure [s].")
     ylim: Ends | None = option(None, "--ylim", **TWO, help="Vertical axis of a figure.")
     width: float | str | None = option(None, "--width", **WIDTH)
@@ -293,16 +284,12 @@ class ShapeOptions:
         "--kind",
         choices=SHAPERS,
         **SHOWN,
-        help=(
-            "zv: zero vibration; zvd: its derivative by frequency is zero too; ei: "
-            "extra-insensitive, with 5 % residual vibration."
-        ),
+        help="zv: zero vibration; zvd: its derivative by frequency is zero too; ei: extra-insensitive, with "
+        "5 % residual vibration.",
     )
     joint: bool = option(False, "--joint", **JOINT)
     digits: int = option(15, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
-    output: str | None = option(
-        None, "-o", "--output", is_path=True, help="Figure of residual vibration: .pdf, .pgf, .png or .svg."
-    )
+    output: str | None = file_option("Figure of residual vibration: .pdf, .pgf, .png or .svg.")
     as_json: bool = option(False, "--json", **JSON)
 
 
@@ -318,9 +305,8 @@ class SweepOptions:
         "--over",
         multiple=True,
         metavar="NAME=VALUES",
-        help=(
-            "Grid: k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5. Random: k=1e4:1e6[:log], k=+-5%. May be repeated."
-        ),
+        help="Grid: k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5. Random: k=1e4:1e6[:log], k=+-5%. May be "
+        "repeated.",
     )
     draws: int | None = option(None, "--monte-carlo", least=1, metavar="N", help="Draw N random points.")
     seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
@@ -401,9 +387,7 @@ class PlotOptions:
     """Options of ``symflex plot``."""
 
     kind: str = option("")
-    tfs: Sequence[str] = option(
-        (), "--tf", multiple=True, metavar="OUT/IN", help="Draw this transfer function; may be repeated."
-    )
+    tfs: Sequence[str] = option((), "--tf", **SOME_TFS, help="Draw this transfer function; may be repeated.")
     gain: str | None = option(
         None, "--gain", metavar="K", help="Parameter that is the loop's gain, for a locus or a Nyquist plot."
     )
@@ -417,9 +401,7 @@ class PlotOptions:
         None, "--range", **TWO, help="First and last gain of a locus."
     )
     modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
-    output: str | None = option(
-        None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
-    )
+    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png.")
     width: float | str | None = option(None, "--width", **WIDTH)
     font: str | None = option(None, "--font", **FONT)
     until: str | None = option(
@@ -432,9 +414,7 @@ class DrawOptions:
     """Options of ``symflex draw``."""
 
     values: bool = option(False, "--values", help="Label symbols with values and units.")
-    output: str | None = option(
-        None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
-    )
+    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png.")
     width: str | None = option(
         None, "--width", metavar=WIDTHS, help="Width of the drawing: 88.5 mm, 170 mm or a number in mm."
     )
@@ -446,11 +426,7 @@ class AuditOptions:
     """Options of ``symflex audit``."""
 
     tfs: Sequence[str] = option(
-        (),
-        "--tf",
-        multiple=True,
-        metavar="OUT/IN",
-        help="Only the formula of this transfer function; may be repeated.",
+        (), "--tf", **SOME_TFS, help="Only the formula of this transfer function; may be repeated."
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is proved equal.")
     as_json: bool = option(False, "--json", **JSON)
@@ -468,8 +444,7 @@ class FitOptions:
     tfs: Sequence[str] = option(
         (),
         "--tf",
-        multiple=True,
-        metavar="OUT/IN",
+        **SOME_TFS,
         help="Transfer function of --base; one for each response.  Without --base: responses to fit.",
     )
     modes: int | None = option(
@@ -503,10 +478,8 @@ class FitOptions:
         "",
         "--columns",
         metavar="WORDS",
-        help=(
-            "Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
-            "or s21."
-        ),
+        help="Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
+        "or s21.",
     )
     averages: float | None = option(
         None,
@@ -525,20 +498,16 @@ class FitOptions:
         None,
         "--driving",
         metavar="OUT/IN",
-        help=(
-            "Response at the driven point: fit it, and compute mass-normalised mode shapes from all "
-            "responses."
-        ),
+        help="Response at the driven point: fit it, and compute mass-normalised mode shapes from all "
+        "responses.",
     )
-    output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
+    output: str | None = file_option("Specification to write.")
     loop: str | None = option(
         None,
         "--loop",
         metavar="K",
-        help=(
-            "Also write a loop that feeds back the first response with the gain K, for 'symflex stability "
-            "--gain K'."
-        ),
+        help="Also write a loop that feeds back the first response with the gain K, for 'symflex stability "
+        "--gain K'.",
     )
     figure: str | None = option(
         None,
@@ -616,6 +585,11 @@ class ReportOptions:
     )
 
 
+def refused(message: str) -> UsageError:
+    """Return SF902, the refusal of an argument."""
+    return UsageError(Diagnostic("SF902", message))
+
+
 def exact(number: float | Fraction) -> Fraction:
     """Return the shortest decimal that prints a number.
 
@@ -630,14 +604,14 @@ def exact(number: float | Fraction) -> Fraction:
 def finite(number: float | Fraction, flag: str) -> Fraction:
     """Return the shortest decimal that prints a number; SF902 unless it is finite."""
     if not isfinite(number):
-        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
+        raise refused(f"{flag} is a finite number, not {number}")
     return exact(number)
 
 
 def checked_digits(digits: int) -> int:
     """Return how many digits are asked for; SF902 for none or too many."""
     if not 1 <= digits <= MOST_DIGITS:
-        raise UsageError(Diagnostic("SF902", f"digits must be from 1 to {MOST_DIGITS}, not {digits}"))
+        raise refused(f"digits must be from 1 to {MOST_DIGITS}, not {digits}")
     return digits
 
 
@@ -660,8 +634,7 @@ def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fracti
     low, high = (frequency(end, "--band", "0.1 or '1 kHz'", is_hertz=True) for end in band)
     if isinstance(band[0], str) and (not 0 <= low < high or (above_zero and not low)):
         above = " above 0" if above_zero else ""
-        message = f"--band takes two frequencies in Hz{above}, the lower one first"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"--band takes two frequencies in Hz{above}, the lower one first")
     return low, high
 
 
@@ -673,7 +646,7 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
     from symflex.model.dimensions import PER_SECOND
     from symflex.model.model import PI_NEARLY
 
-    wrong = UsageError(Diagnostic("SF902", f"{flag} takes numbers such as {example}, found '{given[:60]}'"))
+    wrong = refused(f"{flag} takes numbers such as {example}, found '{given[:60]}'")
     quantity = _quantity(given, flag, wrong)
     if quantity.unit and quantity.dimension != PER_SECOND:
         raise wrong
@@ -699,8 +672,7 @@ def duration(given: str, flag: str, *, or_zero: bool = False) -> Fraction:
     from symflex.model.analysis import in_limits
     from symflex.model.dimensions import SECOND
 
-    message = f"{flag} takes a positive time such as 0.5 or '20 ms', found '{given[:60]}'"
-    wrong = UsageError(Diagnostic("SF902", message))
+    wrong = refused(f"{flag} takes a positive time such as 0.5 or '20 ms', found '{given[:60]}'")
     quantity = _quantity(given, flag, wrong)
     if quantity.unit and quantity.dimension != SECOND:
         raise wrong
@@ -715,7 +687,7 @@ def highest_frequency(given: Stated) -> float:
     value = float(frequency(given, "--up-to", "100 or '1 kHz'", is_hertz=True))
     if not value > 0:
         flag = "--up-to" if isinstance(given, str) else "up_to_hz"
-        raise UsageError(Diagnostic("SF902", f"{flag} takes a positive frequency"))
+        raise refused(f"{flag} takes a positive frequency")
     return value
 
 
@@ -741,8 +713,7 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
     """
     value = plain_number(given, units)
     if isinstance(given, str) and not 0 < value < inf:
-        message = f"{flag} takes a positive number such as '{example}', found '{given[:40]}'"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"{flag} takes a positive number such as '{example}', found '{given[:40]}'")
     return value
 
 
@@ -762,10 +733,9 @@ def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> t
         low, high = (plain_number(end, ("dB", "deg", "°")) for end in given)
         for text, end in zip(given, (low, high), strict=True):
             if not isfinite(end):
-                message = f"{flag} takes numbers such as -60, found '{str(text)[:40]}'"
-                raise UsageError(Diagnostic("SF902", message))
+                raise refused(f"{flag} takes numbers such as -60, found '{str(text)[:40]}'")
     if not low < high:
-        raise UsageError(Diagnostic("SF902", f"{flag} takes two numbers, the lower one first"))
+        raise refused(f"{flag} takes two numbers, the lower one first")
     return low, high
 
 
@@ -783,8 +753,7 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
         return None
     from symflex.quantities import unit_of
 
-    said = f"--range takes values such as 0, 1e4 or inf, found '{given[:60]}'"
-    wrong = UsageError(Diagnostic("SF902", said))
+    wrong = refused(f"--range takes values such as 0, 1e4 or inf, found '{given[:60]}'")
     quantity = _quantity(given, "--range", wrong)
     known = unit_of(parameter.unit).dimension if parameter.unit else None
     if quantity.unit and quantity.dimension != known:

@@ -98,8 +98,12 @@ def _parts(
         case Number(value=value):
             text = number_text(value)
             return [text], _BARE_PRODUCT if "/" in text else _BARE_LEAF
-        case Name() | Attribute() | Derivative():
-            return [_leaf_text(node)], _BARE_LEAF
+        case Name(name):
+            return [name], _BARE_LEAF
+        case Attribute(owner, name):
+            return [f"{owner}.{name}"], _BARE_LEAF
+        case Derivative(name, order):
+            return [name + "'" * order], _BARE_LEAF
         case Call(name=name, argument=argument, order=order):
             return [name + "'" * order + "(", (argument, _Position.ALONE), ")"], _BARE_LEAF
         case Differentiated(operand=operand, order=order, point=point):
@@ -130,24 +134,12 @@ def _parts(
             raise TypeError(f"no text for {type(node).__name__}")
 
 
-def _leaf_text(leaf: Name | Attribute | Derivative) -> str:
-    match leaf:
-        case Name(name=name):
-            return name
-        case Attribute(owner=owner, name=name):
-            return f"{owner}.{name}"
-        case Derivative(name=name, order=order):
-            return name + "'" * order
-
-
 def _sum_parts(terms: tuple[Expression, ...]) -> _Work:
     parts: _Work = [(terms[0], _Position.TERM)]
     for written in terms[1:]:
         term = _unsigned(written)
-        if isinstance(term, Negative):
-            parts += [" - ", (term.operand, _Position.TERM)]
-        else:
-            parts += [" + ", (term, _Position.TERM)]
+        sign, size = (" - ", term.operand) if isinstance(term, Negative) else (" + ", term)
+        parts += [sign, (size, _Position.TERM)]
     return parts
 
 

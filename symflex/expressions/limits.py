@@ -152,16 +152,8 @@ def power_problem(base: Size, exponent: Size, limits: Limits) -> str | None:
 
 
 def _combined(parts: Sequence[Size], upper: int, lower: int, value: Fraction | None) -> Size:
-    return _followed(
-        Size(
-            depth=1 + max(part.depth for part in parts),
-            exponent=max(part.exponent for part in parts),
-            upper=upper,
-            lower=lower,
-            constant=all(part.constant for part in parts),
-            value=value,
-        )
-    )
+    depth, exponent = 1 + max(part.depth for part in parts), max(part.exponent for part in parts)
+    return _followed(Size(depth, exponent, upper, lower, all(part.constant for part in parts), value))
 
 
 def _followed(size: Size) -> Size:

@@ -444,7 +444,16 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     >>> substitute(Sum((a, c)), {"a": Sum((b, c)), "c": a})
     Sum(terms=(Name(name='b'), Name(name='c'), Name(name='a')))
     """
-    return _replaced(expression, lambda node: _replacement(node, mapping))
+
+    def replacement(node: Expression) -> Expression:
+        match node:
+            case Name(name):
+                return mapping.get(name, node)
+            case Attribute(owner, name):
+                return mapping.get(f"{owner}.{name}", node)
+        return node
+
+    return _replaced(expression, replacement)
 
 
 def replace_values(expression: Expression, mapping: Mapping[Expression, Expression]) -> Expression:
@@ -491,16 +500,6 @@ def _replaced(expression: Expression, new: Callable[[Expression], Expression]) -
     return done[0]
 
 
-def _replacement(node: Expression, mapping: Mapping[str, Expression]) -> Expression:
-    match node:
-        case Name(name=name):
-            return mapping.get(name, node)
-        case Attribute(owner=owner, name=name):
-            return mapping.get(f"{owner}.{name}", node)
-        case _:
-            return node
-
-
 def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
     span = node.span
     match node:
@@ -512,20 +511,12 @@ def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
             return replace(node, argument=children[0])
         case Differentiated(order=order):
             return Differentiated(children[0], order, children[1] if len(children) > 1 else None, span=span)
-        case Negative():
-            return Negative(children[0], span=span)
-        case Quotient():
-            return Quotient(children[0], children[1], span=span)
-        case Power():
-            return Power(children[0], children[1], span=span)
-        case Equation():
-            return Equation(children[0], children[1], span=span)
+        case Negative() | Quotient() | Power() | Equation():
+            return type(node)(*children, span=span)
         case _:
             raise TypeError(f"{type(node).__name__} has no operands to replace")
 
 
 def _flat(children: Sequence[Expression], kind: type[Expression]) -> list[Expression]:
-    flat: list[Expression] = []
-    for child in children:
-        flat.extend(child.children if isinstance(child, kind) else (child,))
-    return flat
+    opened = (child.children if isinstance(child, kind) else (child,) for child in children)
+    return [each for group in opened for each in group]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -50,7 +50,7 @@ from symflex.expressions.nodes import (
     measured,
     nodes,
 )
-from symflex.expressions.slips import FUNCTIONS, RECIPROCALS, Slip, character_slip, end_slip, token_slip
+from symflex.expressions.slips import FUNCTIONS, RECIPROCALS, character_slip, end_slip, token_slip
 from symflex.quantities import parse_quantity
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 
@@ -85,9 +85,8 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     expression = _read(text, limits, "sum").node
     if bracket := next((n for n in nodes(expression) if isinstance(n, Differentiated)), None):
         message = "a derivative of a bracket along x belongs in the equations and conditions of [fields]"
-        raise SpecError(
-            Diagnostic("SF223", message, bracket.span, "a derivative in time is written with s: s*x")
-        )
+        hint = "a derivative in time is written with s: s*x"
+        raise SpecError(Diagnostic("SF223", message, bracket.span, hint))
     return expression
 
 
@@ -180,12 +179,9 @@ class _TreeBuilder:
         return _piece(node, base, exponent, size_of_power(base.size, exponent.size))
 
     def number(self, token: Token) -> _Piece:
-        reading = _reading(token)
-        start, end = token.start, token.end
         # Decimal is exact here and, unlike int, reads numbers of any length.
         value = Fraction(Decimal(str(token)))
-        node = Number(value, span=reading.text.at(start, end))
-        return _Piece(node, start, end, size_of_number(value), reading)
+        return _leaf(Number(value), token, token, size_of_number(value))
 
     def measured(self, token: Token, unit: Token) -> _Piece:
         reading = _reading(token)
@@ -198,21 +194,13 @@ class _TreeBuilder:
         return _Piece(node, start, end, size_of_number(quantity.magnitude), reading)
 
     def name(self, token: Token) -> _Piece:
-        reading = _reading(token)
-        start, end = token.start, token.end
-        return _Piece(Name(str(token), span=reading.text.at(start, end)), start, end, SIZE_OF_NAME, reading)
+        return _leaf(Name(str(token)), token, token, SIZE_OF_NAME)
 
     def attribute(self, owner: Token, _dot: Token, name: Token) -> _Piece:
-        reading = _reading(owner)
-        start, end = owner.start, name.end
-        node = Attribute(str(owner), str(name), span=reading.text.at(start, end))
-        return _Piece(node, start, end, SIZE_OF_NAME, reading)
+        return _leaf(Attribute(str(owner), str(name)), owner, name, SIZE_OF_NAME)
 
     def derivative(self, name: Token, primes: Token) -> _Piece:
-        reading = _reading(name)
-        start, end = name.start, primes.end
-        node = Derivative(str(name), len(primes), span=reading.text.at(start, end))
-        return _Piece(node, start, end, SIZE_OF_NAME, reading)
+        return _leaf(Derivative(str(name), len(primes)), name, primes, SIZE_OF_NAME)
 
     def call(self, name: Token, _left: Token, argument: _Piece, right: Token) -> _Piece:
         return _called(name, 0, argument, right)
@@ -318,6 +306,12 @@ def _refuse_depth(reading: _Reading, start: int, end: int) -> NoReturn:
     reading.refuse(start, end, "SF103", message, "name parts of it in [definitions]")
 
 
+def _leaf(node: Expression, first: Token, last: Token, size: Size) -> _Piece:
+    reading = _reading(first)
+    whole = replace(node, span=reading.text.at(first.start, last.end))
+    return _Piece(whole, first.start, last.end, size, reading)
+
+
 def _reading(token: Token) -> _Reading:
     reading = token.value
     assert isinstance(reading, _Reading)
@@ -353,11 +347,7 @@ def _read(text: Text, limits: Limits, start: str) -> _Piece:
     else:
         assert isinstance(piece, _Piece)
         return piece
-    _refuse_slip(reading, slip)
-
-
-def _refuse_slip(reading: _Reading, slip: Slip) -> NoReturn:
-    reading.refuse(slip.start, slip.end, slip.code, slip.message, slip.hint)
+    reading.refuse(*slip)
 
 
 def _check_extent(reading: _Reading, start: str) -> None:

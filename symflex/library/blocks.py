@@ -89,10 +89,7 @@ class TransferFunctionBlock(Block):
     formula = "num/den"
     gains = None
     remark = ", each an expression in s or a list of coefficients (highest power first)"
-    parameters = (
-        ParameterPort("num", "", "a numerator"),
-        ParameterPort("den", "", "a denominator", "1"),
-    )
+    parameters = (ParameterPort("num", "", "a numerator"), ParameterPort("den", "", "a denominator", "1"))
 
 
 class StateSpaceBlock(Block):

@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, prod
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from symflex.algebra.dispersion import DispersionKind
 from symflex.errors import BudgetError, Diagnostic
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.library.partial_fractions import Matrix
+
+    FieldTheory = Callable[[Factored, Mapping[str, Factored]], "FieldSystem"]
+    """The first-order system of a uniform element, from s and the element's values."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,14 +99,6 @@ class Axes:
         return readings
 
 
-class FieldTheory(Protocol):
-    """A theory: the first-order system of a uniform element."""
-
-    def __call__(self, s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
-        """Return the field equations for the element's values."""
-        ...
-
-
 def system_of(
     states: tuple[str, ...], entries: Mapping[tuple[str, str], Factored], zero: Factored
 ) -> FieldSystem:
@@ -137,21 +132,15 @@ def first_order(
     solved = solve(highest, right)
     if solved is None:
         return None
-    position = {state: i for i, state in enumerate(states)}
-    one = zero + 1
-    matrix: list[tuple[Factored, ...]] = []
-    loads: list[tuple[Factored, ...]] = []
-    for u, k in states:
-        if k + 1 < orders[u]:
-            following = position[u, k + 1]
-            matrix.append(tuple(one if j == following else zero for j in range(len(states))))
-            loads.append(tuple(zero for _ in inputs))
-        else:
-            row = solved[list(unknowns).index(u)]
-            matrix.append(tuple(row[: len(states)]))
-            loads.append(tuple(row[len(states) :]))
-    columns: Matrix = tuple(tuple(loads[i][j] for i in range(len(states))) for j in range(len(inputs)))
-    return FieldSystem(tuple(u + "'" * k for u, k in states), tuple(matrix), columns)
+    highest_of = dict(zip(unknowns, solved, strict=True))
+    every, one = (*states, *inputs), zero + 1
+    rows = [
+        [one if other == (u, k + 1) else zero for other in every] if k + 1 < orders[u] else highest_of[u]
+        for u, k in states
+    ]
+    matrix = tuple(tuple(row[: len(states)]) for row in rows)
+    loads = tuple(tuple(row[len(states) + j] for row in rows) for j in range(len(inputs)))
+    return FieldSystem(tuple(u + "'" * k for u, k in states), matrix, loads)
 
 
 def product(values: Mapping[str, Factored], *names: str) -> Factored:
@@ -450,32 +439,23 @@ def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matri
                 tuple(product[i][j] + c if i == j else product[i][j] for j in range(n)) for i in range(n)
             )
             adjugate.append(b)
-            _check_size(b)
+            if sum(len(f) for row in b for value in row for f, _ in value.factors) > TERM_LIMIT:
+                what = "the characteristic polynomial of the field equations"
+                hint = "put numbers in place of symbols, or uncouple them"
+                raise BudgetError(
+                    Diagnostic("SF501", f"{what} needs more than {TERM_LIMIT} terms", None, hint)
+                )
     return tuple(reversed(descending)), tuple(reversed(adjugate))
 
 
-def _check_size(matrix: Matrix) -> None:
-    terms = sum(len(f) for row in matrix for value in row for f, _ in value.factors)
-    if terms > TERM_LIMIT:
-        message = f"the characteristic polynomial of the field equations needs more than {TERM_LIMIT} terms"
-        raise BudgetError(
-            Diagnostic("SF501", message, None, "put numbers in place of symbols, or uncouple them")
-        )
-
-
 def _product(left: Matrix, right: Matrix) -> Matrix:
-    n = len(left)
-    rows = []
-    for i in range(n):
-        row = []
-        for j in range(n):
-            total = left[0][0] * 0
-            for k in range(n):
-                if not (left[i][k].is_zero or right[k][j].is_zero):
-                    total = total + left[i][k] * right[k][j]
-            row.append(total)
-        rows.append(tuple(row))
-    return tuple(rows)
+    columns, zero = tuple(zip(*right, strict=True)), left[0][0] * 0
+
+    def entry(row: Sequence[Factored], column: Sequence[Factored]) -> Factored:
+        pairs = zip(row, column, strict=True)
+        return sum((a * b for a, b in pairs if not (a.is_zero or b.is_zero)), zero)
+
+    return tuple(tuple(entry(row, column) for column in columns) for row in left)
 
 
 def classify(coefficients: Sequence[Factored]) -> Characteristic:
@@ -512,8 +492,6 @@ def _shifted(coefficients: Sequence[Factored], shift: Factored) -> tuple[Factore
     n = len(coefficients)
     one = shift**0
     full = (*coefficients, one)
-    shifted = []
-    for j in range(n):
-        total = sum((full[k] * (-shift) ** (k - j) * comb(k, j) for k in range(j, n + 1)), one * 0)
-        shifted.append(total)
-    return tuple(shifted)
+    return tuple(
+        sum((full[k] * (-shift) ** (k - j) * comb(k, j) for k in range(j, n + 1)), one * 0) for j in range(n)
+    )

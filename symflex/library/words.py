@@ -96,9 +96,7 @@ THINGS: tuple[Thing, ...] = (
     Thing(("hinge", "hinged", "pinned", "simply_supported", "simple_support", "revolute"), "pin"),
     Thing(("roller", "guide", "guided", "sliding", "prismatic"), "slider"),
     Thing(
-        ("membrane", "plate", "shell", "solid"),
-        "",
-        "fields have one coordinate, x; take modes as resonances",
+        ("membrane", "plate", "shell", "solid"), "", "fields have one coordinate, x; take modes as resonances"
     ),
     # Circuits
     Thing(("motor", "dc", "dcmotor", "servo_motor", "servomotor", "brushless", "bldc", "pmsm"), "dc_motor"),

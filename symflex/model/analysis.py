@@ -24,14 +24,7 @@ from symflex.expressions import (
     names_among,
     nodes,
 )
-from symflex.model.model import (
-    PI_NEARLY,
-    TRANSFORMER_SYMBOLS,
-    Analysis,
-    DrawingHints,
-    Figure,
-    Published,
-)
+from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
 from symflex.model.spec import BooleanValue, NumberValue, TableValue
@@ -68,21 +61,20 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
 
 def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
     value = entry.value
-    hint = 'for instance ["0.1 Hz", "1 kHz"]'
-    items = reader.pair(value, "band must be an array of two frequencies", hint)
+    example = 'for instance ["0.1 Hz", "1 kHz"]'
+    items = reader.pair(value, "band must be an array of two frequencies", example)
     if items is None:
         return None
-    limits = [_frequency(reader, item) for item in items]
-    if limits[0] is None or limits[1] is None:
+    low, high = (_frequency(reader, item) for item in items)
+    if low is None or high is None:
         return None
-    low, high = limits[0], limits[1]
     if low >= high:
-        message = "the band must end above its start"
-        reader.note("SF227", message, value.span, "write the lower frequency first")
+        hint = "write the lower frequency first"
+        reader.note("SF227", "the band must end above its start", value.span, hint)
         return None
     if low <= 0:
-        message = "the band must begin above 0 Hz"
-        reader.note("SF227", message, items[0].span, "both frequencies must be positive")
+        hint = "both frequencies must be positive"
+        reader.note("SF227", "the band must begin above 0 Hz", items[0].span, hint)
         return None
     return low, high
 
@@ -376,8 +368,15 @@ def check_printed(published: Published, readable: Readable) -> list[Diagnostic]:
     problems: list[Diagnostic] = []
     for expression in (*roots, *(e for _, e in published.where)):
         problems += _name_problems(expression, known, readable)
-        problems += _exponent_problems(expression)
-    return problems or _circles(roots, known)
+        for part in nodes(expression):
+            if isinstance(part, Power) and (names(part.exponent) or NUMBERS.value(part.exponent) is None):
+                message = "an exponent in a printed formula is a rational number"
+                problems.append(Diagnostic("SF225", message, part.exponent.span or part.span))
+    _, circle = lines_in_order(roots, known) if not problems else ([], [])
+    if circle:
+        message = f"lines of a printed formula refer to each other in a circle: {' -> '.join(circle)}"
+        problems.append(Diagnostic("SF215", message, known[circle[-1]].span))
+    return problems
 
 
 def _name_problems(
@@ -407,21 +406,6 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
     if not close and node.name in IMAGINARY_NAMES:
         hint = "define it in 'where'; if it is the imaginary unit, write s for j*omega and -s^2 for omega^2"
     return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, hint)
-
-
-def _exponent_problems(expression: Expression) -> Iterator[Diagnostic]:
-    for part in nodes(expression):
-        if isinstance(part, Power) and (names(part.exponent) or NUMBERS.value(part.exponent) is None):
-            message = "an exponent in a printed formula is a rational number"
-            yield Diagnostic("SF225", message, part.exponent.span or part.span)
-
-
-def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[Diagnostic]:
-    _, circle = lines_in_order(roots, known)
-    if not circle:
-        return []
-    message = f"lines of a printed formula refer to each other in a circle: {' -> '.join(circle)}"
-    return [Diagnostic("SF215", message, known[circle[-1]].span)]
 
 
 def lines_in_order(

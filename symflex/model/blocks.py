@@ -199,7 +199,8 @@ def _matrix(
 
     A column or row may be written as one array, and what has one entry as that.
     """
-    rows = [r.items if isinstance(r, ArrayValue) else (r,) for r in _items(value)]
+    items = value.items if isinstance(value, ArrayValue) else (value,)
+    rows = [r.items if isinstance(r, ArrayValue) else (r,) for r in items]
     if name == "A" and rows and len(rows) > EXPONENT_LIMIT:
         message = f"{where} has {len(rows)} rows; at most {EXPONENT_LIMIT} are allowed"
         reader.note("SF103", message, value.span, "write its equations in [equations]")
@@ -226,10 +227,6 @@ def _matrix(
     }.get(name, [f"{name}[{i + 1}]" for i in range(len(entries))])
     found_all = [(n, e) for n, e in zip(names, read, strict=True) if e is not None]
     return tuple(found_all) if len(found_all) == len(names) else None
-
-
-def _items(value: Value) -> tuple[Value, ...]:
-    return value.items if isinstance(value, ArrayValue) else (value,)
 
 
 def _term(coefficient: Expression, degree: int) -> Expression:
@@ -280,9 +277,8 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
         return None
     if len(origin.ancestors) >= NESTING_LIMIT:
         message = f"model blocks are nested deeper than {NESTING_LIMIT}"
-        reader.note(
-            "SF103", message, path_text.span, "copy the innermost models into the files that use them"
-        )
+        hint = "copy the innermost models into the files that use them"
+        reader.note("SF103", message, path_text.span, hint)
         return None
     loads, own = origin.loads, origin.ancestors[-1]
     if path not in loads.models and path not in loads.failed:

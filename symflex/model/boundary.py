@@ -103,12 +103,8 @@ def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroun
             unknowns = around.scope.unknowns
             calls = tuple(n for n in names(equation) if isinstance(n, Call) and n.name in unknowns)
             if not problems and not calls:
-                reader.note(
-                    "SF248",
-                    f"this condition of field '{field.name}' contains no value of a field",
-                    equation.span,
-                    f"for instance {field.unknowns[0]}(0) = 0",
-                )
+                message = f"this condition of field '{field.name}' contains no value of a field"
+                reader.note("SF248", message, equation.span, f"for instance {field.unknowns[0]}(0) = 0")
             sound = sound and bool(calls) and not problems
             conditions.append(_Condition(field, equation, calls))
     if sound and not around.scope.broken:
@@ -162,12 +158,8 @@ def check_points(
             (end, word) for end, word, sign in sides if around.line.sign(_difference(place, end)) == sign
         ]
         for end, word in wrong:
-            reader.note(
-                "SF240",
-                f"the point {_named(place, around.line)} lies {word} of {stretch.what}, "
-                f"{_named(end, around.line)}",
-                place.span,
-            )
+            point, limit = _named(place, around.line), _named(end, around.line)
+            reader.note("SF240", f"the point {point} lies {word} of {stretch.what}, {limit}", place.span)
         if not wrong:
             inside.add((stretch.what, place))
 
@@ -267,12 +259,13 @@ def _repeat(reader: Reader, field: FieldProblem, point: RandomPoint) -> bool:
 
 
 def _repetition_message(what: str, repetition: Repetition, equations: Sequence[Equation]) -> str:
-    lines = sorted({span.line if (span := equations[i].span) else 0 for i in repetition.others})
-    texts = " and ".join(f"'{_text(equations[i])}'" for i in repetition.others)
+    others = [equations[i] for i in repetition.others]
+    lines = sorted({e.span.line if e.span else 0 for e in others})
+    texts = " and ".join(f"'{e.span.text if e.span else format_expression(e)}'" for e in others)
     where = f" (line {', '.join(map(str, lines))})" if lines and lines[0] else ""
     if repetition.contradicts:
         return f"this {what} contradicts {texts}{where}"
-    if repetition.others:
+    if others:
         return f"this {what} repeats {texts}{where}"
     return f"this {what} says nothing: its terms cancel"
 
@@ -388,10 +381,6 @@ def _has_tip(field: FieldProblem, point: RandomPoint) -> bool:
     return False
 
 
-def _text(equation: Equation) -> str:
-    return equation.span.text if equation.span else format_expression(equation)
-
-
 class _PlaceCounts:
     """How many conditions stand at each place along x, and how many are usual there.
 
@@ -447,8 +436,7 @@ class _PlaceCounts:
 
     def summary(self) -> str:
         """Return how many conditions there are at each place."""
-        parts = []
-        for text, count, usual in self._rows:
-            of = f" of {usual}" if self._guess and usual and usual != count else ""
-            parts.append(f"{count}{of} at {text}")
-        return "conditions: " + ", ".join(parts)
+        return "conditions: " + ", ".join(
+            f"{count}{f' of {usual}' if self._guess and usual and usual != count else ''} at {text}"
+            for text, count, usual in self._rows
+        )

@@ -38,7 +38,6 @@ from symflex.model.model import PlacedBlock
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from symflex.errors import Span
     from symflex.model.network import Draft, DraftElement
 
 Placed = TypeVar("Placed", "DraftElement", PlacedBlock)
@@ -59,7 +58,10 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
     used = {n.name for e in places for n in names(e)}
     free = (name for i in count(1) if (name := f"delay_{i}") not in taken and name not in used)
     spans = {time: node.span for node, time in times.items()}
-    blocks = {time: _delay(next(free), time, span) for time, span in spans.items()}
+    blocks = {
+        time: PlacedBlock(next(free), BLOCKS["delay"], (("T", replace(time, span=span)),), span=span)
+        for time, span in spans.items()
+    }
     mapping = {node: Name(blocks[time].name, span=node.span) for node, time in times.items()}
     late: dict[str, Expression] = {}
     bodies = {d.name: d.expression for d in draft.definitions} | ratios
@@ -93,10 +95,6 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
 def _ratio(block: PlacedBlock) -> Expression:
     values = dict(block.values)
     return Quotient(values["num"], values["den"])
-
-
-def _delay(name: str, time: Expression, span: Span | None) -> PlacedBlock:
-    return PlacedBlock(name, BLOCKS["delay"], (("T", replace(time, span=span)),), span=span)
 
 
 def _dead_time(node: Expression) -> Expression | None:

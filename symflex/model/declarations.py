@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 SHOWN_CIRCLE = 8
 """Names of a circle of definitions that a message lists."""
 ASSUMPTIONS = ("positive", "nonnegative", "real")
-PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
 
 
 class CycleReading(Enum):
@@ -99,9 +98,8 @@ def _scale(written: str, *, is_converted: bool) -> ExactValue:
     """Return what one of a unit is in SI, a turn of it 2 pi radians if the value is in radians."""
     if not written:
         return ONE
-    one = one_of(written)
     unit = unit_of(written)
-    quantity = replace(one, magnitude=unit.scale, pi_power=unit.pi_power)
+    quantity = replace(one_of(written), magnitude=unit.scale, pi_power=unit.pi_power)
     return ExactValue(*(quantity.angular() if is_converted else quantity.cyclic()))
 
 
@@ -128,9 +126,7 @@ def read_label(reader: Reader, table: TableValue | None, what: str) -> str:
     return reader.read(check_label, reader.text(table, "latex", what)) or ""
 
 
-def with_formulas_defined(
-    sections: Mapping[str, TableValue | None],
-) -> dict[str, TableValue | None]:
+def with_formulas_defined(sections: Mapping[str, TableValue | None]) -> dict[str, TableValue | None]:
     """Return the sections with formulas among the parameters, as ``A = "b*h"``, among the definitions.
 
     A formula holds names that are declared, and no others. What may be a quantity written wrongly, as
@@ -183,19 +179,18 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
     what = f"parameter '{entry.key}'"
     if not reader.name(entry, "a parameter", RESERVED):
         return None
-    value, table = entry.value, None
-    if isinstance(value, TableValue):
-        table = value
-        reader.keys(table, PARAMETER_KEYS, what)
-        inner = table.get("value")
-        quantity, literal = _quantity(reader, inner, what, named) if inner else (None, False)
-    else:
-        quantity, literal = _quantity(reader, entry, what, named)
+    table = entry.value if isinstance(entry.value, TableValue) else None
+    if table:
+        reader.keys(table, ("value", "unit", "doc", "latex", "assume"), what)
+    inner = table.get("value") if table else entry
+    quantity = _quantity(reader, inner, what, named) if inner else None
+    literal = bool(quantity and quantity.unit)
     assume, unit_text = _assumption(reader, table, what), ""
     if table is not None and table.get("unit"):
         quantity, unit_text = _with_unit(reader, quantity, reader.text(table, "unit", what), what)
         literal = literal or quantity is not None
-    _check_sign(reader, quantity, assume, entry)
+    if problem := without_sign(entry.key, quantity, assume, (inner or entry).value.span):
+        reader.take((problem,))
     return DeclaredParameter(
         entry.key,
         quantity,
@@ -208,10 +203,8 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
     )
 
 
-def _quantity(
-    reader: Reader, entry: KeyValue, what: str, named: Collection[str]
-) -> tuple[Quantity | None, bool]:
-    """Return (quantity, whether a unit was written)."""
+def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]) -> Quantity | None:
+    """Return a parameter's value; of a formula in its place, what is wrong with it is noted."""
     own = Reader()
     quantity = own.quantity(entry.value, what)
     text = entry.value.text if isinstance(entry.value, StringValue) else None
@@ -222,7 +215,7 @@ def _quantity(
     for problem in formula.problems or own.problems:
         hints = (problem.hint, also if problem.code == "SF202" else None)
         reader.take((replace(problem, hint="; ".join(filter(None, hints)) or None),))
-    return quantity, bool(quantity and quantity.unit)
+    return quantity
 
 
 def _formula_hint(text: Text, named: Collection[str]) -> str | None:
@@ -251,9 +244,8 @@ def _with_unit(
     if quantity is None:
         return None, text.value
     if quantity.unit:
-        reader.note(
-            "SF202", f"{what} has a unit in its value and a 'unit' key", text.span, "remove one of them"
-        )
+        message = f"{what} has a unit in its value and a 'unit' key"
+        reader.note("SF202", message, text.span, "remove one of them")
         return quantity, ""
     scaled = Quantity(
         quantity.magnitude * unit.scale,
@@ -275,14 +267,6 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
         hint = "a parameter is assumed " + ", ".join(ASSUMPTIONS[:-1]) + f" or {ASSUMPTIONS[-1]}"
         reader.note("SF208", f"unknown assumption '{text.value[:60]}'", text.span, hint)
     return "positive"
-
-
-def _check_sign(reader: Reader, quantity: Quantity | None, assume: Assumption, entry: KeyValue) -> None:
-    span = entry.value.span
-    if isinstance(entry.value, TableValue) and (inner := entry.value.get("value")):
-        span = inner.value.span
-    if problem := without_sign(entry.key, quantity, assume, span):
-        reader.take((problem,))
 
 
 def without_sign(
@@ -338,11 +322,10 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
     state: dict[str, str] = {}
     ordered: list[Definition] = []
     for start in definitions:
-        stack = (
-            [(start.name, iter(names_among(start.expression, by_name)))] if start.name not in state else []
-        )
-        if stack:
-            state[start.name] = "open"
+        if start.name in state:
+            continue
+        stack = [(start.name, iter(names_among(start.expression, by_name)))]
+        state[start.name] = "open"
         while stack:
             name, used = stack[-1]
             following = next(used, None)

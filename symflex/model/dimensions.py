@@ -163,9 +163,8 @@ class DimensionSystem:
         self._uses: dict[str, list[Use]] = {}
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
-        self._axes = dict.fromkeys(
-            scope.along, Measure(unit_of("m").dimension)
-        )  # of x, by what varies along it
+        # Of x, by what varies along it.
+        self._axes = dict.fromkeys(scope.along, Measure(unit_of("m").dimension))
         self._coordinate: Measure | None = None
         # What terms with a written number tell, if no such number in the model has a unit.
         self._guesses: list[Measure] = []
@@ -199,9 +198,8 @@ class DimensionSystem:
         if not self._learn(reduced):
             given = self._reduce(measure).dimension
             message = f"{what} is in '{given}'; {a_what} is in '{unit}'"
-            self._note(
-                "SF203", message, expression.span, self._declaration(expression, given, wanted.dimension)
-            )
+            hint = self._declaration(expression, given, wanted.dimension)
+            self._note("SF203", message, expression.span, hint)
 
     def read(self, expression: Expression) -> None:
         """Take an expression as whole: nothing around it tells how cycles in it are meant."""
@@ -265,9 +263,8 @@ class DimensionSystem:
                 if use.angular != known[0][1].angular:
                     self._note_contradiction(known[0][0], known[0][1], name, replace(use, span=span))
             if known:
-                angular |= {
-                    name: replace(known[0][1], inferred=False) for name in among if name not in angular
-                }
+                use = replace(known[0][1], inferred=False)
+                angular = {**dict.fromkeys(among, use), **angular}
         counted = {name: q for name, q in self._quantities.items() if q is not None and q.cycles}
         return {name: self._reading(name, q, angular.get(name)) for name, q in counted.items()}
 
@@ -401,9 +398,8 @@ class DimensionSystem:
         quantity = self._quantities.get(name)
         if quantity is None:
             return Measure(open=True)
-        if not quantity.cycles:
-            return Measure(quantity.dimension)
-        return Measure(quantity.dimension, cycles=Fraction(quantity.cycles), cyclic=frozenset({name}))
+        cyclic = frozenset({name} if quantity.cycles else ())
+        return Measure(quantity.dimension, cycles=Fraction(quantity.cycles), cyclic=cyclic)
 
     def definition(self, name: str) -> Measure:
         """Return what a definition is measured in; a bare number fits any unit, as it does in its place."""
@@ -411,10 +407,8 @@ class DimensionSystem:
             self._defined[name] = Measure(open=True)
             expression = self._definitions[name]
             measure = self.measure(expression)
-            fits_any = measure.is_extreme or (
-                not names(expression) and not isinstance(expression, QuantityLiteral)
-            )
-            self._defined[name] = Measure(open=True) if fits_any else measure
+            has_unit = bool(names(expression)) or isinstance(expression, QuantityLiteral)
+            self._defined[name] = measure if has_unit and not measure.is_extreme else Measure(open=True)
         return self._defined[name]
 
     def _block(self, name: str) -> Measure:
@@ -452,32 +446,30 @@ class DimensionSystem:
         if mixed:
             for term, measure in measures:
                 self._read_cycles(measure, None, term.span)
+        cyclic = frozenset().union(*(m.cyclic for _, m in measures))
         closed = [(t, self._reduce(m)) for t, m in measures if not m.open]
         if not closed:
             if mixed:
                 return Measure(open=True)
-            return replace(measures[0][1], cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
+            return replace(measures[0][1], cyclic=cyclic)
         # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
         first_term, first = min(closed, key=lambda each: (each[1].literal, bool(each[1].unknowns)))
         for term, measure in closed:
-            if term is first_term:
+            is_alike = (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns)
+            if term is first_term or is_alike:
                 continue
-            if (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns):
-                continue
-            loose = measure.literal or first.literal
             ratio = measure.times(first.power(-1))
-            if loose:
+            if measure.literal or first.literal:
                 self._guesses.append(ratio)
             elif not self._learn(self._reduce(ratio)):
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
                 message = f"terms of a sum disagree: {_said(first_term)}'{there}' and {_said(term)}'{here}'"
-                self._note(
-                    "SF205", message, term.span or expression.span, _gain_hint(expression, here, there)
-                )
+                hint = _gain_hint(expression, here, there)
+                self._note("SF205", message, term.span or expression.span, hint)
         result = self._reduce(first)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
-        return replace(result, cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
+        return replace(result, cyclic=cyclic)
 
     def _read_cycles(
         self, measure: Measure, angular: bool | None, span: Span | None, wanted: Dimension | None = None
@@ -525,11 +517,8 @@ class DimensionSystem:
         waiting = [variable]
         while waiting:
             terms, dimension = self._solved[waiting[-1]]
-            stale = [
-                v
-                for v, _ in terms
-                if v in self._solved and any(u in self._solved for u, _ in self._solved[v][0])
-            ]
+            solved = [v for v, _ in terms if v in self._solved]
+            stale = [v for v in solved if any(u in self._solved for u, _ in self._solved[v][0])]
             if stale:
                 waiting += stale
                 continue

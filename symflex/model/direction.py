@@ -71,10 +71,7 @@ def _part(angle: Expression) -> Fraction | None:
         case Negative(operand):
             inner = _part(operand)
             return None if inner is None else -inner
-        case Product((Number(value), *rest)):
-            inner = _part(product_of(rest))
-            return None if inner is None else inner * value
-        case Product((*rest, Number(value))):
+        case Product((Number(value), *rest)) | Product((*rest, Number(value))):
             inner = _part(product_of(rest))
             return None if inner is None else inner * value
         case Quotient(above, Number(value)):

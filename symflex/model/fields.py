@@ -96,14 +96,11 @@ def _read_field(
         return None
     if len(equations) != len(unknowns):
         one, other = counted(len(equations), "equation"), counted(len(unknowns), "unknown")
-        reader.note(
-            "SF242",
-            f"{what} has {one} for {other}",
-            equations[-1].span if equations else entry.key_span,
-            "list what the equations determine: " + 'unknowns = ["w", "phi"]'
-            if len(equations) > len(unknowns)
-            else "each unknown needs an equation",
-        )
+        hint = "each unknown needs an equation"
+        if len(equations) > len(unknowns):
+            hint = 'list what the equations determine: unknowns = ["w", "phi"]'
+        place = equations[-1].span if equations else entry.key_span
+        reader.note("SF242", f"{what} has {one} for {other}", place, hint)
         return None
     return FieldProblem(entry.key, unknowns, *domain, equations, conditions, entry.key_span, label, doc)
 

@@ -53,12 +53,8 @@ def check_header(reader: Reader, spec: Spec) -> None:
     reader.keys(spec.root, TOP_KEYS, "the specification")
     version = spec.root.get("symflex")
     if version is None:
-        reader.note(
-            "SF200",
-            "the specification does not say its format version",
-            Span(spec.source, 0, 0),
-            "begin the file with: symflex = 1",
-        )
+        message = "the specification does not say its format version"
+        reader.note("SF200", message, Span(spec.source, 0, 0), "begin the file with: symflex = 1")
         return
     literal = getattr(version.value, "value", None)
     if literal != FORMAT_VERSION or isinstance(literal, bool):
@@ -99,7 +95,11 @@ def _without_misplaced(
             if spec.root.get(entry.key) is not None or not _looks_misplaced(entry):
                 continue
             places = list(_spans(entry))
-            rest = [p for p in kept if not any(_is_within(p, place) for place in places)]
+            rest = [
+                p
+                for p in kept
+                if not p.span or not any(each.start <= p.span.start < each.end for each in places)
+            ]
             if entry.key == "symflex":
                 rest = [p for p in rest if p.code != "SF200"]
             if len(rest) < len(kept):
@@ -119,10 +119,6 @@ def _looks_misplaced(entry: KeyValue) -> bool:
             return entry.key in TOP_KEYS and not looks_like_quantity(entry.value.text.value)
         case _:
             return entry.key in TOP_KEYS
-
-
-def _is_within(problem: Diagnostic, place: Span) -> bool:
-    return problem.span is not None and place.start <= problem.span.start < place.end
 
 
 def _spans(entry: KeyValue) -> Iterator[Span]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from symflex.algebra import PRIME
 from symflex.errors import SpecError
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from symflex.library.elements import Variable
 
+Key = TypeVar("Key")
 Place = tuple[str, int, int]
 """An unknown, its point modulo the prime (zero along x), and the order of the derivative."""
 Form = dict["Place | Variable | None", int]
@@ -157,11 +158,11 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
             factor = rest.get(pivot, 0)
             if factor:
                 rest = _total([rest, _scaled(row, -factor)])
-                origin = _combined(origin, made_of, -factor)
+                origin = _total([origin, _scaled(made_of, -factor)])
         pivot_here = next((k for k in rest if isinstance(k, tuple)), None)
         if pivot_here is not None:
             inverse = _inverse(rest[pivot_here])
-            reduced.append((pivot_here, _scaled(rest, inverse), _combined({}, origin, inverse)))
+            reduced.append((pivot_here, _scaled(rest, inverse), _scaled(origin, inverse)))
             continue
         left = [k for k in rest if k is not None and not isinstance(k, tuple)]
         if all(v.kind == "input" for v in left):
@@ -170,22 +171,15 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
     return repeated
 
 
-def _combined(left: Mapping[int, int], right: Mapping[int, int], factor: int) -> dict[int, int]:
-    total = dict(left)
-    for key, value in right.items():
-        total[key] = (total.get(key, 0) + factor * value) % PRIME
-    return {k: v for k, v in total.items() if v}
-
-
-def _total(forms: Sequence[Form]) -> Form:
-    total: Form = {}
+def _total(forms: Sequence[Mapping[Key, int]]) -> dict[Key, int]:
+    total: dict[Key, int] = {}
     for form in forms:
         for key, value in form.items():
             total[key] = (total.get(key, 0) + value) % PRIME
     return {k: v for k, v in total.items() if v}
 
 
-def _scaled(form: Form, factor: int) -> Form:
+def _scaled(form: Mapping[Key, int], factor: int) -> dict[Key, int]:
     return {k: v for k, c in form.items() if (v := c * factor % PRIME)}
 
 

@@ -69,9 +69,8 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
     if not constant and degree == "constant" and not degrees.problems and not is_number(expression, 0):
         problem = without_signal(expression.span)
         if any(n.name == LAPLACE for n in names(expression)):
-            problem = replace(
-                problem, hint="a function of s belongs in [definitions], or multiply by an input"
-            )
+            hint = "a function of s belongs in [definitions], or multiply by an input"
+            problem = replace(problem, hint=hint)
         degrees.problems.append(problem)
     return degrees.problems
 
@@ -93,12 +92,9 @@ def check_equation(equation: Equation, scope: ModelScope, *, acts: bool = False)
 
 def without_signal(span: Span | None) -> Diagnostic:
     """Return the diagnostic of a constant that stands where something that varies in time must."""
-    return Diagnostic(
-        "SF221",
-        "this is constant: there is no node, signal, element quantity or input in it",
-        span,
-        "a linear model is driven by its inputs alone; multiply by an input",
-    )
+    message = "this is constant: there is no node, signal, element quantity or input in it"
+    hint = "a linear model is driven by its inputs alone; multiply by an input"
+    return Diagnostic("SF221", message, span, hint)
 
 
 @dataclass(frozen=True)
@@ -183,9 +179,8 @@ class _Degrees:
             return base
         if abs(value) > EXPONENT_LIMIT:
             message = f"exponent {value} is larger than {EXPONENT_LIMIT}"
-            self.note(
-                "SF103", message, exponent.span, "write a product of lower powers, in blocks of their own"
-            )
+            hint = "write a product of lower powers, in blocks of their own"
+            self.note("SF103", message, exponent.span, hint)
         if base == "linear" and value != 1:
             message = "a power of a quantity that varies in time is not linear"
             self.note("SF222", message, power.span, LINEARISE)
@@ -231,9 +226,8 @@ class _Degrees:
             return "unknown"
         if call.order > ORDER_LIMIT:
             message = f"this derivative is of order {call.order}; at most {ORDER_LIMIT} is allowed"
-            self.note(
-                "SF103", message, call.span, "the field's equation gives higher derivatives by lower ones"
-            )
+            hint = "the field's equation gives higher derivatives by lower ones"
+            self.note("SF103", message, call.span, hint)
         replace(self, constant=True).of(call.argument)
         return "linear"
 

@@ -5,7 +5,7 @@ Every noun here is pure data made by :func:`symflex.model.resolve`; positions do
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -16,7 +16,7 @@ from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from symflex.errors import Diagnostic, Span
     from symflex.expressions import Expression
@@ -178,6 +178,21 @@ class FieldProblem:
     doc: str = ""
     # The equations and then the conditions as they are written, where brackets in them bear primes.
     written: tuple[Equation, ...] = ()
+
+    def rewritten(self, new: Callable[[Expression], Expression]) -> FieldProblem:
+        """Return the problem with another expression in place of each, of equations for each side."""
+
+        def sides(equations: tuple[Equation, ...]) -> tuple[Equation, ...]:
+            return tuple(replace(e, left=new(e.left), right=new(e.right)) for e in equations)
+
+        return replace(
+            self,
+            start=new(self.start),
+            end=new(self.end),
+            equations=sides(self.equations),
+            conditions=sides(self.conditions),
+            written=sides(self.written),
+        )
 
 
 @dataclass(frozen=True, slots=True)

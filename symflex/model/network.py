@@ -9,15 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, nearest
 from symflex.library.blocks import BLOCKS
-from symflex.library.elements import (
-    CIRCUITS,
-    COMPONENT_DOMAIN,
-    COMPONENTS,
-    ELEMENTS,
-    Element,
-    Port,
-    Variable,
-)
+from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
@@ -146,21 +138,18 @@ def _choices(
     chosen: list[tuple[str, str]] = []
     for choice in element.choices:
         given = table.get(choice.name)
-        what = f"{choice.name} of {element.type_name} '{entry.key}'"
-        if given is not None and choice.is_flag:
-            if isinstance(given.value, BooleanValue):
-                chosen.append((choice.name, choice.name if given.value.value else choice.default))
-            else:
-                reader.misfit(f"{what} must be true or false", given.value)
-            continue
-        text = reader.string(given, what) if given else None
+        who = f"{element.type_name} '{entry.key}'"
         if given is None:
             chosen.append((choice.name, choice.default))
-        elif text is not None and text.value in choice.values:
-            chosen.append((choice.name, text.value))
-        elif text is not None:
+        elif choice.is_flag and isinstance(given.value, BooleanValue):
+            chosen.append((choice.name, choice.name if given.value.value else choice.default))
+        elif choice.is_flag:
+            reader.misfit(f"{choice.name} of {who} must be true or false", given.value)
+        elif text := reader.string(given, f"{choice.name} of {who}"):
+            if text.value in choice.values:
+                chosen.append((choice.name, text.value))
+                continue
             hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
-            who = f"{element.type_name} '{entry.key}'"
             message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
             reader.note("SF208", message, text.span, hint)
     return tuple(chosen) if len(chosen) == len(element.choices) else None
@@ -191,19 +180,14 @@ def _values(
         if entry_given is not None and not applies:
             chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
             others = " or ".join(f'"{value}"' for value in parameter.only)
-            reader.note(
-                "SF247",
-                f"{parameter.name} of {who} does not go with {chosen}",
-                entry_given.key_span,
-                f"it goes with {others}",
-            )
+            message = f"{parameter.name} of {who} does not go with {chosen}"
+            reader.note("SF247", message, entry_given.key_span, f"it goes with {others}")
         elif entry_given is not None and parameter.name in spare:
             product = spare[parameter.name]
             place = f"{product.name} in place of {'*'.join(product.of)}"
+            hint = f"leave {parameter.name} or {product.name} out"
             message = f"{who} has {place} and also {parameter.name}"
-            reader.note(
-                "SF247", message, entry_given.key_span, f"leave {parameter.name} or {product.name} out"
-            )
+            reader.note("SF247", message, entry_given.key_span, hint)
         elif entry_given is not None:
             expression = reader.expression(entry_given.value, f"{parameter.name} of {who}")
         elif parameter.default is not None:
@@ -220,12 +204,9 @@ def _values(
             missing = left[0] if left else parameter
             if missing not in said and missing.name not in meant:
                 said.append(missing)
-                reader.note(
-                    "SF214",
-                    f"{who} lacks {missing.name}, {missing.doc}",
-                    entry.key_span,
-                    f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products),
-                )
+                hint = f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products)
+                message = f"{who} lacks {missing.name}, {missing.doc}"
+                reader.note("SF214", message, entry.key_span, hint)
         else:
             continue
         if expression is None:
@@ -274,12 +255,9 @@ def _references(
         if port.name in meant:
             return None
         ports = ", ".join(p.name for p in element.ports)
-        reader.note(
-            "SF217",
-            f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
-            entry.key_span,
-            _as_ports(table, element) or f"ports of {element.type_name}: {ports}",
-        )
+        message = f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})"
+        written = _as_ports(table, element) or f"ports of {element.type_name}: {ports}"
+        reader.note("SF217", message, entry.key_span, written)
         return None
     kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
     texts = reader.strings(entry_given, what, kind)
@@ -297,17 +275,13 @@ def _references(
             ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
             rests = RESTS.get(port.domain, "an end that does not move")
             hint = f'{rests} is at "ground": [{ends}]'
-        reader.note(
-            "SF217",
-            f"{what} takes {wanted} {plural}, found {len(texts)}",
-            entry_given.value.span,
-            hint,
-        )
+        message = f"{what} takes {wanted} {plural}, found {len(texts)}"
+        reader.note("SF217", message, entry_given.value.span, hint)
         return None
     references = [_reference(reader, t, port.domain, what) for t in texts]
-    if any(r is None for r in references):
-        return None
     kept = tuple(r for r in references if r is not None)
+    if len(kept) < len(texts):
+        return None
     match kept:
         case (a, b) if (a.node, a.component) == (b.node, b.component):
             message = f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'"
@@ -345,19 +319,13 @@ def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> Nod
     node, dot, component = text.value.partition(".")
     good = NAME.match(node) and (not dot or component in COMPONENT_DOMAIN)
     if not good or (dot and node == "ground"):
-        reader.note(
-            "SF213",
-            f"{what}: '{text.value[:80]}' is not a node",
-            text.span,
-            (name_hint(node) or "").partition(", which")[0]
-            or ("the ground is 'ground'" if node == "0" else "")
-            or (
-                f"a name begins with a letter: write 'n{node}'"
-                if node[:1].isdigit() and node.isalnum()
-                else ""
-            )
-            or "a node is a name, or name.x, name.y or name.theta of a planar node",
-        )
+        hint = (name_hint(node) or "").partition(", which")[0]
+        if not hint and node == "0":
+            hint = "the ground is 'ground'"
+        elif not hint and node[:1].isdigit() and node.isalnum():
+            hint = f"a name begins with a letter: write 'n{node}'"
+        usual = "a node is a name, or name.x, name.y or name.theta of a planar node"
+        reader.note("SF213", f"{what}: '{text.value[:80]}' is not a node", text.span, hint or usual)
         return None
     if dot and domain in COMPONENTS:
         reader.note("SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'")
@@ -404,11 +372,8 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     if texts is None:
         return None
     if len(texts) not in (1, 2):
-        reader.note(
-            "SF217",
-            f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
-            place.value.span,
-        )
+        message = f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}"
+        reader.note("SF217", message, place.value.span)
         return None
     references = [_reference(reader, t, law.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)
@@ -518,8 +483,11 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
         if definite:
             nodes[name] = NetworkNode(name, definite[0], span)
     _spread(attachments, nodes, first)
-    problems += [*_undirected(attachments, nodes), *_unlike(attachments, nodes)]
-    problems += _mixed(attachments, nodes)
+    for a in attachments:  # what does not say whether it acts along x or y
+        is_bare = not a.reference.component and a.domain in ("translation", "any")
+        if is_bare and (node := nodes.get(a.reference.node)) and node.domain == "plane":
+            problems.append(_without_direction(a))
+    problems += [*_unlike(attachments, nodes), *_mixed(attachments, nodes)]
     return tuple(nodes[name] for name in first), problems
 
 
@@ -546,16 +514,6 @@ def _moving_along(attachments: Sequence[Attachment]) -> set[str]:
             moving.add(name)
             pending += beside.get(name, ())
     return moving
-
-
-def _undirected(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:
-    """Yield what does not say whether it acts along x or y."""
-    for attachment in attachments:
-        name, domain = attachment.reference.node, attachment.domain
-        if attachment.reference.component or domain not in ("translation", "any") or name not in nodes:
-            continue
-        if nodes[name].domain == "plane":
-            yield _without_direction(attachment)
 
 
 def _without_direction(attachment: Attachment) -> Diagnostic:
@@ -654,12 +612,8 @@ def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
         hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
     elif "acoustic" in claims:
         hint = "use two nodes and couple them with a piston"
-    return Diagnostic(
-        "SF220",
-        f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}",
-        other.reference.span,
-        hint,
-    )
+    message = f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}"
+    return Diagnostic("SF220", message, other.reference.span, hint)
 
 
 @dataclass(frozen=True, slots=True)

@@ -131,13 +131,9 @@ class Reader:
     def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:
         """Tell whether the entry's key is a name; ``reserved`` says why some are taken."""
         if not NAME.match(entry.key):
-            self.note(
-                "SF213",
-                f"'{entry.key[:80]}' is not a name for {what}",
-                entry.key_span,
-                name_hint(entry.key)
-                or "names are a letter followed by up to 63 letters, digits and underscores",
-            )
+            usual = "names are a letter followed by up to 63 letters, digits and underscores"
+            message = f"'{entry.key[:80]}' is not a name for {what}"
+            self.note("SF213", message, entry.key_span, name_hint(entry.key) or usual)
             return False
         if reserved and entry.key in reserved:
             message = f"'{entry.key}' is reserved and cannot name {what}"

@@ -170,27 +170,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     loads = {x.name for x in signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
-        reader,
-        read_fields(reader, sections["fields"], taken),
-        has_coordinate=COORDINATE not in taken | loads,
+        reader, read_fields(reader, sections["fields"], taken), has_coordinate=COORDINATE not in taken | loads
     )
     measure = constant_measure(declared, inherited, definitions)
     attachments = [a for element in elements for a in element.attachments(measure)]
     attachments += [a for source in inputs for a in source.attachments()]
     nodes, contradictions = infer_nodes(attachments)
     reader.take(contradictions)
-    draft = Draft(
-        declared,
-        inherited,
-        definitions,
-        nodes,
-        elements,
-        inputs,
-        blocks,
-        signals,
-        outputs,
-        fields,
-    )
+    draft = Draft(declared, inherited, definitions, nodes, elements, inputs, blocks, signals, outputs, fields)
     draft = with_dead_times(draft, taken | loads | {n.name for n in nodes})
     draft = with_imaginary_unit(reader, draft)
     broken = broken_names(sections, draft) | twins
@@ -302,13 +289,10 @@ def _inherited_parameters(
             elif known.value is not None and parameter.value is not None and known.value != parameter.value:
                 other = bringing.get(parameter.name)
                 than = f" than in block '{other}' ({known.span})" if other else ""
-                reader.note(
-                    "SF226",
-                    f"parameter '{parameter.name}' has another value in block '{block.name}' "
-                    f"({parameter.span}){than}",
-                    known.span if known.name in own else block.span,
-                    "rename one of the two: parameters of a model block are shared by name",
-                )
+                here = f"in block '{block.name}' ({parameter.span})"
+                message = f"parameter '{parameter.name}' has another value {here}{than}"
+                hint = "rename one of the two: parameters of a model block are shared by name"
+                reader.note("SF226", message, known.span if known.name in own else block.span, hint)
     return tuple(inherited.values())
 
 
@@ -342,8 +326,8 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         if problems:
             unsound.add(expression.span)
     acting = [e for e, kind in _all_expressions(replace(draft, signals=(), outputs=())) if kind == "signal"]
-    acting += [e for f in draft.fields for e in (*f.equations, *f.conditions)]
-    check_unknowns(reader, draft.signals, acting)
+    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
+    check_unknowns(reader, draft.signals, [*acting, *equations])
     around = _surroundings(draft, scope)
     for ranged in ranged_values(draft):
         if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
@@ -352,7 +336,6 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     check_ranges(reader, draft, around.line, unsound, is_along=False)
     before = len(reader.problems)
     fields_placed = check_fields(reader, draft.fields, around)
-    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
     unsound |= {e.span for e in equations if _holds(e, reader.problems[before:])}
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     readings = system.finish()
@@ -391,17 +374,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
             replace(b, values=tuple((n, whole(v, block_unit(b, n))) for n, v in b.values))
             for b in draft.blocks
         ),
-        fields=tuple(
-            replace(
-                f,
-                start=whole(f.start),
-                end=whole(f.end),
-                equations=tuple(_turned(e, turned) for e in f.equations),
-                conditions=tuple(_turned(e, turned) for e in f.conditions),
-                written=tuple(_turned(e, turned) for e in f.written),
-            )
-            for f in draft.fields
-        ),
+        fields=tuple(f.rewritten(whole) for f in draft.fields),
         inputs=tuple(measured_input(i, system) for i in inputs),
         outputs=tuple(
             replace(
@@ -417,11 +390,6 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         warnings=tuple(system.readings()),
     )
     return model, turned
-
-
-def _turned(equation: Equation, turned: Mapping[str, Expression]) -> Equation:
-    left, right = (substitute(side, turned) for side in equation.children)
-    return Equation(left, right, span=equation.span)
 
 
 def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedElement:
@@ -473,11 +441,10 @@ def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
 def _holds(expression: Expression, problems: Sequence[Diagnostic]) -> bool:
     """Tell whether some problem lies within an expression."""
     own = expression.span
-    return own is not None and any(p.span is not None and _covers(own, p.span) for p in problems)
-
-
-def _covers(outer: Span, inner: Span) -> bool:
-    return outer.source is inner.source and outer.start <= inner.start and inner.end <= outer.end
+    spans = [
+        p.span for p in problems if own is not None and p.span is not None and p.span.source is own.source
+    ]
+    return own is not None and any(own.start <= each.start and each.end <= own.end for each in spans)
 
 
 def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:

@@ -185,9 +185,8 @@ class ModelScope:
                 hint = nearest_name(expression.owner, list(self.owners))
                 message = f"'{text}': no element or planar node is called '{expression.owner}'"
             else:
-                hint = (
-                    "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
-                )
+                listed = ", ".join(f"{expression.owner}.{a}" for a in offered)
+                hint = f"it offers {listed}" if offered else None
                 message = f"'{expression.owner}' has no quantity '{expression.name}'"
             raise SpecError(Diagnostic("SF210", message, expression.span, hint))
         (meaning,) = candidates
@@ -233,13 +232,9 @@ def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
 
 def outside(written: str, described: str, span: Span | None) -> Diagnostic:
     """Return the diagnostic of what may not stand in the equations of a field."""
-    return Diagnostic(
-        "SF245",
-        f"'{written}' is {described}; the equations of a field may use only its unknowns, parameters, "
-        "inputs and signals",
-        span,
-        "what acts at a point belongs in the conditions; a load along x is an input or a signal",
-    )
+    allowed = "the equations of a field may use only its unknowns, parameters, inputs and signals"
+    hint = "what acts at a point belongs in the conditions; a load along x is an input or a signal"
+    return Diagnostic("SF245", f"'{written}' is {described}; {allowed}", span, hint)
 
 
 def nearest_name(name: str, known: Sequence[str]) -> str | None:
@@ -293,14 +288,12 @@ def build_scope(
     for block in blocks:
         add(block.name, Meaning("block", block.name, f"the block '{block.name}'"))
     for node in nodes:
-        for component in node.components:
-            variable = Variable("node", node.name, component)
-            if component:
-                offer(node.name, component, Meaning("variable", node.name, f"node '{variable}'", variable))
-        if node.domain == "plane":
-            continue  # bare, it could be x or y
-        first = Variable("node", node.name, node.components[0])
-        add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", first))
+        variables = [Variable("node", node.name, component) for component in node.components]
+        for variable in (v for v in variables if v.component):
+            described = f"node '{variable}'"
+            offer(node.name, variable.component, Meaning("variable", node.name, described, variable))
+        if node.domain != "plane":  # where bare, it could be x or y
+            add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", variables[0]))
     for signal in signals:
         variable = Variable("signal", signal.name)
         add(signal.name, Meaning("variable", signal.name, f"the signal '{signal.name}'", variable))
@@ -318,11 +311,8 @@ def build_scope(
         if kind is None or not kind.is_imposed or (source.name, "i") in attributes:
             continue
         described = f"the reaction of the input '{source.name}'"
-        offer(
-            source.name,
-            kind.quantity,
-            Meaning("through", source.name, described, kind.delivered(source.name)),
-        )
+        meaning = Meaning("through", source.name, described, kind.delivered(source.name))
+        offer(source.name, kind.quantity, meaning)
     return ModelScope(
         {name: tuple(candidates) for name, candidates in meanings.items()},
         {name: tuple(candidates) for name, candidates in attributes.items()},

@@ -21,7 +21,7 @@ from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from symflex.expressions import Equation, Expression
+    from symflex.expressions import Expression
     from symflex.model.declarations import DeclaredParameter
     from symflex.model.model import ExactValue, Model
     from symflex.model.reading import Reader
@@ -84,9 +84,13 @@ def settled(
 def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> DeclaredParameter:
     name = parameter.name
     text = Text(str(given), Span(Source(OPTION, f"{name}={given}"), len(name) + 1, len(f"{name}={given}")))
-    quantity = reader.read(
-        lambda text: parse_quantity(text) if isinstance(given, str) else _number(name, given), text
-    )
+
+    def read(text: Text) -> Quantity:
+        if isinstance(given, str):
+            return parse_quantity(text)
+        return Quantity(exact_number(name, given), 0, 0, DIMENSIONLESS, 0, "")
+
+    quantity = reader.read(read, text)
     if quantity is None:
         return parameter
     own = one_of(parameter.unit_text) if parameter.unit_text else parameter.quantity
@@ -108,11 +112,6 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
         reader.take((problem,))
         return parameter
     return replace(parameter, quantity=quantity, has_unit=bool(quantity.unit) or parameter.has_unit)
-
-
-def _number(name: str, given: float | Fraction | Decimal) -> Quantity:
-    """Return a number in SI units."""
-    return Quantity(exact_number(name, given), 0, 0, DIMENSIONLESS, 0, "")
 
 
 def exact_number(name: str, given: object) -> Fraction:
@@ -158,40 +157,26 @@ def with_numbers(
         if value is not None and name not in symbolic and not value.is_imaginary
     }
 
-    def put_in(given: Values) -> Values:
-        return tuple((name, substitute(e, numbers)) for name, e in given)
+    def put_in(expression: Expression) -> Expression:
+        return substitute(expression, numbers)
 
-    def equations(given: Sequence[Equation]) -> tuple[Equation, ...]:
-        return tuple(
-            replace(e, left=substitute(e.left, numbers), right=substitute(e.right, numbers)) for e in given
-        )
+    def each(given: Values) -> Values:
+        return tuple((name, put_in(e)) for name, e in given)
 
     return replace(
         model,
         parameters=tuple(p for p in model.parameters if p.name not in numbers),
-        definitions=tuple(
-            replace(d, expression=substitute(d.expression, numbers)) for d in model.definitions
-        ),
-        elements=tuple(replace(e, values=put_in(e.values)) for e in model.elements),
-        signals=tuple(replace(x, expression=substitute(x.expression, numbers)) for x in model.signals),
+        definitions=tuple(replace(d, expression=put_in(d.expression)) for d in model.definitions),
+        elements=tuple(replace(e, values=each(e.values)) for e in model.elements),
+        signals=tuple(replace(x, expression=put_in(x.expression)) for x in model.signals),
         blocks=tuple(
             replace(
                 b,
-                values=put_in(b.values),
+                values=each(b.values),
                 submodel=None if b.submodel is None else with_numbers(b.submodel, symbolic, values),
             )
             for b in model.blocks
         ),
-        fields=tuple(
-            replace(
-                f,
-                start=substitute(f.start, numbers),
-                end=substitute(f.end, numbers),
-                equations=equations(f.equations),
-                conditions=equations(f.conditions),
-                written=equations(f.written),
-            )
-            for f in model.fields
-        ),
-        outputs=tuple(replace(o, expression=substitute(o.expression, numbers)) for o in model.outputs),
+        fields=tuple(f.rewritten(put_in) for f in model.fields),
+        outputs=tuple(replace(o, expression=put_in(o.expression)) for o in model.outputs),
     )

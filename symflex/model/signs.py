@@ -270,19 +270,19 @@ class RangedValue:
         sign = line.sign(self.expression)
         if self.length is not None and sign is None:
             return self._complaint_inside(line, self.length)
-        if sign is None or sign >= self._least or (self.is_end and sign == 0 and self._may_vanish(line)):
+        least = 1 if self.sign == "positive" else 0
+        if sign is None or sign >= least:
+            return ""
+        # A zero at an end may be one whatever the values, or of a form that is not read, such as a cube.
+        if (
+            self.is_end
+            and not sign
+            and (line.is_zero(self.expression) or line.value(self.expression) is None)
+        ):
             return ""
         value = None if literal_value(self.expression) is not None else line.nearly(self.expression)
         shown = f" ({value:.6g})" if value else ""
         return f"{self.what} is {'negative' if sign < 0 else '0'}{shown}; {self.reason}"
-
-    def _may_vanish(self, line: Line) -> bool:
-        """Tell whether a zero is one whatever the values, or of a form that is not read, such as a cube."""
-        return line.is_zero(self.expression) or line.value(self.expression) is None
-
-    @property
-    def _least(self) -> int:
-        return 1 if self.sign == "positive" else 0
 
     def _complaint_inside(self, line: Line, length: Expression) -> str:
         """Return what is wrong at the first of some points between the ends."""
@@ -294,7 +294,7 @@ class RangedValue:
             value = value_along(self.expression, _ball(place), line)
             if value is None or not value.is_finite():
                 return ""
-            if value < 0 or (self._least and value == 0):
+            if value < 0 or (self.sign == "positive" and value == 0):
                 # Near a simple zero balls of exact numbers are as exact as these.
                 shown = f"negative ({float(value.mid()):.6g})" if value < 0 else "0"
                 return f"{self.what} at x = {float(place):.6g} m is {shown}; {self.reason}"

@@ -118,9 +118,7 @@ def declared_quantities(
 ) -> dict[str, Quantity | None]:
     """Return what every parameter is measured in, ``None`` where no unit was written."""
     quantities = {p.name: p.measured for p in declared}
-    for parameter in inherited:
-        quantities[parameter.name] = _in_si(parameter)
-    return quantities
+    return quantities | {p.name: _in_si(p) for p in inherited}
 
 
 def constant_measure(

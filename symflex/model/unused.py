@@ -87,7 +87,10 @@ def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnos
         if node.name in read or not uses:
             continue
         joined = {r.node for use in uses for _, references in use.nodes for r in references} - {node.name}
-        are_branches = all(_is_branch(use) for use in uses)
+        # Elements without mass that join two nodes carry nothing with one of them free.
+        are_branches = all(
+            not isinstance(use.element, LineElement) and [len(r) for _, r in use.nodes] == [2] for use in uses
+        )
         if len(uses) > 1 and not (are_branches and len(joined) == 1):
             continue
         others = [name for name in (*everything, "ground") if name != node.name and name not in joined]
@@ -107,19 +110,11 @@ def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnos
         yield Diagnostic("SF650", message, node.span, hint, "warning")
 
 
-def _is_branch(use: PlacedElement) -> bool:
-    """Tell whether an element without mass joins two nodes and carries nothing with one of them free."""
-    return not isinstance(use.element, LineElement) and [len(r) for _, r in use.nodes] == [2]
-
-
 def _looks_like(name: str, other: str) -> bool:
     """Tell whether two names have the same letters, or nearly those of the ground, as which none is named."""
-    if _letters(name) == _letters(other):
+    letters, others = (sorted(each.lower().replace("_", "")) for each in (name, other))
+    if letters == others:
         return True
     from difflib import get_close_matches  # most models have a use for all their names
 
     return other == "ground" and bool(get_close_matches(name.lower(), [other], cutoff=ALIKE))
-
-
-def _letters(name: str) -> list[str]:
-    return sorted(name.lower().replace("_", ""))

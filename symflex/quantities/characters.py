@@ -122,11 +122,7 @@ def name_hint(text: str) -> str | None:
     written = "" if text.isascii() else ascii_name(text)
     if not written:
         return None
-    greek = re.sub(r"[^\x00-\x7f]", lambda m: f"\\{_spelled(m[0])} " if _is_greek(m[0]) else m[0], text)
+    greek = "".join(f"\\{_spelled(c)} " if unicodedata.name(c, "").startswith("GREEK") else c for c in text)
     shown = re.sub(r" (?=\W|_|$)", "", greek)
     also = f", which latex = '{shown}' prints as before" if shown.isascii() else ""
     return f"names are ASCII: write '{written}'{also}"
-
-
-def _is_greek(character: str) -> bool:
-    return unicodedata.name(character, "").startswith("GREEK")

@@ -122,13 +122,6 @@ class PlacedUnit:
     before: Unit = _NO_UNIT
 
 
-@dataclass(frozen=True, slots=True)
-class _Exponent:
-    value: Fraction
-    start: int
-    end: int
-
-
 class RejectedError(Exception):
     """A reason to refuse the text, with offsets in it; becomes a SpecError where the text is known."""
 
@@ -177,16 +170,13 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
         raise _syntax_rejection(unexpected, value, kind) from None
     assert isinstance(result, tuple)
     constant, placed = result
-    if placed.start == constant.end < placed.end and not _may_touch(value, constant, placed):
+    plain = SIGNED_NUMBER.fullmatch(value, constant.start, constant.end)
+    may_touch = plain and UNIT_START.match(value, placed.start)
+    if placed.start == constant.end < placed.end and not may_touch:
         message = f"no space between number and unit in '{value}'"
         hint = "only a plain number may touch its unit, as in '3kg'"
         raise RejectedError("SF202", message, constant.start, placed.end, hint)
     return constant, placed
-
-
-def _may_touch(value: str, constant: Constant, placed: PlacedUnit) -> bool:
-    plain = SIGNED_NUMBER.fullmatch(value, constant.start, constant.end)
-    return bool(plain and UNIT_START.match(value, placed.start))
 
 
 def _check_nesting(value: str) -> None:
@@ -259,9 +249,8 @@ def _checked_unit(placed: PlacedUnit) -> PlacedUnit:
     parts = (part for e in unit.dimension.exponents for part in (e.numerator, e.denominator))
     if size > MAXIMUM_BITS or any(abs(power) > MAXIMUM_UNIT_EXPONENT for power in (*powers, *parts)):
         message = "the unit's powers are too large"
-        raise RejectedError(
-            "SF103", message, placed.start, placed.end, "write it in lower powers of SI units"
-        )
+        hint = "write it in lower powers of SI units"
+        raise RejectedError("SF103", message, placed.start, placed.end, hint)
     return placed
 
 
@@ -353,8 +342,8 @@ class _Evaluator:
             raise RejectedError("SF201", message, symbol.start, symbol.end, meant)
         return PlacedUnit(unit, symbol.start, symbol.end)
 
-    def raise_unit(self, base: PlacedUnit, exponent: _Exponent) -> PlacedUnit:
-        above, degree = exponent.value.numerator, exponent.value.denominator
+    def raise_unit(self, base: PlacedUnit, exponent: Constant) -> PlacedUnit:
+        above, degree = exponent.magnitude.numerator, exponent.magnitude.denominator
         if max(abs(above), degree) > MAXIMUM_UNIT_POWER:
             message = f"a unit's power beyond {MAXIMUM_UNIT_POWER}"
             raise RejectedError("SF103", message, exponent.start, exponent.end, "write it in lower powers")
@@ -362,33 +351,33 @@ class _Evaluator:
         if degree > 1 and unit:
             unit = unit.root(degree)
         if unit is None:
-            message = f"the power {exponent.value} of this unit has no exact factor"
+            message = f"the power {exponent.magnitude} of this unit has no exact factor"
             raise RejectedError("SF202", message, base.start, exponent.end)
         return _checked_unit(PlacedUnit(base.before * unit, base.start, exponent.end))
 
     def raise_superscript(self, base: PlacedUnit, superscript: Token) -> PlacedUnit:
         digits = superscript.translate(_PLAIN_DIGITS)
-        return self.raise_unit(base, _Exponent(Fraction(digits), superscript.start, superscript.end))
+        return self.raise_unit(base, Constant(Fraction(digits), 0, superscript.start, superscript.end))
 
-    def integer(self, *tokens: Token) -> _Exponent:
+    def integer(self, *tokens: Token) -> Constant:
         number = tokens[-1]
         start, end = tokens[0].start, number.end
         if not _INTEGER.fullmatch(number):
             hint = "a root is written 'm^(1/2)'"
             raise RejectedError("SF202", "a unit's power is an integer", start, end, hint)
-        return _Exponent(Fraction("".join(tokens)), start, end)
+        return Constant(Fraction("".join(tokens)), 0, start, end)
 
-    def whole_exponent(self, exponent: _Exponent) -> _Exponent:
+    def whole_exponent(self, exponent: Constant) -> Constant:
         return exponent
 
-    def enclosed_exponent(self, left: Token, exponent: _Exponent, right: Token) -> _Exponent:
-        return _Exponent(exponent.value, left.start, right.end)
+    def enclosed_exponent(self, left: Token, exponent: Constant, right: Token) -> Constant:
+        return Constant(exponent.magnitude, 0, left.start, right.end)
 
-    def broken_exponent(self, left: Token, above: _Exponent, below: Token, right: Token) -> _Exponent:
-        divisor = self.integer(below).value
+    def broken_exponent(self, left: Token, above: Constant, below: Token, right: Token) -> Constant:
+        divisor = self.integer(below).magnitude
         if not divisor:
             raise RejectedError("SF202", "division by zero", above.start, below.end)
-        return _Exponent(above.value / divisor, left.start, right.end)
+        return Constant(above.magnitude / divisor, 0, left.start, right.end)
 
     def first_factor(self, placed: PlacedUnit) -> PlacedUnit:
         return placed

@@ -81,9 +81,8 @@ class Grammar:
         while start < len(text):
             token = self._first(text, start, kept)
             if token is None:
-                raise UnexpectedError(
-                    start, self._first(text, start, self._terminals.keys()), self.expected(state)
-                )
+                other = self._first(text, start, self._terminals.keys())
+                raise UnexpectedError(start, other, self.expected(state))
             if token.type not in self._ignored:
                 return token
             start = token.end
@@ -105,12 +104,8 @@ def _callback(builder: object, name: str, *, is_single: bool) -> Callable[..., A
     """Return what makes the value of a rule: one part is handed on as it is."""
     if not name:
         return None
-    made = getattr(builder, name, _listed)
+    made = getattr(builder, name, lambda *parts: parts)
     return (lambda *parts: parts[0] if len(parts) == 1 else made(*parts)) if is_single else made
-
-
-def _listed(*parts: object) -> tuple[object, ...]:
-    return parts
 
 
 class Reading:

@@ -9,15 +9,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, SpecError, Text
-from symflex.quantities.grammar import (
-    NUMBER,
-    PI,
-    SIGNED_NUMBER,
-    SPACES,
-    UNIT_START,
-    RejectedError,
-    evaluate,
-)
+from symflex.quantities.grammar import NUMBER, PI, SIGNED_NUMBER, SPACES, UNIT_START, RejectedError, evaluate
 
 if TYPE_CHECKING:
     from symflex.quantities.dimension import Dimension

@@ -22,6 +22,7 @@ from symflex.library.elements.element import (
     Port,
     Stamp,
     delivered,
+    determined,
     difference,
 )
 
@@ -117,17 +118,14 @@ class Gyrator(TwoPort):
         denominator, numerator = ratio.denominator(), ratio * ratio.denominator()
         quantity = THROUGH_NAME[use.domains["to"]]
         drawn, given = use.unknown("drawn"), use.unknown(quantity)
-        rows = (
+        crossed = (("from", drawn, "to", given), ("to", given, "from", drawn))
+        rows = tuple(
             EquationRow(
-                drawn,
-                self._effort(use, "from", drawn, denominator) + self._flow(use, "to", given, -numerator),
+                own,
+                self._effort(use, port, own, denominator) + self._flow(use, other, through, -numerator),
                 "constraint",
-            ),
-            EquationRow(
-                given,
-                self._effort(use, "to", given, denominator) + self._flow(use, "from", drawn, -numerator),
-                "constraint",
-            ),
+            )
+            for port, own, other, through in crossed
         )
         into, out_of = LinearForm.of((given, use.one)), LinearForm.of((drawn, -use.one))
         return Stamp(
@@ -317,14 +315,10 @@ class Piezo(Element):
         (p, q), (a, b) = use.across("terminals"), use.across("between")
         alpha, one = use.values["alpha"], use.one
         force, current = use.unknown("f"), use.unknown("i")
-        laws = (
-            (force, alpha, use.values["k"]),
-            (current, use.values["C"] * use.s, alpha * use.s * -1),
-        )
+        laws = ((force, alpha, use.values["k"]), (current, use.values["C"] * use.s, alpha * use.s * -1))
         rows = tuple(
             EquationRow(
-                out,
-                LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)),
+                out, LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre))
             )
             for out, per_volt, per_metre in laws
         )
@@ -401,20 +395,13 @@ class OpAmp(Element):
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current at the output, and the row ``p - n = out/A(s)``."""
-        current, one = use.unknown("i"), use.one
-        needed = one * 0
+        one, needed = use.one, use.one * 0
         for value, share in ((use.values["A"], one), (use.values["f_u"], use.s)):
             if not value.is_zero:
                 needed += share / value
         common = needed.denominator()
         law = difference(use, "inputs", -common) + difference(use, "out", needed * common)
-        flow = LinearForm.of((current, one))
-        return Stamp(
-            unknowns=(current,),
-            rows=(EquationRow(current, law, "constraint"),),
-            injections=delivered(use, "out", flow),
-            through=(("i", flow),),
-        )
+        return determined(use, "out", "i", law, one, "constraint")
 
 
 class ControlledSource(Element):

@@ -29,12 +29,7 @@ COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x
 COMPONENT_DOMAIN: dict[str, Domain] = {"x": "translation", "y": "translation", "theta": "rotation"}
 
 ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V", "acoustic": "Pa"}
-THROUGH_UNIT: dict[str, str] = {
-    "translation": "N",
-    "rotation": "N*m",
-    "electrical": "A",
-    "acoustic": "m^3/s",
-}
+THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A", "acoustic": "m^3/s"}
 THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i", "acoustic": "q"}
 CIRCUITS: tuple[Domain, ...] = ("electrical", "acoustic")
 """Domains of nodes whose voltage or pressure is an effort; mechanical ones have a motion."""
@@ -328,12 +323,19 @@ def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored
     if not denominator.depends_on("s"):
         form = LinearForm.of((a, admittance), (b, -admittance))
         return Stamp(branches=(Admittance(a, b, admittance),), through=((quantity, form),))
+    law = LinearForm.of((use.unknown(quantity), denominator))
+    return determined(use, port, quantity, law + difference(use, port, -admittance * denominator), -use.one)
+
+
+def determined(
+    use: ElementUse, port: str, quantity: str, law: LinearForm, sign: Factored, role: Role = "law"
+) -> Stamp:
+    """Return the stamp of a through unknown that a law determines, delivered at a port with a sign."""
     through = use.unknown(quantity)
-    law = LinearForm.of((through, denominator)) + difference(use, port, -admittance * denominator)
     flow = LinearForm.of((through, use.one))
     return Stamp(
         unknowns=(through,),
-        rows=(EquationRow(through, law),),
-        injections=delivered(use, port, flow * (-use.one)),
+        rows=(EquationRow(through, law, role),),
+        injections=delivered(use, port, flow * sign),
         through=((quantity, flow),),
     )

@@ -9,12 +9,12 @@ from symflex.library.elements.element import (
     LOSS_FACTOR,
     Element,
     ElementUse,
-    EquationRow,
     LinearForm,
     Passivity,
     Port,
     Stamp,
     delivered,
+    determined,
     difference,
     two_terminal,
 )
@@ -117,13 +117,7 @@ class Impedance(Element):
         impedance = use.values[self.parameters[0].name] * use.s**self.order
         denominator = impedance.denominator()
         law = LinearForm.of((current, impedance * denominator)) + difference(use, "between", -denominator)
-        flow = LinearForm.of((current, use.one))
-        return Stamp(
-            unknowns=(current,),
-            rows=(EquationRow(current, law),),
-            injections=delivered(use, "between", flow * (-use.one)),
-            through=((quantity, flow),),
-        )
+        return determined(use, "between", quantity, law, -use.one)
 
 
 class Resistor(Impedance):
@@ -208,15 +202,8 @@ class AcrossSource(Element):
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute what flows, and the row ``v_node = v``."""
         (quantity,), (imposed,) = self.through, self.parameters
-        current = use.unknown(quantity)
-        flow = LinearForm.of((current, use.one))
         law = difference(use, "at", use.one) + use.forms[imposed.name] * (-use.one)
-        return Stamp(
-            unknowns=(current,),
-            rows=(EquationRow(current, law, "constraint"),),
-            injections=delivered(use, "at", flow),
-            through=((quantity, flow),),
-        )
+        return determined(use, "at", quantity, law, use.one, "constraint")
 
 
 class VoltageSource(AcrossSource):

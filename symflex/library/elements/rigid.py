@@ -172,10 +172,7 @@ class MasslessBeam(Element):
             (moment, length**2 * 3),
         )
         slope = LinearForm.of(
-            (b.theta, stiffness * 2),
-            (a.theta, stiffness * -2),
-            (force, length**2),
-            (moment, length * 2),
+            (b.theta, stiffness * 2), (a.theta, stiffness * -2), (force, length**2), (moment, length * 2)
         )
         return _carried(use, length, (EquationRow(force, deflection), EquationRow(moment, slope)))
 

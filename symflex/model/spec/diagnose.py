@@ -21,7 +21,12 @@ _TWICE = ("Cannot declare", "Cannot mutate", "Cannot overwrite", "Duplicate")
 _ASSIGNMENT = re.compile(rf"[ \t]*+({KEY})[ \t]*+(=|:|(?=[^\s]))")
 _HEADER = re.compile(rf"(\[\[?)[ \t]*+({KEY})[ \t]*+(\]\]?)")
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
-_ESCAPE = re.compile(r"\\(?![btnfr\"\\uU])")
+_ESCAPES = {
+    "Escaped character": r"\\[uU][0-9A-Fa-f]*",
+    "Unescaped": r"\\(?![btnfr\"\\uU])",
+    "Invalid hex": r"\\[uU]",
+}
+"""The escapes that messages of tomllib are about, by how these begin."""
 _STRING_OR_COMMENT = re.compile(r"""("(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')|\#[^\n]*+""")
 _INLINE_COMMENT = re.compile(r"[ \t]*+\#[^\n]*+$")
 FOREIGN_COMMENTS = ("%", "//", ";", "--", "/*")
@@ -78,16 +83,14 @@ def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Di
     span = Span(source, start, start + len(name))
     if message.startswith("Duplicate"):
         key = message.rpartition("key ")[2]
-        return Diagnostic(
-            "SF102", f"the key {key} appears twice in an inline table", _value_span(source, text, statement)
-        )
+        message = f"the key {key} appears twice in an inline table"
+        return Diagnostic("SF102", message, _value_span(source, text, statement))
     first = _first(scan, statement, name)
     if first is None:
         what = "table" if statement.header else "key"
         hint = "it is in an inline table, or already has a value; write it there"
-        return Diagnostic(
-            "SF102", f"{what} '{_cut(name)}' cannot be added to what is defined above", span, hint
-        )
+        message = f"{what} '{_cut(name)}' cannot be added to what is defined above"
+        return Diagnostic("SF102", message, span, hint)
     hint = f"it is first defined in line {Span(source, first.start, first.end).line}"
     shown = f"table [{_cut(name)}]" if statement.header else f"key '{_cut(name)}'"
     return Diagnostic("SF102", f"{shown} is defined twice", span, hint)
@@ -96,16 +99,14 @@ def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Di
 def _first(scan: Scan, statement: Statement, name: str) -> Statement | None:
     """Return the first statement of the same name; for a key, under the same header."""
     first = None
-    for earlier in reversed(scan.statements[: bisect_left(scan.statements, statement.start, key=_start)]):
+    for earlier in reversed(
+        scan.statements[: bisect_left(scan.statements, statement.start, key=lambda each: each.start)]
+    ):
         if earlier.header == statement.header and _name(scan.text, earlier)[0] == name:
             first = earlier
         if earlier.header and not statement.header:
             break
     return first
-
-
-def _start(statement: Statement) -> int:
-    return statement.start
 
 
 def _value_span(source: Source, text: str, statement: Statement) -> Span:
@@ -187,25 +188,14 @@ def _bad_value(source: Source, text: str, statement: Statement, message: str, of
 
 
 def _escape(text: str, statement: Statement, message: str, offset: int) -> tuple[int, int] | None:
-    if message.startswith("Escaped character"):
-        return _escape_at(text, statement, offset, re.compile(r"\\[uU][0-9A-Fa-f]*"))
-    if message.startswith("Unescaped"):
-        return _escape_at(text, statement, offset, _ESCAPE)
-    if message.startswith("Invalid hex"):
-        return _escape_at(text, statement, offset, re.compile(r"\\[uU]"))
-    return None
-
-
-def _escape_at(
-    text: str, statement: Statement, offset: int, escape: re.Pattern[str]
-) -> tuple[int, int] | None:
-    # tomllib points behind the backslash, by a distance that depends on the escape.
-    offsets = [
-        match.start() for match in escape.finditer(text, max(statement.start, offset - 12), offset + 1)
-    ]
-    if not offsets:
+    """Return where the escape stands that a message of tomllib is about, None where it is about another."""
+    escape = next((escape for begins, escape in _ESCAPES.items() if message.startswith(begins)), None)
+    if escape is None:
         return None
-    return offsets[-1], min(offsets[-1] + 2, statement.end)
+    # tomllib points behind the backslash, by a distance that depends on the escape.
+    places = re.compile(escape).finditer(text, max(statement.start, offset - 12), offset + 1)
+    starts = [match.start() for match in places]
+    return (starts[-1], min(starts[-1] + 2, statement.end)) if starts else None
 
 
 def _bad_scalar(written: str) -> tuple[str, str]:
@@ -252,9 +242,8 @@ def _bad_collection(source: Source, text: str, whole: Span, message: str, place:
             hint = "write it on one line, or as a table with its own [header]"
             return Diagnostic("SF101", "an inline table must end on the line where it begins", whole, hint)
         if place.text == "}":
-            return Diagnostic(
-                "SF101", "an inline table has no comma before its '}'", place, "remove the comma"
-            )
+            message = "an inline table has no comma before its '}'"
+            return Diagnostic("SF101", message, place, "remove the comma")
     if place.start >= whole.end or not place.text.strip():
         return Diagnostic("SF101", message[:1].lower() + message[1:], whole)
     word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, place.start)
