@@ -56,12 +56,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from symflex.algebra.varying_growth import Growth, Leg
-    from symflex.algebra.varying_system import (
-        Coefficients,
-        Lines,
-        SingularBeginning,
-        VaryingSystem,
-    )
+    from symflex.algebra.varying_system import Coefficients, Lines, SingularBeginning, VaryingSystem
 
 Derived = TypeVar("Derived", arb_poly, Polynomial)
 Matrix = list[list[Polynomial]]
@@ -152,7 +147,7 @@ class PowerExpansion:
         if size == 0 and k < self.terms:
             return arb(0)
         if (rows, columns) not in self._wholes:
-            growth, lines = self._growth(len(rows)), self._lines(len(rows))
+            growth, lines = self._growth(len(rows)), MinorsAlong(self.system, len(rows)).lines
             starts, ends = growth.weights
             whole = growth.size * ends[lines.index(rows)] / starts[lines.index(columns)]
             self._wholes[rows, columns] = bits_of(whole)
@@ -170,7 +165,7 @@ class PowerExpansion:
 
     def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
         if (rows, columns) not in self._made:
-            lines = self._lines(len(rows))
+            lines = MinorsAlong(self.system, len(rows)).lines
             polynomials: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in lines}
             with precision(self.precision):
                 for step in self._steps:
@@ -178,9 +173,6 @@ class PowerExpansion:
                     polynomials = {line: _combined(step, line, polynomials, self.terms) for line in lines}
             self._made.update(((line, columns), x) for line, x in polynomials.items())
         return self._made[rows, columns]
-
-    def _lines(self, order: int) -> tuple[Lines, ...]:
-        return MinorsAlong(self.system, order).lines
 
     def _growth(self, order: int) -> Growth:
         if order not in self._growths:

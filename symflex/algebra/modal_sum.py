@@ -295,21 +295,15 @@ class _RootAlgebra:
             # chi[x_1, ..., x_j] = sum of c_i times the complete symmetric function of degree i - j + 1.
             relation = larger.constant(0)
             for i in range(j - 1, len(whole)):
-                relation = relation + whole[i] * _complete(larger, roots[:j], i - j + 1)
+                products = combinations_with_replacement(roots[:j], i - j + 1)
+                one = larger.constant(1)
+                relation = relation + whole[i] * sum((prod(p, start=one) for p in products), one * 0)
             polynomial = _remainder(larger, polynomial, relation, first + j - 1)
         return polynomial
 
 
 def _extended(polynomial: fmpz_mpoly, powers: tuple[int, ...]) -> dict[tuple[int, ...], int]:
     return {(*map(int, m), *powers): int(c) for m, c in polynomial.terms()}
-
-
-def _complete(ring: Ring, roots: Sequence[fmpz_mpoly], degree: int) -> fmpz_mpoly:
-    """Return the sum of all products of so many roots."""
-    total = ring.constant(0)
-    for chosen in combinations_with_replacement(roots, degree):
-        total = total + prod(chosen, start=ring.constant(1))
-    return total
 
 
 def _remainder(ring: Ring, polynomial: fmpz_mpoly, divisor: fmpz_mpoly, index: int) -> fmpz_mpoly:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, product
-from math import comb
+from math import comb, prod
 from operator import add
 from typing import TYPE_CHECKING
 
@@ -319,14 +319,9 @@ class _Shape:
                 (3, w1 * w1 * c1 - w2 * w2 * c2),
             ]
         if law.kind == "exponential" or not law.shift.is_zero:
-            images.append((EXPONENTIAL, self._decay(ring, multiples)))
+            decays = (ring.generator(f"exp[{self.number},{i}]") ** n for i, n in enumerate(multiples))
+            images.append((EXPONENTIAL, prod(decays, start=ring.constant(1))))
         return images
-
-    def _decay(self, ring: Ring, multiples: tuple[int, ...]) -> fmpz_mpoly:
-        product = ring.constant(1)
-        for i, n in enumerate(multiples):
-            product = product * ring.generator(f"exp[{self.number},{i}]") ** n
-        return product
 
     def _hyperbolic(self, ring: Ring, w: str, multiples: tuple[int, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return cosh and sinh of a wavenumber times a combination of base lengths."""

@@ -359,7 +359,8 @@ class Radicals:
         for i in reversed(tuple(self.squares)):
             top = self._lead(f)
             if degree_in(top, i):
-                f = self._whole(f * _conjugate(self.ring, top, i))
+                value = self.normal(f * _conjugate(self.ring, top, i))
+                f = (value * value.denominator()).expand()  # times a factor free of s and of roots
         content = self._content(f)
         return f / (content if int(f.leading_coefficient()) > 0 else -content)
 
@@ -384,11 +385,6 @@ class Radicals:
         f, g = ((v * below[0] * below[1]).expand() for v in values)
         content = self._content(f).gcd(self._content(g))
         return f / content, g / content
-
-    def _whole(self, f: fmpz_mpoly) -> fmpz_mpoly:
-        """Return a polynomial in normal form, times a factor free of s and of roots."""
-        value = self.normal(f)
-        return (value * value.denominator()).expand()
 
     def _lead(self, f: fmpz_mpoly) -> fmpz_mpoly:
         """Return the coefficient of the highest power of s."""
@@ -489,19 +485,16 @@ class Radicals:
         return [random.randrange(1, prime) ** 2 % prime for _ in self.ring.names]
 
     def _found_point(self, random: Random) -> Point | None:
+        # Where -1 is a radicand it has to be a square.
+        is_imaginary = any(square.is_constant and square.unit < 0 for square in self.squares.values())
         for _ in range(TRIES):
             spend()
-            # Where -1 is a radicand it has to be a square.
-            prime = 4 * random.randrange(2**58, 2**59) + (1 if self._has_imaginary_unit else 3)
+            prime = 4 * random.randrange(2**58, 2**59) + (1 if is_imaginary else 3)
             if fmpz(prime).is_prime():
                 values = dict(zip(self.ring.names, self._numbers(random, prime), strict=True))
                 if self._satisfies(values, prime):
                     return prime, values
         return None
-
-    @cached_property
-    def _has_imaginary_unit(self) -> bool:
-        return any(square.is_constant and square.unit < 0 for square in self.squares.values())
 
     def _satisfies(self, values: dict[str, int], prime: int) -> bool:
         """Give roots their values; tell whether they have any."""
@@ -569,14 +562,11 @@ class _Base:
             exponent = sum(e * _power_in(f, p) for f, e in value.factors)
             root = _root_of(p)
             base, times = (p, exponent // 2) if root is None else (root, exponent)
-            if times % 2 and not self._is_positive(base):
+            used = {i for i, d in enumerate(base.degrees()) if int(d)}
+            if times % 2 and not (used <= self.positive and all(int(c) > 0 for c in base.coeffs())):
                 return None
             result = result * Factored.polynomial(self.ring, base) ** times
         return result
-
-    def _is_positive(self, p: fmpz_mpoly) -> bool:
-        used = {i for i, d in enumerate(p.degrees()) if int(d)}
-        return used <= self.positive and all(int(c) > 0 for c in p.coeffs())
 
 
 def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozenset[int]) -> Radicals:

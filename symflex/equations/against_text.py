@@ -17,16 +17,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, residue
 from symflex.errors import REPORT, BudgetError, Diagnostic, InternalError, ModelError, SymflexError
-from symflex.expressions import (
-    Expression,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-    format_expression,
-)
+from symflex.expressions import Expression, Negative, Number, Power, Product, Quotient, Sum, format_expression
 from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:

@@ -224,6 +224,11 @@ class _Assembly:
         if self.problems:
             raise ModelError(*self.problems)
         expressions = [e for _, e in self.model.expressions()]
+        functions = None
+        if is_tapered(self.model):
+            functions = tuple(
+                (c.generator, c.expression) for c in self.constants if varies_along_x(c.expression)
+            )
         return survey(
             self.model,
             evaluator,
@@ -231,28 +236,20 @@ class _Assembly:
             is_nameless=is_nameless,
             is_cut=is_cut,
             is_followed=is_followed,
-            functions=self._along,
+            functions=functions,
         )
-
-    @property
-    def _along(self) -> tuple[tuple[str, Call], ...] | None:
-        """The functions of x among the generators, None where nothing varies along it."""
-        if not is_tapered(self.model):
-            return None
-        return tuple((c.generator, c.expression) for c in self.constants if varies_along_x(c.expression))
 
     @cached_property
     def _radicals(self) -> Radicals:
         return radicals_of(self.ring, self.constants, self.model.parameters)
 
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
-        known = {d.name for d in self.model.definitions}
+        definitions = {d.name: d.expression for d in self.model.definitions}
         prime, point = self._radicals.point() or (PRIME, random_point(self.ring.names))
-        point = {name: number for name, number in point.items() if name not in known}
+        point = {name: number for name, number in point.items() if name not in definitions}
         scope = scope_of(self.model)
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
-        definitions = self._definitions
         return ExactEvaluator(
             self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
         ), point
@@ -370,19 +367,9 @@ class _Assembly:
             problem, start = solution.field, solution.origin
             ends = map(self.distributed.evaluator.constant, (problem.start, problem.end))
             length = sum((end - start for end in ends), start * 0)
-            system, initial = solution.medium.system, solution.initial
-            self.continua.append(
-                Continuum(
-                    problem.name,
-                    "field",
-                    system,
-                    start,
-                    length,
-                    initial,
-                    solution.inputs,
-                    parts=solution.medium.laws(self.distributed.propagation),
-                )
-            )
+            own = (solution.medium.system, start, length, solution.initial, solution.inputs)
+            laws = solution.medium.laws(self.distributed.propagation)
+            self.continua.append(Continuum(problem.name, "field", *own, parts=laws))
         for i, condition in enumerate(solution.field.conditions):
             try:
                 left, right = (evaluator.linear(e) for e in (condition.left, condition.right))
@@ -407,10 +394,6 @@ class _Assembly:
             )
             hint = "leave out conditions that only keep the tip finite, such as forces of zero"
             self.problems.append(Diagnostic("SF243", message, tips[0].field.span, hint))
-
-    @property
-    def _definitions(self) -> dict[str, Expression]:
-        return {d.name: d.expression for d in self.model.definitions}
 
     def _define(self, evaluator: ExactEvaluator, point: dict[str, int]) -> tuple[tuple[str, Factored], ...]:
         """Return the definitions' values, each placed at the random point for those after it."""
@@ -440,9 +423,8 @@ class _Assembly:
     def _blocks(self) -> Mapping[str, Factored]:
         transfers: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
-        evaluator = ExactEvaluator(
-            self.ring, scope, transfers, {}, self._definitions, radicals=self._radicals
-        )
+        definitions = {d.name: d.expression for d in self.model.definitions}
+        evaluator = ExactEvaluator(self.ring, scope, transfers, {}, definitions, radicals=self._radicals)
         s = Factored.generator(self.ring, LAPLACE)
         for block in self._ordered_blocks():
             if block.name in transfers:
@@ -547,18 +529,9 @@ class _Assembly:
                     final = tuple((v, 1) for v in state)
                     state, start, length = use.element.tip_state(element_use), length, -length
                 self.states[use.name] = state
-                self.continua.append(
-                    Continuum(
-                        use.name,
-                        kind,
-                        medium.system,
-                        start,
-                        length,
-                        state,
-                        final=final,
-                        parts=medium.laws(self.distributed.propagation),
-                    )
-                )
+                own = (use.name, kind, medium.system, start, length, state)
+                laws = medium.laws(self.distributed.propagation)
+                self.continua.append(Continuum(*own, final=final, parts=laws))
         return use.element.stamp(element_use)
 
     @staticmethod

@@ -104,33 +104,6 @@ class FieldSolution:
         )
 
 
-def _value(
-    medium: Medium,
-    initial: Sequence[Variable | None],
-    inputs: Sequence[Variable],
-    unknown: str,
-    order: int,
-    length: Factored,
-    propagation: Propagation,
-    point: Expression,
-) -> LinearForm:
-    """Return a derivative of a state at a distance from the start, where the state is ``initial``.
-
-    ``point`` is the same as it is written.
-    """
-    zero = Factored.number(propagation.ring, 0)
-    row, direct = _local(medium, unknown, order, propagation, point)
-    transfer = transfer_matrix(medium, length, propagation)
-    terms = [
-        (variable, _dot(row, [line[j] for line in transfer], zero)) for j, variable in enumerate(initial)
-    ]
-    if inputs and not length.is_zero:
-        driven = _driven(medium, length, propagation)
-        direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
-    terms += list(zip(inputs, direct, strict=True))
-    return LinearForm.total(LinearForm.of(term) for term in terms)
-
-
 def _local(
     medium: Medium, unknown: str, order: int, propagation: Propagation, point: Expression
 ) -> tuple[list[Factored], list[Factored]]:
@@ -234,8 +207,8 @@ class Distributed:
         at = self.evaluator.constant(call.argument)
         if dot:
             medium, length = self.lines[owner]
-            unknown, order = self.along[call.name], call.order
-            return AlongPoint(owner, medium, (), (), length, at, unknown, order, call.argument)
+            unknown = self.along[call.name]
+            return AlongPoint(owner, medium, (), (), length, at, unknown, call.order, call.argument)
         solution = self.solutions[call.name]
         at, name = at - solution.origin, solution.field.name
         own = solution.medium, solution.initial, solution.inputs
@@ -255,7 +228,14 @@ class Distributed:
             solution = self.solutions[call.name]
             medium, initial, inputs = solution.medium, solution.initial, solution.inputs
             name, length = call.name, at - solution.origin
-        return _value(medium, initial, inputs, name, call.order, length, self.propagation, call.argument)
+        zero = Factored.number(self.propagation.ring, 0)
+        row, direct = _local(medium, name, call.order, self.propagation, call.argument)
+        transfer = transfer_matrix(medium, length, self.propagation)
+        terms = [(v, _dot(row, [line[j] for line in transfer], zero)) for j, v in enumerate(initial)]
+        if inputs and not length.is_zero:
+            driven = _driven(medium, length, self.propagation)
+            direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
+        return LinearForm.total(LinearForm.of(x) for x in (*terms, *zip(inputs, direct, strict=True)))
 
 
 class _Demands:
@@ -440,7 +420,11 @@ def survey(
         raise error_of([*error.diagnostics]) from None
     if not (lines or delays or solutions):
         return None
-    propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)
+    wanted: Sequence[tuple[Dispersion, Sequence[Factored]]] = demands.demands
+    if is_nameless:  # the kernels are fundamental functions
+        kept = ("exponential", "varying")
+        wanted = [(d if d.kind in kept else replace(d, kind="general"), lengths) for d, lengths in wanted]
+    propagation = propagate(evaluator.ring, wanted)
     one = Factored.number(propagation.ring, 1)
     return Distributed(
         propagation,
@@ -458,16 +442,6 @@ def survey(
         {name: (medium, length) for name, medium, length in lines},
         along,
     )
-
-
-def _nameless(
-    demands: Sequence[tuple[Dispersion, Sequence[Factored]]],
-) -> list[tuple[Dispersion, Sequence[Factored]]]:
-    """Return all dispersions without names for their roots: fundamental functions are their kernels."""
-    return [
-        (law if law.kind in ("exponential", "varying") else replace(law, kind="general"), lengths)
-        for law, lengths in demands
-    ]
 
 
 def _line(

@@ -178,10 +178,7 @@ class ExactEvaluator:
                 compare(expression, number_of_form(value, self.place), self.number_of_leaf, self.prime)
             return value
         except BudgetError as error:
-            located = [
-                d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
-                for d in error.diagnostics
-            ]
+            located = (replace(d, span=d.span or expression.span) for d in error.diagnostics)
             raise BudgetError(*located) from None
 
     def _evaluate(self, expression: Expression) -> Factored | LinearForm:
@@ -375,13 +372,11 @@ def exact_root(value: Fraction) -> Fraction | None:
 def _product(
     left: Factored | LinearForm, right: Factored | LinearForm, expression: Expression
 ) -> Factored | LinearForm:
-    if isinstance(left, LinearForm):
-        if isinstance(right, LinearForm):
-            raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
+    if not isinstance(right, LinearForm):
         return left * right
-    if isinstance(right, LinearForm):
-        return right * left
-    return left * right
+    if isinstance(left, LinearForm):
+        raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
+    return right * left
 
 
 def written_poles(

@@ -260,15 +260,12 @@ class Rounding:
         def value(i: int) -> arb:
             name = self._names[i]
             if name not in known:
-                known[name] = self._constant(name)
+                if name not in self._constants:
+                    raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
+                known[name] = self._constants[name]()
             return known[name]
 
         return value_at(polynomial, value, arb)
-
-    def _constant(self, name: str) -> arb:
-        if name not in self._constants:
-            raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
-        return self._constants[name]()
 
 
 def _float(value: Fraction) -> float:
@@ -290,24 +287,18 @@ def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[comp
     The matrices count as exact, and what is computed with them is enclosed and then rounded.
     """
     with precision(RESPONSE_BITS):
-        a, b, c, d = (_acb_matrix(array) for array in (arrays.a, arrays.b, arrays.c, arrays.d))
+        a, b, c, d = (
+            acb_mat(array.shape[0], array.shape[1], array.astype(complex).ravel().tolist())
+            for array in (arrays.a, arrays.b, arrays.c, arrays.d)
+        )
         n = len(arrays.a)
         responses = []
         for s in points:
             value = d
             if n:
-                shifted = (
-                    acb_mat(n, n, [acb(s) if i == j else acb(0) for i in range(n) for j in range(n)]) - a
-                )
                 try:
-                    value = d + c * shifted.solve(b)
+                    value = d + c * (acb_mat(n, n, acb(s)) - a).solve(b)
                 except ZeroDivisionError:
                     value = d * acb("nan")
-            rows = value.tolist()
-            responses.append(tuple(tuple(complex(x.mid()) for x in row) for row in rows))
+            responses.append(tuple(tuple(complex(x.mid()) for x in row) for row in value.tolist()))
         return responses
-
-
-def _acb_matrix(array: npt.NDArray[np.float64]) -> acb_mat:
-    rows, columns = array.shape
-    return acb_mat(rows, columns, [acb(float(x)) for x in array.ravel()])

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import chain, count
 from typing import TypeGuard
 
 from symflex.algebra import LAPLACE
@@ -150,11 +151,8 @@ class _Splitter:
 
     def _signal(self, wanted: str, expression: Expression) -> str:
         """Add a signal with a name that nothing has."""
-        name = wanted
-        number = 2
-        while name in self._taken:
-            name = f"{wanted}_{number}"
-            number += 1
+        candidates = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
+        name = next(x for x in candidates if x not in self._taken)
         self._taken.add(name)
         self.added.append(Signal(name, expression))
         return name
@@ -171,14 +169,8 @@ def _denominators(expression: Expression) -> set[str]:
                 pending.append(operand)
             case Product(factors):
                 pending.extend(factors)
-            case Quotient(numerator, Product(factors)):
-                pending.append(numerator)
-                denominators |= {format_expression(f) for f in factors if _holds_s(f)}
             case Quotient(numerator, denominator):
                 pending.append(numerator)
-                denominators |= {format_expression(denominator)} if _holds_s(denominator) else set()
+                parts = denominator.factors if isinstance(denominator, Product) else (denominator,)
+                denominators |= {format_expression(f) for f in parts if names_among(f, (LAPLACE,))}
     return denominators
-
-
-def _holds_s(expression: Expression) -> bool:
-    return bool(names_among(expression, (LAPLACE,)))

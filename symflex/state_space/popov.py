@@ -203,9 +203,8 @@ class FieldElement:
     # num and den: Coprime; the denominator's leading coefficient is positive.
     num: fmpz_mpoly
     den: fmpz_mpoly
-    radicals: Radicals | None = (
-        None  # relations of roots that may stand in both; none stands in the denominator
-    )
+    # Relations of roots that may stand in both; none stands in the denominator.
+    radicals: Radicals | None = None
 
     @staticmethod
     def of(num: fmpz_mpoly, den: fmpz_mpoly, radicals: Radicals | None = None) -> FieldElement:

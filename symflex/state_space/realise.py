@@ -433,7 +433,8 @@ class _Realisation:
             for i, part in sorted(parts.items()):
                 for j, value in sorted(part.items()):
                     terms = (*terms, (_derivative(Name(self.rows.inputs[j]), i), -value))
-            label = str(variable).replace(".", "_") + _rate(order) + (REST if parts else "")
+            rate = NAMES_OF_RATES[order] if order < len(NAMES_OF_RATES) else f"_dot{order}"
+            label = str(variable).replace(".", "_") + rate + (REST if parts else "")
             while label in taken:
                 label += "_"
             taken.add(label)
@@ -442,7 +443,6 @@ class _Realisation:
 
     def _unit(self, variable: Variable, power: int) -> str:
         domains = {n.name: n.domain for n in self.model.nodes}
-        unit = ""
         if variable.kind == "node":
             domain = COMPONENT_DOMAIN.get(variable.component) or domains.get(variable.owner)
             unit = ACROSS_UNIT.get(str(domain), "")
@@ -457,10 +457,6 @@ class _Realisation:
         if unit in RATES and power < len(RATES[unit]):
             return RATES[unit][power]
         return str(unit_of(unit).dimension / unit_of("s").dimension ** power)
-
-
-def _rate(power: int) -> str:
-    return NAMES_OF_RATES[power] if power < len(NAMES_OF_RATES) else f"_dot{power}"
 
 
 def _derivative(quantity: Expression, order: int) -> Expression:

@@ -67,10 +67,9 @@ def _controllable(system: StateSpace, basis: Basis) -> StateSpace:
     # Column i of A on the subspace: where A takes basis vector i, read off at the states that are kept.
     moved = [applied(basis[k], columns) for k in kept]
     a = transposed([{place[j]: v for j, v in vector.items() if j in place} for vector in moved], len(kept))
-    c = [
-        {place[k]: value for k in kept if not (value := _dot(row, basis[k], system)).is_zero}
-        for row in system.c
-    ]
+    # Column i of C: what outputs show of basis vector i.
+    shown = transposed(system.c, system.order)
+    c = transposed([applied(basis[k], shown) for k in kept], len(system.c))
     states = tuple(system.states[k] for k in kept)
     b = tuple(system.b[k] for k in kept)
     return replace(system, states=states, a=tuple(a), b=b, c=tuple(c))
@@ -99,9 +98,9 @@ def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace)
         # With numbers in place of parameters a dimension can only be lost, so this is a proof.
         return {j: {j: one} for j in range(system.order)}
     guess = _constants(points, system.ring)
-    if guess is not None and all(_is_inside(v, guess) for v in start):
+    if guess is not None and not any(_rest(v, guess) for v in start):
         moved = (applied(vector, rows) for vector in guess.values())
-        if all(_is_inside(vector, guess) for vector in moved):
+        if not any(_rest(vector, guess) for vector in moved):
             return guess
     return _generated(start, rows, system)
 
@@ -171,18 +170,6 @@ def _rest(vector: Vector, basis: Basis) -> Vector:
     return vector
 
 
-def _is_inside(vector: Vector, basis: Basis) -> bool:
-    return not _rest(vector, basis)
-
-
-def _dot(left: Vector, right: Vector, system: StateSpace) -> FieldElement:
-    total = FieldElement.number(system.ring, 0)
-    for j, value in left.items():
-        if j in right:
-            total = total + value * right[j]
-    return total
-
-
 def _state(vector: Vector, pivot: int, number: int, states: Sequence[State], taken: set[str]) -> State:
     """Return a combination of states as one."""
     parts = sorted(vector.items(), key=lambda item: (item[0] != pivot, item[0]))
@@ -215,7 +202,8 @@ def _at_random_point(
     basis = _independent(_residues(start, n, point, system))
     length = 1
     while basis.nrows() and length < n:
-        basis = _independent(_stacked(basis, basis * step))
+        entries = [*basis.entries(), *(basis * step).entries()]
+        basis = _independent(nmod_mat(2 * basis.nrows(), n, entries, point[0]))
         step, length = step * step, 2 * length
     table = [[int(x) for x in row] for row in basis.tolist()]
     vectors = [{j: x for j, x in enumerate(row) if x} for row in table]
@@ -230,12 +218,6 @@ def _residues(rows: Sequence[Vector], columns: int, point: Point, system: StateS
             quotient = Factored(system.ring, Fraction(1), ((value.num, 1), (value.den, -1)))
             matrix[i, j] = residue(quotient, values, prime)
     return matrix
-
-
-def _stacked(above: nmod_mat, below: nmod_mat) -> nmod_mat:
-    return nmod_mat(
-        above.nrows() + below.nrows(), above.ncols(), [*above.entries(), *below.entries()], above.modulus()
-    )
 
 
 def _independent(matrix: nmod_mat) -> nmod_mat:

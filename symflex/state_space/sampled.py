@@ -256,14 +256,13 @@ def _bilinear(
     del delay
     a, b, c, d = matrices
     n, k = a.nrows(), sampling.rate
-    one = arb_mat(n, n, [arb(int(i == j)) for i in range(n) for j in range(n)])
     try:
-        inverse = (one * k - a).inv()
+        inverse = (arb_mat(n, n, k) - a).inv()
     except ZeroDivisionError:
         message = f"a pole at {float(k):g} rad/s, or one very near, is taken to infinity by tustin"
         raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time")) from None
     given = inverse * b * 2
-    step = inverse * (one * k + a)
+    step = inverse * (arb_mat(n, n, k) + a)
     return _with_past_inputs(step, given, given * 0, c * inverse * k, d + c * given * arb(0.5), whole)
 
 
@@ -284,10 +283,9 @@ def _with_past_inputs(
     _put(total, 0, 0, step)
     _put(total, 0, n, older)
     _put(given if whole == 1 else total, 0, 0 if whole == 1 else n + m, newer)
-    one = arb_mat(m, m, [arb(int(i == j)) for i in range(m) for j in range(m)])
     for i in range(whole - 1):
-        _put(total, n + i * m, n + (i + 1) * m, one)
-    _put(given, n + (whole - 1) * m, 0, one)
+        _put(total, n + i * m, n + (i + 1) * m, arb_mat(m, m, 1))
+    _put(given, n + (whole - 1) * m, 0, arb_mat(m, m, 1))
     _put(shown, 0, 0, c)
     _put(shown, 0, n, d)
     return _matrix(total, size), _matrix(given, m), _matrix(shown, size), arb_mat(p, m)

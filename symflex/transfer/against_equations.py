@@ -200,15 +200,13 @@ def _is_narrow(value: acb) -> bool:
 def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:
     """Return what a transfer function says: in its closed form, in its expanded one, and by its two parts."""
     source = tf if isinstance(tf, TransferFunction) else tf.source
-    is_opened = not isinstance(tf, TransferFunction) and _has_filters(source)
+    # A definition that divides by s, as of a viscoelastic stiffness, adds poles once it is opened.
+    definitions = source.solve.direct.equations.definitions if source.solve is not None else ()
+    is_opened = not isinstance(tf, TransferFunction) and any(
+        value.denominator().depends_on(LAPLACE) for _, value in definitions
+    )
     determinant = None if tf.is_distributed or is_opened else partial(_determinant, tf)
     return Agreement((source.output.name, source.input.name), partial(_values, tf), determinant)
-
-
-def _has_filters(tf: TransferFunction) -> bool:
-    """Tell whether a definition divides by s, as of a viscoelastic stiffness: opened, it adds poles."""
-    definitions = tf.solve.direct.equations.definitions if tf.solve is not None else ()
-    return any(value.denominator().depends_on(LAPLACE) for _, value in definitions)
 
 
 def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> list[acb]:

@@ -332,9 +332,14 @@ def read_values(
             hint = nearest(name, names) or "parameters: " + ", ".join(names)
             raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
+    missing = []
     for parameter, (_, value) in zip(parameters, values, strict=True):
-        _check_sign(parameter, value)
-    missing = [p for p, (_, value) in zip(parameters, values, strict=True) if value is None]
+        if value is None:
+            missing.append(parameter)
+        # Zero is let through: leaving an effect out is what binding is often for.
+        elif value.rational < 0 and parameter.assume != "real":
+            message = f"parameter '{parameter.name}' is negative, but is assumed {parameter.assume}"
+            raise UsageError(Diagnostic("SF209", message, None, assuming(parameter.name, "real")))
     if missing:
         raise ModelError(_without_value(missing))
     return tuple((name, value) for name, value in values if value is not None)
@@ -359,15 +364,6 @@ def _without_value(missing: Sequence[ModelParameter]) -> Diagnostic:
     more = f" and {len(missing) - NAMES_SHOWN} more" if len(missing) > NAMES_SHOWN else ""
     hint = "give them values in [parameters], or to bind() in Python"
     return Diagnostic("SF229", f"{len(missing)} parameters have no value: {shown}{more}", None, hint)
-
-
-def _check_sign(parameter: ModelParameter, value: ExactValue | None) -> None:
-    if value is None or parameter.assume == "real":
-        return
-    # Zero is let through: leaving an effect out is what binding is often for.
-    if value.rational < 0:
-        message = f"parameter '{parameter.name}' is negative, but is assumed {parameter.assume}"
-        raise UsageError(Diagnostic("SF209", message, None, assuming(parameter.name, "real")))
 
 
 def _read_value(

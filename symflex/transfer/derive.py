@@ -32,7 +32,7 @@ from symflex.transfer.transfer_function import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from flint import fmpz, fmpz_mpoly
+    from flint import fmpz_mpoly
 
     from symflex.algebra import Ring
     from symflex.algebra.propagators import Propagation
@@ -135,6 +135,7 @@ class _CramerQuotients:
         opened = None if most is None else most.opened
         self._expansion = Expansion.of(equations, kept, opened)
         self._opened = Expansion.of(equations, (), opened) if kept and origin else self._expansion
+        self._images = LineImages(self._expansion.ring)
         self._radicals = self._expansion.radicals
         self.solve = ModelSolve(self._origin.model, nested_transfer, self._origin)
         propagation = equations.propagation
@@ -154,10 +155,6 @@ class _CramerQuotients:
         return self._determinants.system.closure
 
     @cached_property
-    def _images(self) -> LineImages:
-        return LineImages(self._expansion.ring)
-
-    @cached_property
     def _opening(self) -> Opening:
         return Opening(self._closure, self._expansion)
 
@@ -169,12 +166,9 @@ class _CramerQuotients:
     def _line_at_roots(self) -> DeterminantsOnLine | None:
         """The line in s on which roots are what they are, modulo a prime; None when it is not found."""
         plain, definitions = self._expansion.plain, self._expansion.images
-        point = self._radicals.point()
-        return (
-            None
-            if point is None
-            else DeterminantsOnLine(self._determinants, plain, definitions, LAPLACE, point)
-        )
+        if (point := self._radicals.point()) is None:
+            return None
+        return DeterminantsOnLine(self._determinants, plain, definitions, LAPLACE, point)
 
     def _are_coprime(self, output: str, source: str) -> bool:
         """Tell whether determinants are proved coprime, also modulo the relations of roots."""
@@ -250,16 +244,15 @@ class _CramerQuotients:
     @cached_property
     def _closed_radicals(self) -> Radicals:
         ring, equations = self._closure.ring, self._equations
-        return (
-            radicals_of(ring, equations.constants, equations.model.parameters)
-            if self._radicals
-            else Radicals(ring)
-        )
+        if not self._radicals:
+            return Radicals(ring)
+        return radicals_of(ring, equations.constants, equations.model.parameters)
 
     def _primitive(self, output: str, source: str, num: fmpz_mpoly) -> ClosedForm:
         """Return a quotient of coprime determinants without common integer, the denominator positive."""
         num, den = self._without_squares(num, self._determinants.den)
-        common = _integer_content(num).gcd(_integer_content(den))
+        above, below = (x.term_content().leading_coefficient() for x in (num, den))
+        common = above.gcd(below)
         if common != 1:
             num, den = num / common, den / common
         closed = ClosedForm(self._opening, num, den)
@@ -284,24 +277,9 @@ class _CramerQuotients:
         equations, model = self._origin, self._origin.model
         known = dict(model.quotients).get((output.name, given.name))
         quantity, unit = name_quantity(output, given, known), unit_of_quotient(output, given, known)
-        ring, definitions, constants = equations.ring, equations.definitions, equations.constants
-        return TransferFunction(
-            output,
-            given,
-            ratio,
-            closed,
-            hidden,
-            quantity,
-            unit,
-            ring,
-            definitions,
-            constants,
-            model,
-            table,
-            parts,
-            self.solve,
-            hides_waves,
-        )
+        found = (output, given, ratio, closed, hidden, quantity, unit)
+        context = (equations.ring, equations.definitions, equations.constants, model)
+        return TransferFunction(*found, *context, table, parts, self.solve, hides_waves)
 
     def _finish_distributed(
         self, output: Output, given: Input, num: fmpz_mpoly, denominator: Factored, hidden: Factored
@@ -309,11 +287,9 @@ class _CramerQuotients:
         """Return the transfer function of a distributed system, with the kernels' relations used."""
         reduction = self._reduction
         numerator = self._expansion.expanded(self._closure.open(num))
-        reduced = (
-            None
-            if reduction is None or denominator.is_zero
-            else reduction.reduce(numerator, denominator, hidden / self._cleared)
-        )
+        reduced = None
+        if reduction is not None and not denominator.is_zero:
+            reduced = reduction.reduce(numerator, denominator, hidden / self._cleared)
         if reduction is None or reduced is None:
             raise explain_singular(self._equations)
         determinant = self._expansion.expanded(self._closure.open(self._determinants.den)) / self._cleared
@@ -365,10 +341,6 @@ class _CramerQuotients:
 def _lowest(value: Factored) -> Factored:
     """Return a coefficient or length without common factors that putting definitions in has left."""
     return cancel(value.numerator(), value.denominator())[0]
-
-
-def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
-    return polynomial.term_content().leading_coefficient()
 
 
 def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]:

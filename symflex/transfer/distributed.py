@@ -17,8 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import combinations, product
+from itertools import accumulate, combinations, product, repeat
 from math import prod
+from operator import mul
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
@@ -275,11 +276,7 @@ class KernelReduction:
                 continue
             first, second = (Factored.generator(self.ring, w) for w in law.wavenumbers)
             split, meets, c_0 = self._split(law), law.discriminant, law.characteristic[0]
-            parts = [
-                (split, split, meets),
-                (first, first * second**2, c_0),
-                (second, second * first**2, c_0),
-            ]
+            parts = [(split, split, meets), (first, first * second**2, c_0), (second, second * first**2, c_0)]
             # s^2 - 2500 q_2^2 may be 1250 (q_1^2 - q_2^2), which neither of its factors tells.
             waves = value.filter(is_of_waves)
             for side, exponent in ((waves.numerator(), 1), (waves.denominator(), -1)):
@@ -439,18 +436,15 @@ class KernelReduction:
         for dispersion in table.dispersions:
             if dispersion.kind != "pair":
                 continue
-            c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
-            first, second = (self.ring.generator(w) for w in dispersion.wavenumbers)
-            exponents = {str(f): e for f, e in rest.factors}
-            power = exponents.get(str(first), 0)
-            if power and power == exponents.get(str(second), 0) and power % 2 == 0:
-                one, other = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
-                rest = rest / (one * other) ** power * c0 ** (power // 2)
+            first, second = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+            power, other = (rest.exponent_of(self.ring.generator(w)) for w in dispersion.wavenumbers)
             split = splits[dispersion]
             ((polynomial, _),) = split.factors
-            meeting = exponents.get(str(polynomial), 0)
+            meeting = rest.exponent_of(polynomial)
+            if power and power == other and power % 2 == 0:
+                rest = rest / (first * second) ** power * dispersion.characteristic[0] ** (power // 2)
             if meeting and meeting % 2 == 0:
-                rest = rest / split**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
+                rest = rest / split**meeting * dispersion.discriminant ** (meeting // 2)
         return rest
 
 
@@ -646,28 +640,19 @@ def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) ->
     highest = degree_in(factor, index)
     below = formula.denominator()
     # The factors are many terms each: powers are made once, and multiplied by the engine.
-    above_powers = _powers((formula * below).expand(), highest, ring)
-    below_powers = _powers(below.expand(), highest, ring)
+    above_powers, below_powers = (
+        list(accumulate(repeat(value.expand(), highest), mul, initial=ring.constant(1)))
+        for value in (formula * below, below)
+    )
     total = ring.constant(0)
     for power, part in by_powers(ring, factor, index).items():
         size = len(part) * len(above_powers[power]) * len(below_powers[highest - power])
         if ring.bytes_of(size) > MEMORY_LIMIT:
-            raise _too_large()
+            message = "the closed form is too large: its wavenumbers depend on too many symbols"
+            hint = "leave out losses, foundations or lengths, or split the model"
+            raise BudgetError(Diagnostic("SF502", message, None, hint))
         total = total + part * above_powers[power] * below_powers[highest - power]
     return Factored.polynomial(ring, total) / below**highest
-
-
-def _powers(base: fmpz_mpoly, highest: int, ring: Ring) -> list[fmpz_mpoly]:
-    powers = [ring.constant(1)]
-    for _ in range(highest):
-        powers.append(powers[-1] * base)
-    return powers
-
-
-def _too_large() -> BudgetError:
-    message = "the closed form is too large: its wavenumbers depend on too many symbols"
-    hint = "leave out losses, foundations or lengths, or split the model"
-    return BudgetError(Diagnostic("SF502", message, None, hint))
 
 
 @dataclass(frozen=True, eq=False)
@@ -688,11 +673,13 @@ class _Restorer:
     def _grouped(self, value: Factored) -> list[tuple[Factored, tuple[int, ...]]]:
         """Return the factors, those of odd degree multiplied together, with what parity is left."""
         groups: list[tuple[Factored, tuple[int, ...]]] = []
+        hyperbolic = [a for a in self.source.angles if a.kind == "hyperbolic"]
+        exponentials = [self.source.coordinates.generator(a.coordinates[0]) for a in hyperbolic]
         for side in (1, -1):
             odd = Factored.number(value.ring, 1)
             total = [0] * len(self.source.angles)
             for factor, exponent in value.factors:
-                if exponent * side < 0 or self._is_exponential(factor):
+                if exponent * side < 0 or factor in exponentials:
                     continue
                 parity = self.source.parity(factor)
                 if any(parity):
@@ -704,12 +691,6 @@ class _Restorer:
                 whole = Factored(value.ring, Fraction(1), ((odd.expand(), side),))
                 groups.append((whole, tuple(total)))
         return groups
-
-    def _is_exponential(self, factor: fmpz_mpoly) -> bool:
-        ring = self.source.coordinates
-        return any(
-            factor == ring.generator(a.coordinates[0]) for a in self.source.angles if a.kind == "hyperbolic"
-        )
 
     def __call__(self, value: Factored) -> Factored:
         """Return the value in kernels; powers of exponentials balance out."""

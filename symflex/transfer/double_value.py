@@ -44,16 +44,11 @@ def double_value(
         if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
             return complex(float(value.real.mid()), float(value.imag.mid()))
         if last is not None and not value.is_finite() and bits >= last:
-            return _limit_at(enclosed, s)
+            order, limit = order_near(enclosed, s)
+            if limit is None or order < 0:
+                return complex(inf, nan)
+            return 0j if order > 0 else complex(float(limit.real.mid()), float(limit.imag.mid()))
     return 0j if value.is_finite() else complex(inf, nan)
-
-
-def _limit_at(enclosed: Callable[[int], Ball], s: complex) -> complex:
-    """Return the value where parts of an expression are not numbers, by continuity."""
-    order, value = order_near(enclosed, s)
-    if value is None or order < 0:
-        return complex(inf, nan)
-    return 0j if order > 0 else complex(float(value.real.mid()), float(value.imag.mid()))
 
 
 def order_near(enclosed: Callable[[int], Ball], s: complex) -> tuple[int, acb | None]:

@@ -226,25 +226,14 @@ def derive_nested(
     elimination = eliminate(equations, pairs)
     outputs, inputs = {o.name: o for o in model.outputs}, {i.name: i for i in model.inputs}
     known = dict(model.quotients)
+    origin = None if cut is None else equations
     made = []
     for (output, source), (num, den) in zip(pairs, elimination.quotients, strict=True):
         ends = outputs[output], inputs[source]
         dimension = known.get((output, source))
-        made.append(
-            NestedTransferFunction(
-                *ends,
-                elimination.program,
-                num,
-                den,
-                name_quantity(*ends, dimension),
-                unit_of_quotient(*ends, dimension),
-                equations.constants,
-                model,
-                None if equations.propagation is None else equations,
-                elimination.waves,
-                cut,
-            )
-        )
+        named = name_quantity(*ends, dimension), unit_of_quotient(*ends, dimension)
+        quotient = (*ends, elimination.program, num, den, *named, equations.constants, model)
+        made.append(NestedTransferFunction(*quotient, origin, elimination.waves, cut))
     compare(solve, [Agreement((tf.output.name, tf.input.name), partial(_only_value, tf)) for tf in made])
     return tuple(made)
 

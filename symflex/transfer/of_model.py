@@ -32,11 +32,7 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
     from symflex.model import Model
     from symflex.transfer.bind import BoundTransferFunction
-    from symflex.transfer.nested_form import (
-        AnyBoundFunction,
-        AnyTransferFunction,
-        NestedTransferFunction,
-    )
+    from symflex.transfer.nested_form import AnyBoundFunction, AnyTransferFunction, NestedTransferFunction
     from symflex.transfer.transfer_function import TransferFunction
 
 EXPANDED_TERMS = 5_000
@@ -287,23 +283,13 @@ def derive_for_values(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[A
     return derive_all(model, pairs)
 
 
-def _accumulates(equations: Equations) -> bool:
-    """Tell whether roots accumulate at a finite s: where a law of waves has a pole, as Kelvin and Voigt's."""
-    laws = (x for c in equations.continua for row in c.system.matrix for x in row)
-    return any(x.denominator().depends_on(LAPLACE) for x in laws)
-
-
 def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
     """Tell whether roots of a model with numbers may be sought in its expanded form: it is not too large."""
     return _expanded_terms(assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
 
 
 def derive_for_roots(
-    model: Model,
-    pairs: Sequence[tuple[str, str]],
-    *,
-    is_explained: bool = False,
-    is_named: bool = False,
+    model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False, is_named: bool = False
 ) -> tuple[AnyBoundFunction, ...]:
     """Return transfer functions with the declared values, in the form in which roots are found.
 
@@ -315,13 +301,13 @@ def derive_for_roots(
     if not model.is_distributed or is_tapered(model):
         return derive_bound(model, pairs)
     is_small = not _may_be_large(model, 1)
-    if is_small:
-        expanded = _expanded_unless_large(model, pairs, None)
-        if expanded is not None:
-            return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
+    if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:
+        return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
     # Modes with loss factors are found in the expanded form alone.
-    is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
+    # Roots accumulate at a finite s where a law of waves has a pole, as Kelvin and Voigt's.
+    laws = (x for c in equations.continua for row in c.system.matrix for x in row)
+    is_quick = not (is_explained or model.imaginary or any(x.denominator().depends_on(LAPLACE) for x in laws))
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_small and _expanded_terms(equations, pairs[0]) <= most:
         expanded = _expanded_unless_large(model, pairs, UNASKED)

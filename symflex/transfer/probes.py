@@ -273,13 +273,10 @@ class _Draw:
             return _tapered(bound, is_solved=self.is_solved), bound
         own = bound.enclosed_part(tf.ratio, FIRST_BITS).kernels
         numbers = own.generators_at(acb(1))
-        if not all(_is_length(at_centre(own.value(k.length, numbers))) for k in tf.kernels.kernels):
+        lengths = [at_centre(own.value(k.length, numbers)) for k in tf.kernels.kernels]
+        if not all(x.imag == 0 and x.real > 0 for x in lengths):
             return None
         return lambda value, bits: bound.enclosed_part(tf.ratio if value is None else value, bits), bound
-
-
-def _is_length(value: acb) -> bool:
-    return bool(value.imag == 0 and value.real > 0)
 
 
 def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:

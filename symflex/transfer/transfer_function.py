@@ -280,10 +280,8 @@ def degree(value: Factored) -> int:
     return sum(degree_in(f, i) * e for f, e in value.factors)
 
 
-_MOTION = {
-    "translation": {"m": "receptance", "m/s": "mobility", "m/s^2": "accelerance"},
-    "rotation": {"rad": "receptance", "rad/s": "mobility", "rad/s^2": "accelerance"},
-}
+_MOTIONS = {"m": "receptance", "m/s": "mobility", "m/s^2": "accelerance"}
+_MOTIONS |= {"rad": "receptance", "rad/s": "mobility", "rad/s^2": "accelerance"}
 _EFFORTS = tuple(unit_of(unit).dimension for unit in ("N", "N*m"))
 """What a free signal may be that loads a field: a force or a torque."""
 _FLEXIBILITIES = (("m/N", "receptance"), ("m/(N*s)", "mobility"), ("m/(N*s^2)", "accelerance"))
@@ -318,8 +316,7 @@ def name_quantity(output: Output, source: Input, known: Dimension | None = None)
     if output.dimension is None or source.dimension is None:
         return next((name for unit, name in _FLEXIBILITIES if known == unit_of(unit).dimension), NAMELESS)
     if source.kind in ("force", "torque") or source.dimension in _EFFORTS:
-        motions = _MOTION["translation"] | _MOTION["rotation"]
-        for unit, name in motions.items():
+        for unit, name in _MOTIONS.items():
             if output.dimension == unit_of(unit).dimension:
                 return name
     if source.kind in _PER_MOTION:
@@ -345,11 +342,9 @@ def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> 
     is_written = source.kind == "signal" and quotient_of_units(source.unit, "1") == source.unit
     # What turns above is not known: 1/s over rad/s is 1, and not 1/rad.
     if is_written and output.dimension != source.dimension and not above.startswith("1"):
-        return (
-            str(output.dimension / source.dimension)
-            if "kg" in above
-            else quotient_of_units(above, source.unit)
-        )
+        if "kg" in above:
+            return str(output.dimension / source.dimension)
+        return quotient_of_units(above, source.unit)
     return quotient_of_units(above, below)
 
 

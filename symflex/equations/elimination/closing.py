@@ -58,12 +58,9 @@ class Closure:
         """Return a polynomial entry with its sums closed."""
         result = self.ring.constant(int(value.unit))
         for factor, exponent in value.factors:
-            result = result * self._image(factor) ** exponent
+            closed = self._closed.get(str(factor))
+            result = result * (factor.compose(*self._embedding) if closed is None else closed) ** exponent
         return result
-
-    def _image(self, factor: fmpz_mpoly) -> fmpz_mpoly:
-        closed = self._closed.get(str(factor))
-        return self._embed(factor) if closed is None else closed
 
     @cached_property
     def _embedding(self) -> tuple[fmpz_mpoly, ...]:
@@ -71,9 +68,6 @@ class Closure:
         absent = self.ring.constant(0)
         index = self.ring.index
         return tuple(self.ring.generator(n) if n in index else absent for n in self.base.names)
-
-    def _embed(self, factor: fmpz_mpoly) -> fmpz_mpoly:
-        return factor.compose(*self._embedding)
 
     def open(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a closed polynomial over ``base``; factors that stand in front stay factored."""
@@ -109,12 +103,6 @@ class ClosedSystem:
     outputs: tuple[SparseRow, ...]
 
 
-def _is_symbolic(ring: Ring, factor: fmpz_mpoly) -> bool:
-    """Tell whether a factor is a sum with a parameter in it; a sum of numbers and s stays open."""
-    numeric = {ring.index[LAPLACE], ring.index["pi"]}
-    return len(factor) > 1 and any(int(d) and i not in numeric for i, d in enumerate(factor.degrees()))
-
-
 def close(equations: Equations) -> ClosedSystem:
     """Return the equations with every sum of two or more terms closed."""
     sums: dict[str, fmpz_mpoly] = {}
@@ -124,11 +112,12 @@ def close(equations: Equations) -> ClosedSystem:
     for entry in entries:
         spend()
         for factor, _ in entry.factors:
-            if _is_symbolic(equations.ring, factor):
+            used = {equations.ring.names[i] for i, d in enumerate(factor.degrees()) if int(d)}
+            # A sum of numbers, s and pi stays open.
+            if len(factor) > 1 and used - {LAPLACE, "pi"}:
                 sums.setdefault(str(factor), factor)
             else:
-                names = equations.ring.names
-                outside |= {names[i] for i, d in enumerate(factor.degrees()) if int(d)}
+                outside |= used
     for constant in equations.constants:
         if constant.generator in outside and constant.expression.name == "sqrt":
             # Its square is what is in it.

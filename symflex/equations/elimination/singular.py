@@ -50,7 +50,6 @@ def explain_singular(equations: Equations) -> ModelError:
     rows = [equations.rows[i] for i in dependent]
     constraints = [r for r in rows if r.role == "constraint"]
     loops = [r for r in rows if r.role == "signal"]
-    problems: list[Diagnostic] = []
     nodes = [v for v in open_unknowns if v.kind == "node"]
     if constraints:
         owners = list(dict.fromkeys(r.about.owner for r in constraints))
@@ -66,11 +65,10 @@ def explain_singular(equations: Equations) -> ModelError:
         )
         is_moved = held and any(x.name in owners for x in equations.model.inputs)
         hint = 'hold only what no input moves, as in at = "base.theta"'
-        problems.append(
-            Diagnostic("SF302", message, _place(equations, last), hint if is_moved else "remove one of them")
-        )
+        hint = hint if is_moved else "remove one of them"
+        problem = Diagnostic("SF302", message, _place(equations, last), hint)
     elif conditions := [r for r in rows if r.role == "condition"]:
-        problems += _dependent_conditions(equations, conditions)
+        problem = _dependent_conditions(equations, conditions)
     elif written := [r for r in rows if r.role == "equation"]:
         signals = {x.name: x.expression for x in equations.model.signals}
         texts = [f"'{format_expression(signals[r.about.owner])}'" for r in written]
@@ -80,37 +78,25 @@ def explain_singular(equations: Equations) -> ModelError:
             else f"the equation {texts[0]} determines none of the unknowns"
         )
         missing = listed([f"'{v}'" for v in open_unknowns])
-        place = signals[written[-1].about.owner].span
-        problems.append(
-            Diagnostic("SF302", message, place, f"nothing determines {missing}; replace one of them")
-        )
+        hint = f"nothing determines {missing}; replace one of them"
+        problem = Diagnostic("SF302", message, signals[written[-1].about.owner].span, hint)
     elif nodes:
         names = listed([f"'{v}'" for v in nodes])
         alone = len(nodes) == 1
         what, verb, hold = ("node", "it floats", "it") if alone else ("nodes", "they float", "them")
-        problems.append(
-            Diagnostic(
-                "SF301",
-                f"nothing determines {what} {names}: {verb}",
-                _place(equations, nodes[0]),
-                _meant(equations.model, nodes, _held(equations.model, nodes, hold)),
-            )
-        )
+        message, hint = f"nothing determines {what} {names}: {verb}", _held(equations.model, nodes, hold)
+        hint = _meant(equations.model, nodes, hint)
+        problem = Diagnostic("SF301", message, _place(equations, nodes[0]), hint)
     elif loops:
         names = listed([f"'{r.about}'" for r in loops])
-        problems.append(
-            Diagnostic(
-                "SF303",
-                f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one",
-                _place(equations, loops[0].about),
-                "put a dynamic element or another gain into the loop",
-            )
-        )
-    if not problems:
+        message = f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one"
+        hint = "put a dynamic element or another gain into the loop"
+        problem = Diagnostic("SF303", message, _place(equations, loops[0].about), hint)
+    else:
         names = listed([f"'{v}'" for v in open_unknowns])
         place = _place(equations, open_unknowns[0]) if open_unknowns else None
-        problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
-    return ModelError(*problems)
+        problem = Diagnostic("SF304", f"nothing determines {names}", place)
+    return ModelError(problem)
 
 
 def _held(model: Model, nodes: Sequence[Variable], hold: str) -> str:
@@ -134,7 +120,7 @@ def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:
     return otherwise if close is None else close if not touching else f"{close} else {otherwise}"
 
 
-def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:
+def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> Diagnostic:
     """Say which conditions of fields follow from one another."""
     fields = {f.name: f for f in equations.model.fields}
     numbered = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
@@ -147,22 +133,16 @@ def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list
         if len(texts) > 1
         else f"the condition {texts[0]} of {of} always holds: one is missing in its place"
     )
-    return [
-        Diagnostic("SF302", message, conditions[-1].span, "replace one of them by an independent condition")
-    ]
+    hint = "replace one of them by an independent condition"
+    return Diagnostic("SF302", message, conditions[-1].span, hint)
 
 
 def listed(names: list[str]) -> str:
     """Return names as a sentence lists them, the first few of many."""
     if len(names) > SHOWN:
         names = [*names[:SHOWN], f"{len(names) - SHOWN} more"]
-    return (
-        names[0]
-        if len(names) == 1
-        else ", ".join(names[:-1]) + " and " + names[-1]
-        if names
-        else "the system"
-    )
+    *others, last = names or ["the system"]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
@@ -271,10 +251,7 @@ def _place(equations: Equations, variable: Variable) -> Span | None:
     model = equations.model
     elements = {x.name: x.span for x in model.elements}
     outside = {x.name: x.span for x in model.outputs} | {x.name: x.span for x in model.inputs}
-    named = {
-        "signal": {x.name: x.span for x in model.signals},
-        "node": {x.name: x.span for x in model.nodes},
-    }
+    named = {"signal": {x.name: x.span for x in model.signals}, "node": {x.name: x.span for x in model.nodes}}
     return named.get(variable.kind, outside | elements).get(variable.owner)
 
 
