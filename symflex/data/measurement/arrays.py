@@ -38,7 +38,6 @@ from symflex.data.measurement.measured_response import (
     averages_of,
     checked_response,
     listed_names,
-    nowhere,
     unit_of,
     window_of,
 )
@@ -117,19 +116,19 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
         hint = "in MATLAB: load('FILE.mat'), then save('FILE.mat', '-v7')"
         raise DataError(Diagnostic("SF601", message, None, hint)) from None
     except (ValueError, zlib.error) as error:
-        raise _unreadable(name, kind, error) from None
+        reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
+        raise DataError(Diagnostic("SF601", f"'{name}' is not {kind}: {reason}")) from None
     except OverflowError:
-        raise _too_large(name) from None
+        message = f"'{name}' holds more than {MAX_BYTES} bytes of data"
+        raise DataError(Diagnostic("SF607", message)) from None
     if suffix != ".mat":
         return arrays
-    objects = {k: a.item() for k, a in arrays.items() if a.dtype.kind == "O" and a.size}
+    objects = ((k, a.item()) for k, a in arrays.items() if a.dtype.kind == "O" and a.size and k)
     plain = {k: a for k, a in arrays.items() if a.dtype.kind != "O" and not k.startswith("__") and k}
-    objects = {k: o for k, o in objects.items() if isinstance(o, ClassName) and k}
-    if objects and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
-        variable, of = next(iter(objects.items()))
-        message = (
-            f"'{name}': {variable[:40]} is an object of the class {of.name[:40]}, which MATLAB alone reads"
-        )
+    variable, of = next(((k, o) for k, o in objects if isinstance(o, ClassName)), ("", None))
+    if of and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
+        what = f"an object of the class {of.name[:40]}"
+        message = f"'{name}': {variable[:40]} is {what}, which MATLAB alone reads"
         hint = (
             f"in MATLAB: [H, w] = frdata({variable}); save('FILE.mat', 'H', 'w', '-v7') "
             f"(w in rad/s, unless {variable}.FrequencyUnit says Hz: then call it f)"
@@ -212,14 +211,11 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
     for part in asked.split(","):
         kind, _, key = (text.strip() for text in part.partition("="))
         if kind not in known or key not in arrays:
-            what = f"--columns {part[:60]}: " + (
-                f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
-            )
-            hint = (
-                f"the names left of '=' are {', '.join(sorted(known))}; those right of it are "
-                f"{listed_names(list(arrays))}"
-            )
-            raise UsageError(Diagnostic("SF902", f"'{name}': {what}", None, hint))
+            what = f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
+            message = f"'{name}': --columns {part[:60]}: {what}"
+            names = listed_names(list(arrays))
+            hint = f"the names left of '=' are {', '.join(sorted(known))}; those right of it are {names}"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
         found[words.get(kind, kind)] = arrays[key]
     return found
 
@@ -288,7 +284,7 @@ def _responses(
             (_word(known["note"]),) if "note" in known else (),
             tuple(guesses),
         )
-        found.append(checked_response(response, name, nowhere))
+        found.append(checked_response(response, name, lambda *_: None))
     return found
 
 
@@ -326,14 +322,13 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
             raise _ask_unit(f"the first column of {key}", name, "--columns f,h", "--columns omega,h")
         guesses.append(f"the first column of '{key}' is read in {unit}, in which its ends are round numbers")
         first = ColumnMeaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
-        meanings = [first, *(ColumnMeaning("complex") for _ in range(width - 1))]
+        meanings = [first, *[ColumnMeaning("complex")] * (width - 1)]
     else:
         unit = unit_by_round_ends(numbers[0])
         word = "omega" if unit == "rad/s" else "f"
         message = f"'{name}': {key} is a matrix of {width} real columns without names"
-        hint = (
-            f"say what they are: --columns {word},re,im or --columns {word},mag,phase_deg (omega for rad/s)"
-        )
+        option = f"--columns {word},re,im or --columns {word},mag,phase_deg"
+        hint = f"say what they are: {option} (omega for rad/s)"
         raise DataError(Diagnostic("SF602", message, None, hint))
     columns = [
         DataColumn(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
@@ -406,12 +401,3 @@ def _rows(array: Array, size: int, name: str, what: str) -> Array:
     if len(table) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} responses"))
     return table
-
-
-def _too_large(name: str) -> DataError:
-    return DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_BYTES} bytes of data"))
-
-
-def _unreadable(name: str, what: str, error: Exception) -> DataError:
-    reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
-    return DataError(Diagnostic("SF601", f"'{name}' is not {what}: {reason}"))
