@@ -220,10 +220,8 @@ class ResonanceFit:
         return measured.misfit_degrees(model)
 
     def _seen(self, response: int) -> tuple[MeasuredResponse, Complex]:
-        seen = _seen(self.problem, response, self.resonances)
-        return self.problem.lines[response].at(seen).measured, self.problem.values(self.resonances, response)[
-            seen
-        ]
+        problem, seen = self.problem, _seen(self.problem, response, self.resonances)
+        return problem.lines[response].at(seen).measured, problem.values(self.resonances, response)[seen]
 
 
 def fit_resonances(
@@ -253,10 +251,8 @@ def fit_resonances(
     >>> print(fit.resonances.omega_p.round(6), fit.resonances.zeta_p.round(6), fit.resonances.gain.round(6))
     [62.8] [0.02] [3.]
     """
-    for name, known, what in (
-        (given.start, ("auto", *STARTS), "start"),
-        (given.criterion, CRITERIA, "criterion"),
-    ):
+    choices = ((given.start, ("auto", *STARTS), "start"), (given.criterion, CRITERIA, "criterion"))
+    for name, known, what in choices:
         if name not in known:
             hint = nearest(name, known) or f"choose from: {', '.join(known)}"
             raise UsageError(Diagnostic("SF902", f"there is no {what} '{name[:64]}'", None, hint))
@@ -286,14 +282,8 @@ def _fit(
         if wrong.any():
             place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
-            raise FitError(
-                Diagnostic(
-                    "SF615",
-                    message,
-                    None,
-                    "add damping to the base, or choose a --band without this frequency",
-                )
-            )
+            hint = "add damping to the base, or choose a --band without this frequency"
+            raise FitError(Diagnostic("SF615", message, None, hint))
     problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
     stages = Stages()
@@ -315,16 +305,15 @@ def _fit(
     fitted = candidate.refined.resonances
     thin = problem.thinned(most)
     thin = thin.at([_seen(thin, r, fitted) for r in range(len(measured))])
-    tests = tuple(
-        stages.within(
-            PHASE_SHARE, partial(judge_phase, thin, r, fitted), partial(not_judged, thin, r, fitted)
-        )
-        for r in range(len(measured))
-    )
+    ways = [
+        (partial(judge_phase, thin, r, fitted), partial(not_judged, thin, r, fitted))
+        for r in range(len(bases))
+    ]
+    tests = tuple(stages.within(PHASE_SHARE, judge, give_up) for judge, give_up in ways)
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     if stages.is_cut:
         reasons = ("the time budget ended before the fit was complete", *reasons)
-    elif _is_drowned(fit):
+    elif not fitted.order and np.median([fit.misfit_db(r) for r in range(len(bases))]) > DROWNED_DB:
         reasons = (*reasons, "the data show no resonance, and noise as large as the response")
     return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
 
@@ -373,9 +362,8 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
     found = []
     for r, line in enumerate(problem.lines):
         every = line.every
-        model = every.observation(
-            every.base * candidate.refined.resonances.factor(r, every.observation.omega)
-        )
+        factor = candidate.refined.resonances.factor(r, every.observation.omega)
+        model = every.observation(every.base * factor)
         off = np.abs(model - every.measured.values) / line.deviation_of_every()
         # What is larger than the noise everywhere is no matter of single lines.
         off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
@@ -424,12 +412,6 @@ def _is_rounded(fit: ResonanceFit) -> bool:
             if np.median(steps / noise**2) > MOST_ROUNDED:
                 return True
     return False
-
-
-def _is_drowned(fit: ResonanceFit) -> bool:
-    """Tell whether nothing but noise was found."""
-    misfits = [fit.misfit_db(r) for r in range(fit.resonances.responses)]
-    return not fit.resonances.order and float(np.median(misfits)) > DROWNED_DB
 
 
 def named_pair(fit: ResonanceFit, i: int) -> str:
@@ -499,21 +481,14 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         ]
         if narrow:
             pairs = ", ".join(map(str, narrow))
-            warnings.append(
-                f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
-                "used a Hann window, say --window hann, or damping comes out too large"
-            )
+            said = f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
+            warnings.append(f"{said}used a Hann window, say --window hann, or damping comes out too large")
             break
-    advice = ""
-    if not fit.problem.has_base:
-        advice = "; try --slope N" + (
-            ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
-        )
+    several = ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
+    advice = "" if fit.problem.has_base else f"; try --slope N{several}"
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
-        warnings.append(
-            f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
-            "the model lacks something that the data show" + advice
-        )
+        said = f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains"
+        warnings.append(f"{said}: the model lacks something that the data show{advice}")
     if fit.refined.correlation > SMOOTH and not is_exact:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
         warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import fdtrc
@@ -40,13 +40,6 @@ from symflex.options import FitOptions
 Result = TypeVar("Result")
 
 
-class _Effort(TypedDict):
-    """What a search may take."""
-
-    steps: int
-    tolerance: float
-
-
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12
 """Beyond, ask for a number: each one tried costs a fit from up to three kinds of starts."""
@@ -57,9 +50,8 @@ PATIENCE, MORE_PATIENCE = 1, 3
 NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.15, 0.6, 0.7, 0.85, 0.92
 """Parts of the time given when the noise has to be known, numbers of poles compared, the fit found, fitted to
 all lines, and its phase tested."""
-THOROUGH = _Effort(steps=STEPS, tolerance=TOLERANCE)
-QUICK = _Effort(steps=25, tolerance=ROUGH)
-"""A quarter of the steps of a whole search, enough to compare numbers of poles."""
+THOROUGH, QUICK = (STEPS, TOLERANCE), (25, ROUGH)
+"""Steps and tolerance of a whole search, and of one that is enough to compare numbers of poles."""
 EXPLAINED = 1.15
 """Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
 WEAK = 0.5
@@ -136,11 +128,6 @@ class Score:
     # strong evidence for one resonance more is missing.
     status: str
 
-    @property
-    def is_usable(self) -> bool:
-        """Whether it is a result."""
-        return self.status == "usable"
-
 
 def _from_peaks(problem: FitProblem, order: int) -> Iterator[Resonances]:
     """Return the start of the paper, and what linear least squares put over its poles."""
@@ -163,12 +150,10 @@ def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
     known: list[Complex] = []
     found: list[tuple[float, Resonances]] = []
     for poles in choices:
-        if any(
-            other.size == poles.size and np.all(abs(other - poles) < SAME * abs(poles)) for other in known
-        ):
-            continue
-        known.append(poles)
-        found += over_poles(problem, poles, MOST_NUMERATORS)
+        alike = (other for other in known if other.size == poles.size)
+        if not any(np.all(abs(other - poles) < SAME * abs(poles)) for other in alike):
+            known.append(poles)
+            found += over_poles(problem, poles, MOST_NUMERATORS)
     for _, resonances in sorted(found, key=lambda one: one[0])[:MOST_STARTS]:
         yield resonances
 
@@ -203,19 +188,13 @@ def best_of_starts(
         if name == "aaa" and best is not None and best.failure is None and kind == "auto":
             break  # the slowest of the three, for where the others fail
         for start in STARTS[name](problem, order):
-            effort = QUICK if is_quick else THOROUGH
-            refined = refine(problem, start, **effort)
+            refined = refine(problem, start, *(QUICK if is_quick else THOROUGH))
             if not (refined.has_converged or is_quick) and (
                 best is None or _merit(problem, refined) < _merit(problem, best.refined)
             ):
-                refined = refine_directly(problem, refined.resonances, steps=2 * STEPS)
-            found = Candidate(
-                order,
-                name if order else "none",
-                start,
-                refined,
-                _failure(problem, refined, is_quick=is_quick),
-            )
+                refined = refine_directly(problem, refined.resonances, 2 * STEPS)
+            failure = _failure(problem, refined, is_quick=is_quick)
+            found = Candidate(order, name if order else "none", start, refined, failure)
             met.append(refined)
             if best is None or _is_better(problem, found, best):
                 best = found
@@ -262,17 +241,13 @@ def chosen_order(
     given_up: list[tuple[Score, Candidate]] = []
     result: Candidate | None = None
     for score in sorted(wanted, key=lambda s: _value(s, criterion)):
-        far_better = [
-            one for s, one in given_up if FAR_BETTER * (s.reduced + NEGLIGIBLE) < score.reduced + NEGLIGIBLE
-        ]
-        if far_better:
-            result = far_better[0]
+        limit = (score.reduced + NEGLIGIBLE) / FAR_BETTER
+        result = next((one for s, one in given_up if s.reduced + NEGLIGIBLE < limit), None)
+        if result is not None:
             break
         best = _continued(problem, thin, by_order[score.order], tried, given.start, stages)
-        status = "usable"
-        if best.failure is not None:
-            status = "failed"
-        elif score.order and modes is None:
+        status = "usable" if best.failure is None else "failed"
+        if status == "usable" and score.order and modes is None:
             is_weak = _is_weak(thin, best.refined) or not _is_founded(scores, score, criterion)
             status = "weak" if is_weak else status
         scores = [replace(s, status=status) if s.order == score.order else s for s in scores]
@@ -297,7 +272,7 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
     def values() -> list[float]:
         """Return what the criterion says of each one tried; infinite where that failed."""
         scores = [_score(thin, one, tried[-1].refined.correlation) for one in tried]
-        return [_value(s, given.criterion) if s.is_usable else np.inf for s in scores]
+        return [_value(s, given.criterion) if s.status == "usable" else np.inf for s in scores]
 
     def attempt(order: int) -> bool:
         """Try a number; return whether that settles it."""
@@ -385,16 +360,15 @@ def _continued(
     stages.budget.progress.report(THOROUGH_SHARE, f"fit with {best.order} poles to {problem.count} lines")
     refined = stages.within(
         LAST_SHARE,
-        lambda: refine_directly(problem, best.refined.resonances, steps=3 * STEPS),
-        lambda: refine_directly(problem, best.refined.resonances, steps=0),
+        lambda: refine_directly(problem, best.refined.resonances, 3 * STEPS),
+        lambda: refine_directly(problem, best.refined.resonances, 0),
     )
     return replace(best, refined=refined, failure=_failure(problem, refined))
 
 
 def _thorough(thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
     """Return where a quick fit leads with all steps, and from other starts where it leaves something."""
-    refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
-    best = replace(quick, refined=refined, failure=_failure(thin, refined))
+    best = refitted(quick, thin, 3 * STEPS)
     best = _signs_tried(thin, _without_far_poles(thin, _simplified(thin, best, is_quick=False)))
     if best.failure is not None or not _is_explained(thin, best.refined):
         again = best_of_starts(thin, quick.order, kind)
@@ -415,22 +389,12 @@ def too_few(problem: FitProblem, count: int, found: int) -> str:
     return f"{count} resonances are asked for, and the best fit has {found}{over} {band}"
 
 
-def undetermined() -> Diagnostic:
-    """Return the message that the parameters have no covariance."""
-    return Diagnostic(
-        "SF613",
-        "the data do not determine all parameters: their covariance is singular",
-        None,
-        "ask for fewer resonances, or measure a wider band",
-    )
-
-
 def _nothing(problem: FitProblem) -> Candidate:
     """Return the function without poles that no start led to: the base, or a gain."""
     none = np.zeros(0, np.complex128)
     empty = np.zeros((len(problem.lines), 0))
     plain = Resonances(none.real, none.real, empty, empty, np.ones(len(problem.lines)))
-    refined = refine(problem, plain, **QUICK)
+    refined = refine(problem, plain, *QUICK)
     return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
@@ -457,7 +421,7 @@ def _better_of(
     problem: FitProblem, best: Candidate, start: Resonances, *, is_quick: bool = False
 ) -> Candidate:
     """Return where another start leads, if that is better than the fit so far."""
-    refined = refine_directly(problem, start, **(QUICK if is_quick else THOROUGH))
+    refined = refine_directly(problem, start, *(QUICK if is_quick else THOROUGH))
     failure = _failure(problem, refined, is_quick=is_quick)
     found = replace(best, order=start.order, refined=refined, failure=failure)
     return found if _is_better(problem, found, best) else best
@@ -550,7 +514,7 @@ def _is_promising(problem: FitProblem, r: int, now: Resonances, start: Resonance
     if len(problem.lines) == 1:
         return True
     single = replace(problem, lines=problem.lines[r : r + 1], delays=problem.delays[r : r + 1])
-    best, other = (refine_directly(single, one.one(r), **QUICK) for one in (now, start))
+    best, other = (refine_directly(single, one.one(r), *QUICK) for one in (now, start))
     return _merit(single, other) < _merit(single, best) - LOWER
 
 
@@ -576,13 +540,12 @@ def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -
     if not (refined.has_converged or is_quick) or not np.isfinite(refined.cost):
         hint = "ask for fewer resonances, or for another --start"
         return Diagnostic("SF612", "the fit did not converge", None, hint)
-    if refined.covariance is None:
-        return undetermined()
     # Residual terms may be undetermined: what a mode far outside damps is not seen in the band.
-    modes = np.tile(refined.resonances.in_band(*problem.band), 2)
-    if not np.isfinite(np.diag(refined.covariance)[: modes.size][modes]).all():
-        return undetermined()
-    return None
+    modes, covariance = np.tile(refined.resonances.in_band(*problem.band), 2), refined.covariance
+    if covariance is not None and np.isfinite(np.diag(covariance)[: modes.size][modes]).all():
+        return None
+    message = "the data do not determine all parameters: their covariance is singular"
+    return Diagnostic("SF613", message, None, "ask for fewer resonances, or measure a wider band")
 
 
 def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
@@ -592,15 +555,15 @@ def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate
         return candidate, problem
     values = [problem.values(refined.resonances, r) for r in range(len(problem.lines))]
     own = estimated(problem, values, refined.parameters)
-    again = refine_directly(own, refined.resonances, steps=2 * STEPS)
+    again = refine_directly(own, refined.resonances, 2 * STEPS)
     if _failure(own, again) is not None:
         return candidate, problem
     return replace(candidate, refined=again), own
 
 
-def refitted(candidate: Candidate, problem: FitProblem) -> Candidate:
-    """Return the fit to a problem with other lines than those it was found with."""
-    refined = refine_directly(problem, candidate.refined.resonances, steps=2 * STEPS)
+def refitted(candidate: Candidate, problem: FitProblem, steps: int = 2 * STEPS) -> Candidate:
+    """Return the fit to a problem with other lines, or more steps, than those it was found with."""
+    refined = refine_directly(problem, candidate.refined.resonances, steps)
     return replace(candidate, refined=refined, failure=_failure(problem, refined))
 
 
