@@ -232,10 +232,7 @@ class Study:
     def loops(self) -> tuple[StabilityMap | SymflexError, ...]:
         """Stable values of every gain that a figure names, or why there are none."""
         gains = dict.fromkeys(figure.gain for figure in self.model.figures if figure.gain)
-        return tuple(attempt(partial(self._stable_gains, gain)) for gain in gains)
-
-    def _stable_gains(self, gain: str) -> StabilityMap:
-        return find_stable_gains(self.loop(gain))
+        return tuple(attempt(lambda g=gain: find_stable_gains(self.loop(g))) for gain in gains)  # type: ignore[misc]
 
     def loop(self, gain: str) -> AnyLoop:
         """Return the characteristic function as a polynomial in a gain.
@@ -244,10 +241,7 @@ class Study:
         """
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: characteristic_loop(self.model, gain))
-        found: AnyLoop | SymflexError = self._characteristic[gain]
-        if isinstance(found, SymflexError):
-            raise found
-        return found
+        return _result(self._characteristic[gain])
 
     @cached_property
     def _characteristic(self) -> dict[str, AnyLoop | SymflexError]:
@@ -259,15 +253,12 @@ class Study:
 
         What the zeros mean tells which that is: of it they are the poles of the system held there.
         """
-        joints = {
-            (tf.input.name, tf.quantity, tf.unit): tf
-            for tf, _, told in self.located
-            if told.kind == "colocated"
-        }
+        kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), told.kind) for tf, _, told in self.located]
+        joints = {key: tf for tf, key, kind in kinds if kind == "colocated"}
         found = []
-        for tf, _, told in self.located:
-            joint = joints.get((tf.input.name, tf.quantity, tf.unit))
-            if told.kind != "colocated" and joint is not None:
+        for tf, key, kind in kinds:
+            joint = joints.get(key)
+            if kind != "colocated" and joint is not None:
                 one = attempt(partial(colocation, self.model, ColocationOptions(tf.name, joint.name)))
                 if not isinstance(one, SymflexError):
                     found.append(one)

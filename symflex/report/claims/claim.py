@@ -51,9 +51,8 @@ class Check:
         condition = self.condition and f"Condition: {self.condition}"
         added = [f" {text}" for text in (self.note, condition) if text]
         is_conditional = self.condition and found.verdict == "holds"
-        return Finding(
-            "holds with a condition" if is_conditional else found.verdict, (*found.evidence, *added)
-        )
+        verdict: Verdict = "holds with a condition" if is_conditional else found.verdict
+        return Finding(verdict, (*found.evidence, *added))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +98,8 @@ def model_of(name: str) -> str:
 
 def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:
     """Return a finding: does not hold unless true, and holds with a condition when the evidence names one."""
-    if not is_true:
-        return Finding("does not hold", evidence)
-    return Finding("holds with a condition" if condition else "holds", evidence)
+    holds: Verdict = "holds with a condition" if condition else "holds"
+    return Finding(holds if is_true else "does not hold", evidence)
 
 
 ANCHOR: Final = "claims"

@@ -83,22 +83,16 @@ def root_section(study: Study) -> ChapterPart:
 
 def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     certificate = found.certificate
-    blocks: list[Block] = []
     if certificate.certified:
         mark = Badge("certified", "good")
         said = f"{certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
     else:
         mark, said = Badge("not certified", "bad"), f"{certificate.reason or 'no reason given'}."
     shown = f" Listed: {region_text(found.region)}" if region_text(found.region) else ""
-    blocks.append(_stability(found.verdict))
-    blocks.append(marked(mark, said + shown))
+    blocks: list[Block] = [_stability(found.verdict), marked(mark, said + shown)]
     for part in found.excluded:
-        blocks.append(
-            text(
-                f"Left out: {part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j, where roots "
-                f"accumulate."
-            )
-        )
+        place = f"{part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j"
+        blocks.append(text(f"Left out: {place}, where roots accumulate."))
     for kind, title in KINDS.items():
         roots = roots_of(found, kind)
         entries = one_of_each_pair(roots)
@@ -138,12 +132,9 @@ def stability_mark(word: str) -> Badge:
 
 def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
     """Return what the zeros mean, a paragraph as its lines; what concerns the command line is left out."""
-    found = []
-    for paragraph in explanation_paragraphs(told):
-        if not paragraph[0].startswith("To see that system"):
-            lines = (line.replace("+-", "±").replace("*", "·") for line in paragraph)
-            found.append(tuple(x for line in lines for x in (line, "\n"))[:-1])
-    return found
+    kept = (p for p in explanation_paragraphs(told) if not p[0].startswith("To see that system"))
+    shown = ([line.replace("+-", "±").replace("*", "·") for line in paragraph] for paragraph in kept)
+    return [tuple(x for line in lines for x in (line, "\n"))[:-1] for lines in shown]
 
 
 LOOP_HEADS: Final = columns(
@@ -183,10 +174,9 @@ def loop_section(study: Study) -> ChapterPart | None:
 
 
 def _gains(found: StabilityMap) -> tuple[Block, ...]:
+    opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
     if found.certified:
         opening = marked(Badge("certified", "good"), "All poles right of the imaginary axis are counted.")
-    else:
-        opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
     blocks: list[Block] = []
     if found.nominal is not None:
         blocks.append(_stability(found.verdict, f", with {found.gain} = {float(found.nominal):g}"))
