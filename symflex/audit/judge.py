@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from symflex.audit.corrections import Change, Correction, find_correction
@@ -138,19 +138,14 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
         except BudgetError:  # what is not found within the limits is not reported
             spend()
             reading = None
-    return Audit(
-        audit.tf,
-        audit.published,
-        audit.formula,
-        audit.verdict,
-        audit.unread,
-        ratio,
-        correction,
-        derived,
-        audit.comparison,
-        None if measured is None or vanishes else largest_deviation(measured),
-        () if vanishes else check_laws(reading, measured),
-        tuple(_disagreeing_sums(audit.published, audit.tf.model)),
+    return replace(
+        audit,
+        ratio=ratio,
+        correction=correction,
+        derived=derived,
+        deviation=None if measured is None or vanishes else largest_deviation(measured),
+        laws=() if vanishes else check_laws(reading, measured),
+        units=tuple(_disagreeing_sums(audit.published, audit.tf.model)),
     )
 
 

@@ -176,15 +176,13 @@ def read_array(name: str, content: bytes) -> Arrays:
         rows = np.frombuffer(reader.take(count * dtype.itemsize), dtype)
         return {field: rows[field] for field in dtype.names or ()}
     if description is None or order is None or shape is None:
-        message = "an array holds neither plain numbers nor text"
-        raise ValueError(message)
+        raise ValueError("an array holds neither plain numbers nor text")
     sizes = [int(size) for size in re.findall(r"\d+", shape[1])]
     reader.order = description[1] or "="
     try:
         return {name: reader.numbers(description[2], sizes, "F" if order[1] == "True" else "C")}
     except TypeError:  # a kind of number that numpy has not
-        message = f"an array is of an unknown kind '{description[2]}'"
-        raise ValueError(message) from None
+        raise ValueError(f"an array is of an unknown kind '{description[2]}'") from None
 
 
 Attributes = dict[str, str]

@@ -119,8 +119,7 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
         reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
         raise DataError(Diagnostic("SF601", f"'{name}' is not {kind}: {reason}")) from None
     except OverflowError:
-        message = f"'{name}' holds more than {MAX_BYTES} bytes of data"
-        raise DataError(Diagnostic("SF607", message)) from None
+        raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_BYTES} bytes of data")) from None
     if suffix != ".mat":
         return arrays
     objects = ((k, a.item()) for k, a in arrays.items() if a.dtype.kind == "O" and a.size and k)
@@ -328,8 +327,7 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
         word = "omega" if unit == "rad/s" else "f"
         message = f"'{name}': {key} is a matrix of {width} real columns without names"
         option = f"--columns {word},re,im or --columns {word},mag,phase_deg"
-        hint = f"say what they are: {option} (omega for rad/s)"
-        raise DataError(Diagnostic("SF602", message, None, hint))
+        raise DataError(Diagnostic("SF602", message, None, f"say what they are: {option} (omega for rad/s)"))
     columns = [
         DataColumn(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
         for n, m, v in zip(names, meanings, numbers, strict=True)
@@ -380,8 +378,7 @@ def _word(array: Array) -> str:
 
 def _numeric(array: Array, name: str, what: str) -> Array:
     if array.dtype.kind not in "fciub":
-        message = f"'{name}': {what} is not an array of numbers"
-        raise DataError(Diagnostic("SF602", message, None, _HINT))
+        raise DataError(Diagnostic("SF602", f"'{name}': {what} is not an array of numbers", None, _HINT))
     return array.astype(np.complex128)
 
 

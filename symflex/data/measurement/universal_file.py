@@ -164,8 +164,7 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[_Place]) -
                     raise
                 entry = None
             if not isinstance(entry, dict) or "data" not in entry or "x" not in entry:
-                message = f"{name}:{line}:1: this dataset 58 cannot be read"
-                raise DataError(Diagnostic("SF601", message))
+                raise DataError(Diagnostic("SF601", f"{name}:{line}:1: this dataset 58 cannot be read"))
             found.append(entry)
     return found
 
@@ -180,8 +179,7 @@ def _response(
     lines, values = np.asarray(entry["x"]), np.asarray(entry["data"])
     are_numbers = lines.dtype.kind in "fiu" and values.dtype.kind in "fciu"
     if lines.ndim != 1 or lines.shape != values.shape or not are_numbers:
-        message = f"{place}:1: {values.size} values at {lines.size} frequencies"
-        raise DataError(Diagnostic("SF601", message))
+        raise DataError(Diagnostic("SF601", f"{place}:1: {values.size} values at {lines.size} frequencies"))
     weights = None
     if coherence is not None and np.asarray(coherence["data"]).shape == lines.shape:
         weights = np.clip(np.real(np.asarray(coherence["data"])), 0, 1)
