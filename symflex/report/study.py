@@ -241,7 +241,10 @@ class Study:
         """
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: characteristic_loop(self.model, gain))
-        return _result(self._characteristic[gain])
+        found: AnyLoop | SymflexError = self._characteristic[gain]
+        if isinstance(found, SymflexError):
+            raise found
+        return found
 
     @cached_property
     def _characteristic(self) -> dict[str, AnyLoop | SymflexError]:

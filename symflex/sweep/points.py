@@ -198,7 +198,7 @@ class RootSolver:
         return bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
 
     def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
-        similarity = self._similarities and self._similarities.at({**self._declared, **values})
+        similarity = self._similarities.at({**self._declared, **values}) if self._similarities else None
         if similarity is None:
             return self._searched(self._bound(values), 0)
         family = _family(similarity)

@@ -122,10 +122,8 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             finally:
                 executor.shutdown(wait=False)
     except distributed.KilledWorker as error:
-        message, hint = (
-            f"a worker stopped before it was done: {error}",
-            "use fewer workers, or more memory for each",
-        )
+        message = f"a worker stopped before it was done: {error}"
+        hint = "use fewer workers, or more memory for each"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
 
 

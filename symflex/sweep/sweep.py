@@ -389,7 +389,7 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
                 "points": int(np.sum(sweep["status"][..., k] > 0)),
                 "frequency_hz": _ends(sweep["frequency_hz"][..., k]),
                 "damping_ratio": _ends(sweep["damping_ratio"][..., k]),
-                "largest_radius": (_ends(sweep["radius"][..., k]) or [None])[-1],
+                "largest_radius": _largest(sweep["radius"][..., k]),
             }
             for k in range(sweep["status"].shape[-1])
         ]
@@ -397,6 +397,11 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         document["stable"] = int(np.sum(sweep["stable"] == 1))
         document |= {name: _ends(sweep[name]) for name in MARGINS}
     return document
+
+
+def _largest(values: Array) -> float | None:
+    ends = _ends(values)
+    return None if ends is None else ends[1]
 
 
 def _ends(values: Array) -> list[float] | None:

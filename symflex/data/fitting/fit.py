@@ -35,7 +35,16 @@ from symflex.data.fitting.problem import (
     with_noise,
     with_rough_noise,
 )
-from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Mask, Real, Resonances, Whole
+from symflex.data.fitting.resonances import (
+    LOGARITHMIC,
+    UNITS,
+    Complex,
+    Free,
+    Mask,
+    Real,
+    Resonances,
+    Whole,
+)
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
@@ -180,29 +189,16 @@ class ResonanceFit:
         deviation = np.full(found.size(free), np.inf)
         if covariance is not None:
             deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        omega_z, zeta_z = np.zeros_like(found.omega_z), np.zeros_like(found.zeta_z)
-        gain, lag, delay, real_z = (np.zeros(found.responses) for _ in range(4))
-        for r, shown in enumerate(found.has_zeros):
-            at = found.places(r, free)
-            omega_z[r, shown] = np.abs(found.omega_z[r, shown]) * deviation[at["omega_z"]]
-            zeta_z[r, shown] = deviation[at["zeta_z"]]
-            # Parameters that were not fitted have an empty place.
-            if np.isfinite(found.real_z[r]):
-                real_z[r : r + 1] = np.abs(found.real_z[r]) * deviation[at["real_z"]]
-            gain[r : r + 1][: free.gain] = np.abs(found.gain[r]) * deviation[at["gain"]]
-            lag[r : r + 1][: free.lag] = MILLISECOND * deviation[at["lag"]]
-            delay[r : r + 1][: free.delay] = MILLISECOND * deviation[at["delay"]]
-        return type(found)(
-            found.omega_p * deviation[:n],
-            found.zeta_p * deviation[n : 2 * n],
-            omega_z,
-            zeta_z,
-            gain,
-            lag,
-            delay,
-            found.slope,
-            found.real_p * deviation[2 * n : found.shared()],
-            real_z,
+        own = {name: np.zeros_like(getattr(found, name)) for name in UNITS}
+        for name, index, place in found.own_places(free):
+            sizes = np.abs(getattr(found, name)[index]) if name in LOGARITHMIC else UNITS[name]
+            own[name][index] = sizes * deviation[place]
+        return replace(
+            found,
+            omega_p=found.omega_p * deviation[:n],
+            zeta_p=found.zeta_p * deviation[n : 2 * n],
+            real_p=found.real_p * deviation[2 * n : found.shared()],
+            **own,
         )
 
     def of_response(self, response: int) -> str:

@@ -433,44 +433,37 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
     A pair far above the band is left out; one far below is a power of s, where that may be chosen, and so are
     two real zeros of which one lies below and one above.
     """
-    low, high = problem.band
     for r in range(len(problem.lines)):
-        for i in reversed(range(best.refined.resonances.count)):
+        for i in (*reversed(range(best.refined.resonances.count)), None):
             now = best.refined.resonances
-            place, twice = abs(now.omega_z[r, i]), 2 * now.zeta_z[r, i]
-            is_apart = place < low * abs(twice) and abs(twice) * place > high  # two real ones
-            if not np.isfinite(place) or (low <= place <= high and not is_apart):
+            start = _without_zeros(now, r, i, *problem.band)
+            if start is None or start.slope[r] not in (now.slope[r], *problem.slopes):
                 continue
-            omega_z, gain, slope = now.omega_z.copy(), now.gain.copy(), now.slope.copy()
-            if is_apart:
-                slope[r] += 1
-                gain[r] *= twice / place
-                if slope[r] not in problem.slopes:
-                    continue
-            elif place < low:
-                slope[r] += 2
-                gain[r] *= np.sign(omega_z[r, i]) / place**2
-                if slope[r] not in problem.slopes:
-                    continue
-            omega_z[r, i] = np.inf
-            start = replace(now, omega_z=omega_z, gain=gain, slope=slope).ordered()
             if _is_promising(problem, r, now, start):
                 best = _better_of(problem, best, start, is_quick=is_quick)
-        now = best.refined.resonances
-        corner = abs(now.real_z[r])
-        if not np.isfinite(corner) or low <= corner <= high:
-            continue
-        real_z, gain, slope = now.real_z.copy(), now.gain.copy(), now.slope.copy()
-        if corner < low:
-            slope[r] += 1
-            gain[r] /= real_z[r]
-            if slope[r] not in problem.slopes:
-                continue
-        real_z[r] = np.inf
-        start = replace(now, real_z=real_z, gain=gain, slope=slope)
-        if _is_promising(problem, r, now, start):
-            best = _better_of(problem, best, start, is_quick=is_quick)
     return best
+
+
+def _without_zeros(now: Resonances, r: int, i: int | None, low: float, high: float) -> Resonances | None:
+    """Return a fit without a pair of zeros, or the real one, outside the band; None where it is inside."""
+    omega_z, real_z = now.omega_z.copy(), now.real_z.copy()
+    gain, slope = now.gain.copy(), now.slope.copy()
+    zeros, place = (real_z, r) if i is None else (omega_z, (r, i))
+    size, twice = abs(zeros[place]), 0.0 if i is None else 2 * now.zeta_z[r, i]
+    is_apart = size < low * abs(twice) and abs(twice) * size > high  # two real ones
+    if not np.isfinite(size) or (low <= size <= high and not is_apart):
+        return None
+    if is_apart:
+        slope[r] += 1
+        gain[r] *= twice / size
+    elif size < low and i is None:
+        slope[r] += 1
+        gain[r] /= real_z[r]
+    elif size < low:
+        slope[r] += 2
+        gain[r] *= np.sign(omega_z[r, i]) / size**2
+    zeros[place] = np.inf
+    return replace(now, omega_z=omega_z, real_z=real_z, gain=gain, slope=slope).ordered()
 
 
 def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:

@@ -105,7 +105,8 @@ def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
     fitted = [_one_response(problem, r, sorted(found)) for r in range(len(problem.lines))]
     table = np.array([modes for modes, _ in fitted], np.float64)
     gains = np.array([gain for _, gain in fitted])
-    return Resonances(*table[0, :, :2].T, table[:, :, 2], table[:, :, 3], gains).ordered()
+    omega_p, zeta_p = table[0, :, 0], table[0, :, 1]
+    return Resonances(omega_p, zeta_p, table[:, :, 2], table[:, :, 3], gains).ordered()
 
 
 def _hidden_peak(problem: FitProblem, peaks: list[int]) -> int | None:

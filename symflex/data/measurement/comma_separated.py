@@ -7,8 +7,9 @@ What stands above the numbers names the columns, and comment lines may hold what
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Final
@@ -108,10 +109,12 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
         )  # fmt: skip
         frequency, value, *_ = one.columns
         places = {"frequency": frequency.place, "value": value.place, "coherence": one.columns[-1].place}
-        responses.append(
-            checked_response(response, name, lambda index, kind, places=places: places[kind](index))
-        )
+        responses.append(checked_response(response, name, partial(_place, places)))
     return tuple(responses)
+
+
+def _place(places: Mapping[str, Callable[[int], Span | None]], index: int, kind: str) -> Span | None:
+    return places[kind](index)
 
 
 def _listed(table: TextTable) -> _Rewritten | None:

@@ -76,7 +76,7 @@ class MeasuredResponse:
         kinds = {"frequency_hz": np.float64, "values": np.complex128, "coherence": np.float64}
         for name, kind in kinds.items():
             if (given := getattr(self, name)) is not None:
-                array = np.array(given, kind)
+                array: npt.NDArray[np.generic] = np.array(given, kind)
                 array.setflags(write=False)
                 object.__setattr__(self, name, array)
         shapes = {a.shape for a in (self.frequency_hz, self.values, self.coherence) if a is not None}

@@ -193,11 +193,10 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
 
 def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether no zero lies in the right half plane, for all values of the parameters."""
-    lines = []
     found = functions(models, of)
-    for stem, function in found:
-        word = "minimum phase" if function.is_minimum_phase else "nonminimum phase"
-        lines.append(f"In {stem}, {function.tf} is {word}, {function.condition}: {function.reason}.")
+    words = {True: "minimum phase", False: "nonminimum phase"}
+    said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in found]
+    lines = [f"{start}, {f.condition}: {f.reason}." for start, f in said]
     is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
     return judged(is_true, "\n".join(lines))
 
