@@ -89,11 +89,8 @@ def _half_angles(field: Arithmetic, ring: Ring, polynomial: fmpz_mpoly) -> fmpz_
 
 
 def _has_roots(field: Arithmetic, part: fmpz_mpoly) -> bool:
-    degrees = part.degrees()
-    return any(
-        int(d) and n.startswith(("root(", "sum(", UNIT))
-        for n, d in zip(field.ring.names, degrees, strict=True)
-    )
+    used = (n for n, d in zip(field.ring.names, part.degrees(), strict=True) if int(d))
+    return any(name.startswith(("root(", "sum(", UNIT)) for name in used)
 
 
 def _varying(field: Arithmetic) -> list[int]:

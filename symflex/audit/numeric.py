@@ -212,11 +212,8 @@ def _largest(
     """Return the largest magnitude (0) or angle (1), or the first without bound, and where it is."""
     sizes = [0.0 if z is None else abs(z[which]) for z in values]
     last = len(grid) - 1
-    peaks = [
-        i
-        for i in range(len(grid))
-        if sizes[i] > 0 and (i == 0 or sizes[i] > sizes[i - 1]) and (i == last or sizes[i] >= sizes[i + 1])
-    ]
+    beside = zip([-1.0, *sizes], sizes, [*sizes[1:], -1.0], strict=False)
+    peaks = [i for i, (below, size, above) in enumerate(beside) if size > 0 and below < size >= above]
     highest = sorted(sorted(peaks, key=lambda i: -sizes[i])[:MOST_PEAKS])
     best: tuple[float, float] | None = None
     for i in highest:

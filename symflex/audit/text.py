@@ -260,11 +260,6 @@ def _complex_json(value: complex) -> dict[str, float] | None:
 def _deviation(found: Deviation | None) -> dict[str, object] | None:
     if found is None:
         return None
-    return {
-        "band_hz": [float(limit) for limit in found.band],
-        "magnitude_db": None if found.unbounded else found.magnitude_db,
-        "magnitude_hz": found.magnitude_hz,
-        "unbounded": found.unbounded,
-        "phase_deg": found.phase_deg,
-        "phase_hz": found.phase_hz,
-    }
+    plain = asdict(found)
+    band = [float(limit) for limit in plain.pop("band")]
+    return {"band_hz": band, **plain, "magnitude_db": None if found.unbounded else found.magnitude_db}

@@ -301,10 +301,9 @@ def _fit(
     fitted = candidate.refined.resonances
     thin = problem.thinned(most)
     thin = thin.at([_seen(thin, r, fitted) for r in range(len(measured))])
-    ways = [
-        (partial(judge_phase, thin, r, fitted), partial(not_judged, thin, r, fitted))
-        for r in range(len(bases))
-    ]
+    judged = [partial(judge_phase, thin, r, fitted) for r in range(len(bases))]
+    otherwise = [partial(not_judged, thin, r, fitted) for r in range(len(bases))]
+    ways = zip(judged, otherwise, strict=True)
     tests = tuple(stages.within(PHASE_SHARE, judge, give_up) for judge, give_up in ways)
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     if stages.is_cut:
@@ -446,21 +445,18 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             if not found.has_zeros[r, i]:
                 continue
             pair = f"zero pair {i + 1}{fit.of_response(r)}"
+            damped = f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}"
             if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
                 errors.omega_z[r, i] > WEAK * abs(found.omega_z[r, i])
             ):
                 warnings.append(f"{pair} is not determined by the data: its error is of its own size")
                 continue
             if abs(found.zeta_z[r, i]) > OVERDAMPED:
-                warnings.append(
-                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
-                    "zeros, which stand for behaviour that a gain, a power of s and resonances cannot have"
-                )
+                lacking = "behaviour that a gain, a power of s and resonances cannot have"
+                warnings.append(f"{damped}: two real zeros, which stand for {lacking}")
             elif abs(found.zeta_z[r, i]) > FLAT and not is_exact:
-                warnings.append(
-                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g} and no sharp "
-                    "trough: modes outside the band may move it by more than its standard error"
-                )
+                moved = "modes outside the band may move it by more than its standard error"
+                warnings.append(f"{damped} and no sharp trough: {moved}")
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
@@ -470,11 +466,8 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         spacing = line.measured.spacing_hz
         if spacing is None or line.observation.matrix is not None:
             continue
-        narrow = [
-            int(fit.modes[: i + 1].sum())
-            for i in np.flatnonzero(fit.modes).tolist()
-            if found.zeta_p[i] * found.omega_p[i] / np.pi < 4 * spacing
-        ]
+        widths = (found.zeta_p * found.omega_p / np.pi)[fit.modes]
+        narrow = (np.flatnonzero(widths < 4 * spacing) + 1).tolist()
         if narrow:
             pairs = ", ".join(map(str, narrow))
             said = f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "

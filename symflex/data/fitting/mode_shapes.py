@@ -98,16 +98,10 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
         raise FitError(Diagnostic("SF616", message, None, "a response at the driven point has positive ones"))
     turned = np.where(np.abs(turned) > RIGHT_ANGLE, turned - np.copysign(2 * RIGHT_ANGLE, turned), turned)
     driven = np.sqrt(found[at].real)
-    return FittedModeShapes(
-        names,
-        at,
-        np.asarray(found.real / driven, np.float64),
-        np.array([_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]),
-        turned,
-        units[0],
-        np.exp(logarithms[:count]) / (2 * np.pi),
-        np.exp(logarithms[count:]),
-    )
+    shapes = np.asarray(found.real / driven, np.float64)
+    errors = [_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]
+    frequency, damping = np.exp(logarithms[:count]) / (2 * np.pi), np.exp(logarithms[count:])
+    return FittedModeShapes(names, at, shapes, np.array(errors), turned, units[0], frequency, damping)
 
 
 @dataclass(frozen=True, eq=False)

@@ -84,17 +84,10 @@ def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonance
     # Two real poles are a pair; one that is left stays alone.
     first, second = corners[: corners.size // 2 * 2 : 2], corners[1::2]
     centre = np.sqrt(first * second)
-    found = Resonances(
-        np.append(omega, centre),
-        np.append(zeta, (first + second) / (2 * centre)),
-        np.array([one.omega_z for one in chosen]),
-        np.array([one.zeta_z for one in chosen]),
-        np.array([one.gain for one in chosen]),
-        delay=np.array([one.delay for one in chosen]),
-        slope=np.array([one.slope for one in chosen]),
-        real_p=corners[corners.size // 2 * 2 :],
-        real_z=np.array([one.real_z for one in chosen]),
-    )
+    omega_p, zeta_p = np.append(omega, centre), np.append(zeta, (first + second) / (2 * centre))
+    own = ("omega_z", "zeta_z", "gain", "delay", "slope", "real_z")
+    arrays = {name: np.array([getattr(one, name) for one in chosen]) for name in own}
+    found = Resonances(omega_p, zeta_p, real_p=corners[corners.size // 2 * 2 :], **arrays)
     return sum(one.bic for one in chosen), found.ordered()
 
 

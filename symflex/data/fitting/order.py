@@ -330,10 +330,8 @@ def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate
     near = [one for one in tried if one.order <= best.order] + [best]
     rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
     slope, limit = _slope_in_band(problem, best.refined.resonances), _merit(problem, best.refined) + CLEAR
-    return any(
-        np.any(_slope_in_band(problem, rival.resonances) != slope) and _merit(problem, rival) < limit
-        for rival in rivals
-    )
+    others = [one for one in rivals if np.any(_slope_in_band(problem, one.resonances) != slope)]
+    return any(_merit(problem, rival) < limit for rival in others)
 
 
 def _slope_in_band(problem: FitProblem, found: Resonances) -> Whole:
@@ -583,12 +581,7 @@ def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Sco
     fit = size * float(np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE))
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
-    return Score(
-        candidate.order,
-        int(refined.resonances.in_band(*problem.band).sum()),
-        parameters,
-        fit + parameters * float(np.log(size)),
-        float(aicc),
-        refined.reduced,
-        "usable" if candidate.failure is None else "failed",
-    )
+    bic = fit + parameters * float(np.log(size))
+    count = int(refined.resonances.in_band(*problem.band).sum())
+    status = "usable" if candidate.failure is None else "failed"
+    return Score(candidate.order, count, parameters, bic, float(aicc), refined.reduced, status)

@@ -128,13 +128,9 @@ class Resonances:
         """
         poles = np.argsort(self.omega_p, kind="stable")
         zeros = np.argsort(np.abs(self.omega_z), axis=1, kind="stable")
-        return replace(
-            self,
-            omega_p=self.omega_p[poles],
-            zeta_p=self.zeta_p[poles],
-            omega_z=np.take_along_axis(self.omega_z, zeros, 1),
-            zeta_z=np.take_along_axis(self.zeta_z, zeros, 1),
-        )
+        omega_z, zeta_z = (np.take_along_axis(own, zeros, 1) for own in (self.omega_z, self.zeta_z))
+        omega_p, zeta_p = self.omega_p[poles], self.zeta_p[poles]
+        return replace(self, omega_p=omega_p, zeta_p=zeta_p, omega_z=omega_z, zeta_z=zeta_z)
 
     def real_corners(self) -> list[float]:
         """Return the corner frequencies of all real poles, the single one and those in pairs.
@@ -171,16 +167,7 @@ class Resonances:
     def one(self, response: int) -> Resonances:
         """Return those of one response."""
         r = slice(response, response + 1)
-        return replace(
-            self,
-            omega_z=self.omega_z[r],
-            zeta_z=self.zeta_z[r],
-            gain=self.gain[r],
-            lag=self.lag[r],
-            delay=self.delay[r],
-            slope=self.slope[r],
-            real_z=self.real_z[r],
-        )
+        return replace(self, **{name: getattr(self, name)[r] for name in (*UNITS, "slope")})
 
     def factor(self, response: int, omega: Real) -> Complex:
         """Return the product with the response's gain at ``1j*omega``, shape (k,)."""

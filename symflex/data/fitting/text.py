@@ -183,6 +183,8 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
     found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
     shown = found.has_zeros[r]
     omega = found.omega_z[r, shown]
+    parts = (start.omega_p, start.zeta_p, start.omega_z[r], start.zeta_z[r])
+    begun = zip(*(part.tolist() for part in parts), strict=True)
     zeros = _pairs(np.abs(omega), found.zeta_z[r, shown], errors.omega_z[r, shown], errors.zeta_z[r, shown])
     return {
         "name": measured.name,
@@ -200,15 +202,7 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "delay": {"value": float(found.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
         "zeros": [p | {"real_of_opposite_sign": bool(w < 0)} for p, w in zip(zeros, omega, strict=True)],
         "real_zeros": [_real(found.real_z[r], errors.real_z[r])] if np.isfinite(found.real_z[r]) else [],
-        "start": [
-            {
-                "omega_p": float(start.omega_p[i]),
-                "zeta_p": float(start.zeta_p[i]),
-                "omega_z": _finite(float(start.omega_z[r, i])),
-                "zeta_z": float(start.zeta_z[r, i]),
-            }
-            for i in range(start.count)
-        ],
+        "start": [{"omega_p": p, "zeta_p": x, "omega_z": _finite(z), "zeta_z": y} for p, x, z, y in begun],
         "residual_db": fit.misfit_db(r),
         "residual_degrees": fit.misfit_degrees(r),
         "phase_test": {

@@ -265,24 +265,22 @@ def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
 def _responses(
     known: Arrays, made: Sequence[Assembled], name: str, stem: str, guesses: Sequence[str]
 ) -> list[MeasuredResponse]:
-    averages = known.get("averages")
+    told = {
+        key: _word(known[key]) for key in ("averages", "window", "unit", "synthetic", "note") if key in known
+    }
+    averages = averages_of(told["averages"], name) if "averages" in told else None
+    window, unit = window_of(told.get("window", "")), unit_of(told.get("unit", ""), name)
+    is_synthetic = told.get("synthetic", "").lower() in ("yes", "true", "1", "1.0")
+    notes = (told["note"],) if "note" in told else ()
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(made):
         names = names_of(made, stem)
     found = []
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
-            called,
-            one.frequency_hz,
-            one.values,
-            one.coherence,
-            None if averages is None else averages_of(_word(averages), name),
-            window_of(_word(known["window"])) if "window" in known else "",
-            unit_of(_word(known["unit"]), name) if "unit" in known else "",
-            "synthetic" in known and _word(known["synthetic"]).lower() in ("yes", "true", "1", "1.0"),
-            (_word(known["note"]),) if "note" in known else (),
-            tuple(guesses),
-        )
+            called, one.frequency_hz, one.values, one.coherence, averages, window, unit, is_synthetic,
+            notes, tuple(guesses),
+        )  # fmt: skip
         found.append(checked_response(response, name, lambda *_: None))
     return found
 

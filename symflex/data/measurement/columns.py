@@ -274,12 +274,9 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
         turned = {m.label for m in found if m.kind == "phase"}
         ratios = {m.label for m in found if not m.kind and "/" in m.unit + m.label}
         turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
-        found = [
-            meaning_of(f"magnitude {m.label}", m.unit)
-            if not m.kind and m.label in turned and "/" in m.unit + m.label
-            else m
-            for m in found
-        ]
+        for i, m in enumerate(found):
+            if not m.kind and m.label in turned and "/" in m.unit + m.label:
+                found[i] = meaning_of(f"magnitude {m.label}", m.unit)
         kinds = {m.kind for m in found}
     if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
         return found
@@ -628,11 +625,10 @@ def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Co
         else:
             said = "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
             guesses.append(said)
-            size = (
-                np.sqrt(group["power"].numbers.real)
-                if "power" in group
-                else _size(group["magnitude"], group["magnitude"].meaning.scale)
-            )
+            if "power" in group:
+                size = np.sqrt(group["power"].numbers.real)
+            else:
+                size = _size(group["magnitude"], group["magnitude"].meaning.scale)
             phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
@@ -686,10 +682,8 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         if re.search(r"\blags?\b", phase.name, re.I):
             guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
             return size, -turned
-        guesses.append(
-            f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as positive "
-            "numbers, say -phase_deg or -phase_rad in --columns"
-        )
+        said = f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as "
+        guesses.append(f"{said}positive numbers, say -phase_deg or -phase_rad in --columns")
     return size, turned
 
 

@@ -300,11 +300,8 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         (reason, *_) = error.diagnostics
         place = "" if span else f"'{file}': "
         message = f"{place}the unit of the values: {reason.message}"
-        hint = (
-            reason.hint
-            or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
-        )
-        raise DataError(Diagnostic("SF602", message, span, hint)) from None
+        usual = "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
+        raise DataError(Diagnostic("SF602", message, span, reason.hint or usual)) from None
     return unit
 
 

@@ -166,17 +166,8 @@ def synthesise(
         f"SYNTHETIC data, computed by symflex: noise excitation, H1 estimate, {plan.averages} records, half "
         f"overlapping, Hann; sensor noise {plan.noise:g}; {sensor}; seed {plan.seed}"
     )
-    return MeasuredResponse(
-        name,
-        lines[shown],
-        cross[shown] / power_in[shown],
-        np.minimum(coherence, 1.0),
-        independent,
-        "hann",
-        unit,
-        is_synthetic=True,
-        notes=(note,),
-    )
+    values, shares = cross[shown] / power_in[shown], np.minimum(coherence, 1.0)
+    return MeasuredResponse(name, lines[shown], values, shares, independent, "hann", unit, True, (note,))
 
 
 def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: MeasurementPlan) -> Complex:

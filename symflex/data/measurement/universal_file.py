@@ -189,17 +189,11 @@ def _response(
     unit, guesses = _unit(entry, system)
     fields = dict(part.split("=", 1) for part in str(entry.get("id4", "")).split() if "=" in part)
     count = fields.get("averages", "")
+    averages = float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None
+    window, is_synthetic = "hann" if fields.get("window") == "hann" else "", "synthetic" in note.lower()
+    notes = (note,) if note else ()
     response = MeasuredResponse(
-        tf,
-        lines,
-        values,
-        weights,
-        float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None,
-        "hann" if fields.get("window") == "hann" else "",
-        unit,
-        guesses=guesses,
-        is_synthetic="synthetic" in note.lower(),
-        notes=(note,) if note else (),
+        tf, lines, values, weights, averages, window, unit, is_synthetic, notes, guesses
     )
     return checked_response(response, place, lambda *_: None)
 

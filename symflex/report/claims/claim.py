@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final
 
 from symflex.errors import counted
 from symflex.report.document import Aside, Badge, Section, Table, columns, text
@@ -14,7 +14,7 @@ from symflex.report.facts import ModelFacts
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symflex.report.document import Run, Verdict
+    from symflex.report.document import Cell, Run, Tone, Verdict
     from symflex.report.facts import ModelFacts
 
 
@@ -103,18 +103,13 @@ def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:
 
 
 ANCHOR: Final = "claims"
-TONES: Final[dict[str, Literal["good", "fair", "bad", "quiet"]]] = {
-    "holds": "good",
-    "holds with a condition": "fair",
-    "does not hold": "bad",
-    "not examined": "quiet",
+VERDICTS: Final[dict[str, tuple[Tone, str]]] = {
+    "holds": ("good", "hold"),
+    "holds with a condition": ("fair", "hold with a condition"),
+    "does not hold": ("bad", "do not hold"),
+    "not examined": ("quiet", "are not examined"),
 }
-PLURALS: Final = {
-    "holds": "hold",
-    "holds with a condition": "hold with a condition",
-    "does not hold": "do not hold",
-    "not examined": "are not examined",
-}
+"""Their tones, and what is said of several claims."""
 SCHEMA: Final = "symflex.report-claims/1"
 
 
@@ -143,40 +138,28 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:
     """Return the claims with their verdicts and the evidence."""
     counts: Counter[str] = Counter(finding.verdict for finding in findings)
-    summary = ", ".join(f"{counts[v]} {PLURALS[v]}" for v in TONES if counts[v])
-    rows = tuple(
-        (
-            (f"“{claim.quote}”" if claim.is_quotation else claim.quote, "\n", Aside(claim.place)),
-            (Badge(finding.verdict, TONES[finding.verdict]),),
-            finding.evidence,
-        )
-        for claim, finding in zip(publication.claims, findings, strict=True)
-    )
+    summary = ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
+    rows: list[tuple[Cell, ...]] = []
+    for claim, finding in zip(publication.claims, findings, strict=True):
+        quote = f"“{claim.quote}”" if claim.is_quotation else claim.quote
+        mark = Badge(finding.verdict, VERDICTS[finding.verdict][0])
+        rows.append(((quote, "\n", Aside(claim.place)), (mark,), finding.evidence))
     lead = text(
         f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which {summary}. "
         "Each verdict is computed from the models below, with their values of the parameters. If a claim "
         "depends on a condition, the verdict names it."
     )
-    table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), rows)
+    table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), tuple(rows))
     return Section("Claims of the publication", (lead, table), ANCHOR)
 
 
 def claims_json(publication: Publication, findings: Sequence[Finding]) -> dict[str, object]:
     """Return the claims as JSON data."""
-    return {
-        "schema": SCHEMA,
-        "publication": publication.name,
-        "claims": [
-            {
-                "key": claim.key,
-                "place": claim.place,
-                "quote": claim.quote,
-                "verdict": finding.verdict,
-                "evidence": "".join(_plain(run) for run in finding.evidence),
-            }
-            for claim, finding in zip(publication.claims, findings, strict=True)
-        ],
-    }
+    claims = []
+    for claim, finding in zip(publication.claims, findings, strict=True):
+        said = {"verdict": finding.verdict, "evidence": "".join(map(_plain, finding.evidence))}
+        claims.append({"key": claim.key, "place": claim.place, "quote": claim.quote} | said)
+    return {"schema": SCHEMA, "publication": publication.name, "claims": claims}
 
 
 def _plain(run: object) -> str:

@@ -189,11 +189,8 @@ def _gains(found: StabilityMap) -> tuple[Block, ...]:
     unit = f" [{found.unit}]" if found.unit else ""
     title = f"Closed-loop poles by the gain {found.gain}{unit}"
     blocks.append(Table(LOOP_HEADS, tuple(rows), title))
-    places = [
-        f"{found.gain} = {decimal(b.gain)} at {', '.join(f'{decimal(w / tau)} Hz' for w in b.frequencies)}"
-        for b in found.boundaries
-        if b.frequencies
-    ]
+    ends = [(b.gain, [f"{decimal(w / tau)} Hz" for w in b.frequencies]) for b in found.boundaries]
+    places = [f"{found.gain} = {decimal(gain)} at {', '.join(hertz)}" for gain, hertz in ends if hertz]
     if places:
         blocks.append(text(f"Poles are on the axis for {'; '.join(places)}."))
     margins = [f"gain margin {decimal(m.factor)}" for m in found.gain_margins]
