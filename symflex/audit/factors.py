@@ -7,21 +7,14 @@ How the ratio of two functions behaves as s tends to zero is known from exact po
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
-from symflex.audit.field import UNIT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpq_mpoly, fmpz_mpoly
-
-    from symflex.audit.field import Arithmetic
+from symflex.audit.field import UNIT, Arithmetic
 
 MOST_TERMS = 20_000
 

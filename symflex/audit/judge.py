@@ -20,16 +20,14 @@ from symflex.audit.numeric import (
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
-from symflex.expressions import Sum, format_expression, nodes
-from symflex.model import Definition
+from symflex.expressions import Expression, Sum, format_expression, nodes
+from symflex.model import Definition, Model, Published
 from symflex.model.units import constant_measure
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symflex.expressions import Expression
-    from symflex.model import Model, Published
     from symflex.transfer import TransferFunction
 
 Verdict = Literal["equal", "differs", "agrees", "undecided"]

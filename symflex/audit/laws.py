@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import pi, prod
 from typing import TYPE_CHECKING, Literal
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, behaviour_at_zero, full_angles, lowest_terms
@@ -23,8 +23,6 @@ from symflex.expressions import Expression, format_expression, quotient
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
 
     from symflex.audit.numeric import Numbers
     from symflex.audit.reading import FormulaReading

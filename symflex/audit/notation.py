@@ -13,7 +13,7 @@ from flint import fmpq, fmpq_mat
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import full_angles, lowest_terms
-from symflex.audit.field import HOLE, UNIT
+from symflex.audit.field import HOLE, UNIT, Arithmetic
 from symflex.expressions import (
     Call,
     Expression,
@@ -32,7 +32,6 @@ from symflex.expressions import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.audit.field import Arithmetic
     from symflex.audit.reading import FormulaReading
 
 MOST_DEGREE = 4

@@ -13,8 +13,8 @@ from flint import acb, arb
 
 from symflex.algebra import LAPLACE
 from symflex.balls import ball, precision, precisions
-from symflex.model import ExactValue
-from symflex.transfer import bind
+from symflex.model import ExactValue, Model
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import principal_values
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from symflex.audit.reading import Formula
     from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.transfer import BoundTransferFunction, TransferFunction
 
 POINTS = 40
 DIGITS = 50

@@ -7,20 +7,10 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored
+from symflex.algebra import Dispersion, Factored, Kernel
 from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
-from symflex.expressions import (
-    Call,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-)
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
 from symflex.model.analysis import check_printed, lines_in_order, readable_names
 from symflex.transfer.enclose import rational_value
 from symflex.transfer.expansion import compose_rational
@@ -28,7 +18,6 @@ from symflex.transfer.expansion import compose_rational
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.algebra import Dispersion, Kernel
     from symflex.model import Model, Published
     from symflex.transfer import TransferFunction
 

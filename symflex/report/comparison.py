@@ -5,7 +5,7 @@ A new column is a function of :class:`~symflex.report.facts.ModelFacts` and a li
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf
 from typing import TYPE_CHECKING, Final
 
@@ -23,14 +23,11 @@ from symflex.report.document import (
     columns,
     text,
 )
-from symflex.report.facts import ModelFacts
+from symflex.report.facts import ModelFacts, TransferFacts
 from symflex.report.structure import PLACES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from symflex.report.document import Run
-    from symflex.report.facts import TransferFacts
 
 NONE: Final = "–"
 ANCHOR: Final = "comparison"

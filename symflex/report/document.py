@@ -10,24 +10,20 @@ What a section of a report hands over: its blocks, and the files that belong to 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from symflex.errors import UncertifiedError
+from symflex.errors import SymflexError, UncertifiedError
 from symflex.figures import render
 from symflex.print.latex import latex_expression, model_labels
-from symflex.print.mathml import mathml_expression
+from symflex.print.mathml import MathRow, mathml_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.figure import Figure
 
-    from symflex.errors import SymflexError
     from symflex.expressions import Expression
     from symflex.model import Model
-    from symflex.print.mathml import MathRow
 
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]

@@ -15,8 +15,8 @@ from symflex.errors import SymflexError
 from symflex.expressions import format_expression
 from symflex.report.document import Mathematics, mathematics
 from symflex.report.minimum_phase import PhaseCondition, minimum_phase
-from symflex.report.structure import compliances, is_colocated
-from symflex.roots.pole_zero_map import NOT_EXAMINED
+from symflex.report.structure import Compliance, compliances, is_colocated
+from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 
 if TYPE_CHECKING:
     from flint import arb
@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     from symflex.audit import Audit
     from symflex.loops import DynamicColocation, StabilityMap
     from symflex.model import Model
-    from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import platform
 import re
-from collections.abc import Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
@@ -30,20 +30,17 @@ from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, filled, text
+from symflex.report.document import Badge, Block, Cell, Code, PageLink, Section, Table, columns, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.roots.pole_zero_map import WORST_FIRST
 from symflex.sweep.run import end_with_parent
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from concurrent.futures import Future
     from pathlib import Path
 
     from symflex.data.measurement import MeasuredResponse
     from symflex.report.claims.claim import Finding, Publication
-    from symflex.report.document import Block, Cell
     from symflex.roots import Progress
 
 MOST_MODELS: Final = 200

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import numpy as np
 
 from symflex import pipeline
-from symflex.analysis.explanation import explain_zeros
-from symflex.analysis.rational import approximate
-from symflex.analysis.response import adaptive_grid, default_band, respond
-from symflex.audit import audit, check_published
+from symflex.analysis.explanation import ZeroExplanation, explain_zeros
+from symflex.analysis.rational import RationalApproximation, approximate
+from symflex.analysis.response import SampledResponse, adaptive_grid, default_band, respond
+from symflex.audit import Audit, audit, check_published
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.loops import find_stable_gains
+from symflex.loops import AnyLoop, DynamicColocation, StabilityMap, find_stable_gains
 from symflex.loops.of_model import characteristic_loop, colocation
-from symflex.model import with_numbers
+from symflex.model import Model, with_numbers
 from symflex.options import ColocationOptions
-from symflex.print.forms import print_forms
-from symflex.report.facts import facts_of
-from symflex.report.structure import rigid_counts, undamped_counts
+from symflex.print.forms import PrintedForm, print_forms
+from symflex.report.facts import ModelFacts, facts_of
+from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
 from symflex.transfer import BoundNested, BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
@@ -29,16 +29,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.analysis.explanation import ZeroExplanation
-    from symflex.analysis.rational import RationalApproximation
-    from symflex.analysis.response import SampledResponse
-    from symflex.audit import Audit
     from symflex.data.measurement import MeasuredResponse
-    from symflex.loops import AnyLoop, DynamicColocation, StabilityMap
-    from symflex.model import Model
-    from symflex.print.forms import PrintedForm
-    from symflex.report.facts import ModelFacts
-    from symflex.report.structure import Counts, RigidCounts
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 

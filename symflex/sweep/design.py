@@ -6,7 +6,7 @@ Designs are read from text such as ``k=1e4:1e6:log:200``, ``m_2=1,2,5``, ``l=+-5
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
@@ -26,8 +26,6 @@ from symflex.quantities import parse_quantity
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symflex.roots import Region
     from symflex.transfer import AnyTransferFunction, Given
 

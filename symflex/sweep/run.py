@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import pickle
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from hashlib import sha256
@@ -50,8 +50,6 @@ from symflex.sweep.sweep import Sweep, assembled
 from symflex.transfer.of_model import derive_for_values, pick_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from symflex.model import Model
     from symflex.roots import Progress, Region
     from symflex.sweep.follow import Between, Complexes

@@ -35,16 +35,7 @@ from symflex.data.fitting.problem import (
     with_noise,
     with_rough_noise,
 )
-from symflex.data.fitting.resonances import (
-    LOGARITHMIC,
-    UNITS,
-    Complex,
-    Free,
-    Mask,
-    Real,
-    Resonances,
-    Whole,
-)
+from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions

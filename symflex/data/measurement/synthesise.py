@@ -16,13 +16,12 @@ import numpy.typing as npt
 from symflex.budget import spend
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import band_ends
+from symflex.options import MeasureOptions, band_ends
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
-    from symflex.options import MeasureOptions
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

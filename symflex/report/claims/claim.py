@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import counted
-from symflex.report.document import Aside, Badge, Section, Table, columns, text
+from symflex.report.document import Aside, Badge, Cell, Run, Section, Table, Tone, Verdict, columns, text
 from symflex.report.facts import ModelFacts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from symflex.report.document import Cell, Run, Tone, Verdict
-    from symflex.report.facts import ModelFacts
-
 
 Models = Mapping[str, ModelFacts]
 """Facts by the name of the model's file, without suffix."""

@@ -15,12 +15,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from symflex.errors import counted
-from symflex.report.claims.claim import Finding, judged, model_of
+from symflex.report.claims.claim import Finding, Models, Predicate, judged, model_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symflex.report.claims.claim import Models, Predicate
     from symflex.report.document import Run
     from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
 

@@ -20,18 +20,14 @@ import re
 from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from symflex.errors import SpecError, SymflexError
+from symflex.errors import Span, SpecError, SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.model.reading import Reader
-from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue, parse, read
+from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, NumberValue, TableValue, parse, read
 from symflex.report.claims.claim import Check, Claim, Publication
 from symflex.report.claims.predicates import PREDICATES
-
-if TYPE_CHECKING:
-    from symflex.errors import Span
-    from symflex.model.spec import KeyValue
 
 CLAIMS: Final = "claims.toml"
 VERSION: Final = "symflex-claims"

@@ -28,12 +28,11 @@ from symflex.report.document import (
     picture,
     text,
 )
-from symflex.report.study import attempt, said
+from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
     from symflex.analysis.response import SampledResponse
     from symflex.report.document import Block, Cell, PageFigure
-    from symflex.report.study import Study
     from symflex.transfer import AnyBoundFunction
 
 

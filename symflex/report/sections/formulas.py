@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.audit.text import VERDICTS, audit_document
 from symflex.errors import counted
-from symflex.print.forms import counts_of, with_hidden
+from symflex.print.forms import PrintedForm, counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
 from symflex.print.latex import (
@@ -49,18 +49,15 @@ from symflex.report.document import (
     text,
     unit_text,
 )
-from symflex.report.study import MOST_FUNCTIONS
-from symflex.transfer import TransferFunction
+from symflex.report.study import MOST_FUNCTIONS, Study
+from symflex.transfer import AnyTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.audit import Audit
     from symflex.expressions import Expression
-    from symflex.print.forms import PrintedForm
     from symflex.report.document import Block, Cell, Tone
-    from symflex.report.study import Study
-    from symflex.transfer import AnyTransferFunction
 
 
 def specification_section(study: Study) -> ChapterPart:

@@ -6,9 +6,9 @@ import json
 from math import tau
 from typing import TYPE_CHECKING, Final
 
-from symflex.analysis.explanation import explanation_paragraphs
+from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
-from symflex.loops import degrees
+from symflex.loops import DynamicColocation, StabilityMap, degrees
 from symflex.loops.stability_map import bandwidth_text
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
@@ -28,15 +28,12 @@ from symflex.report.document import (
     text,
 )
 from symflex.report.sections.formulas import ratio
-from symflex.report.study import attempt, said
+from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
     from flint import arb
 
-    from symflex.analysis.explanation import ZeroExplanation
-    from symflex.loops import DynamicColocation, StabilityMap
     from symflex.report.document import Block, Cell, Tone
-    from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
     from symflex.roots.pole_zero_map import StabilityVerdict
 
