@@ -12,10 +12,10 @@ a number, the part with another exponent, another symbol, or a sum of the same t
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, combinations, islice, product
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import by_powers
@@ -46,11 +46,7 @@ from symflex.expressions import (
 )
 from symflex.print.forms import print_form
 from symflex.print.forms.shapes import of_powers, powers_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 # Limits of the search, which is an offer and need not find anything.
 MOST_PARTS = 150

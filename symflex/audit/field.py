@@ -23,14 +23,13 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.algebra.normal_form import with_image
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
 
 # Limits of what is read exactly, so that a hostile formula cannot take minutes; beyond them, the printed and
 # the derived function are compared by numbers.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from symflex.audit.corrections import Change, Correction, find_correction
 from symflex.audit.field import UnreadError
@@ -23,12 +24,8 @@ from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, neare
 from symflex.expressions import Expression, Sum, format_expression, nodes
 from symflex.model import Definition, Model, Published
 from symflex.model.units import constant_measure
+from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.transfer import TransferFunction
 
 Verdict = Literal["equal", "differs", "agrees", "undecided"]
 

@@ -7,25 +7,22 @@ output are colocated, zeros and poles alternate on the imaginary axis (Foster 19
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import pi, prod
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, behaviour_at_zero, full_angles, lowest_terms
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
+from symflex.audit.numeric import Numbers
+from symflex.audit.reading import FormulaReading
 from symflex.balls import precision
 from symflex.expressions import Expression, format_expression, quotient
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.audit.numeric import Numbers
-    from symflex.audit.reading import FormulaReading
 
 How = Literal["proved", "measured"]
 AXIS_POINTS = 800

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import lcm, prod
-from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import full_angles, lowest_terms
 from symflex.audit.field import HOLE, UNIT, Arithmetic
+from symflex.audit.reading import FormulaReading
 from symflex.expressions import (
     Call,
     Expression,
@@ -28,11 +29,6 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.audit.reading import FormulaReading
 
 MOST_DEGREE = 4
 MOST_SYMBOLS = 6

@@ -5,23 +5,19 @@ A ball that excludes equality proves a difference; balls that agree prove nothin
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import LAPLACE
+from symflex.audit.reading import Formula
 from symflex.balls import ball, precision, precisions
+from symflex.expressions import Expression
 from symflex.model import ExactValue, Model
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import principal_values
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.audit.reading import Formula
-    from symflex.expressions import Expression
 
 POINTS = 40
 DIGITS = 50

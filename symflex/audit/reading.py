@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Dispersion, Factored, Kernel
 from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
 from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.model import Model, Published
 from symflex.model.analysis import check_printed, lines_in_order, readable_names
+from symflex.transfer import TransferFunction
 from symflex.transfer.enclose import rational_value
 from symflex.transfer.expansion import compose_rational
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.model import Model, Published
-    from symflex.transfer import TransferFunction
 
 MOST_GROWTHS = 200
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import counted
 from symflex.report.document import (
@@ -17,6 +17,7 @@ from symflex.report.document import (
     Code,
     PageLink,
     Paragraph,
+    Run,
     Section,
     Side,
     Table,
@@ -25,9 +26,6 @@ from symflex.report.document import (
 )
 from symflex.report.facts import ModelFacts, TransferFacts
 from symflex.report.structure import PLACES
-
-if TYPE_CHECKING:
-    from symflex.report.document import Run
 
 NONE: Final = "–"
 ANCHOR: Final = "comparison"

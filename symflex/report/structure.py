@@ -15,8 +15,11 @@ roots that stay.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
+
+from flint import fmpz_mpoly
 
 from symflex import pipeline
 from symflex.algebra import LAPLACE, Factored, Ring
@@ -33,14 +36,6 @@ from symflex.expressions import (
 )
 from symflex.model import Input, Model, ModelParameter, Output, PlacedElement, with_numbers
 from symflex.print.forms.notation import names_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
-
-    from flint import fmpz_mpoly
-
-    from symflex.expressions import Expression
-
 
 Place = Literal["base", "transmission", "link", "contact"]
 PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")

@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import product
 from math import pi, prod
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -23,12 +23,9 @@ from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Tex
 from symflex.loops import pick_gain
 from symflex.model import ExactValue, Model, ModelParameter, check_value, with_numbers
 from symflex.quantities import parse_quantity
+from symflex.roots import Region
+from symflex.transfer import AnyTransferFunction, Given
 from symflex.transfer.bind import read_values
-
-if TYPE_CHECKING:
-    from symflex.roots import Region
-    from symflex.transfer import AnyTransferFunction, Given
-
 
 Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]

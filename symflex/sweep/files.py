@@ -13,11 +13,11 @@ import json
 import os
 import shutil
 import zipfile
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from hashlib import sha256
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,14 +27,9 @@ from symflex.errors.optional import installed
 from symflex.files import write
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes
+from symflex.sweep.design import Array, Rows
 from symflex.sweep.points import MARGINS, VERDICTS
 from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from symflex.sweep.design import Array, Rows
-
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)
 """The date of every file in an archive."""

@@ -18,7 +18,6 @@ from multiprocessing import connection, get_context, parent_process
 from pathlib import Path
 from threading import Thread
 from time import monotonic
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,8 +27,10 @@ from symflex.errors.optional import installed
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
+from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
+from symflex.roots import Progress, Region
 from symflex.roots.region import region_of
 from symflex.sweep.design import (
     Array,
@@ -45,15 +46,10 @@ from symflex.sweep.design import (
     written,
 )
 from symflex.sweep.files import FolderJournal, check_writable, open_journal, sweep_bytes
+from symflex.sweep.follow import Between, Complexes
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
 from symflex.sweep.sweep import Sweep, assembled
 from symflex.transfer.of_model import derive_for_values, pick_pairs
-
-if TYPE_CHECKING:
-    from symflex.model import Model
-    from symflex.roots import Progress, Region
-    from symflex.sweep.follow import Between, Complexes
-
 
 CONNECT_SECONDS = 10
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
@@ -37,14 +38,9 @@ from symflex.data.fitting.problem import (
 )
 from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
-
-    from symflex.data.measurement import MeasuredResponse
 
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8

@@ -24,20 +24,16 @@ step for 50,000 lines costs what forming their derivatives costs.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
+from symflex.data.fitting.problem import FitProblem, FittedLines
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from symflex.data.fitting.problem import FitProblem, FittedLines
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""

@@ -10,24 +10,20 @@ Pereyra 1973), from those of a fit to the driven point, where poles show best. A
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import least_squares
 
+from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.lines import isolated, wild_lines
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
 from symflex.quantities import parse_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.data.fitting.fit import ResonanceFit
-    from symflex.data.measurement import MeasuredResponse
 
 STEP = 1e-6
 """Of the logarithms by which derivatives are taken."""

@@ -9,16 +9,13 @@ factorisation of the widest, and told apart by the BIC. The sign of the gain is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 from symflex.data.fitting.starts import solved_real
-
-if TYPE_CHECKING:
-    from symflex.data.fitting.problem import FitProblem
 
 TURNS, PER_TURN = 2.5, 8
 """Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""

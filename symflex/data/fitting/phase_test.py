@@ -21,16 +21,14 @@ there is none, not even with a lag linear in frequency, is the function called n
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from scipy.signal import medfilt
 
 from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
+from symflex.data.fitting.problem import FitProblem, FittedLines
 from symflex.data.fitting.resonances import Complex, Real, Resonances
-
-if TYPE_CHECKING:
-    from symflex.data.fitting.problem import FitProblem, FittedLines
 
 Verdict = Literal["minimum", "undetermined", "nonminimum"]
 

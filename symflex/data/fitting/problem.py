@@ -11,8 +11,8 @@ Gaussian errors, found by multiplicative steps that never lower it (Fevotte & Id
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +20,7 @@ from symflex.data.fitting.lines import telling_lines, written_step
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
 from symflex.data.fitting.starts import generous_fit
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.data.measurement import MeasuredResponse
+from symflex.data.measurement import MeasuredResponse
 
 FEWEST_FOR_SLOPE = 5
 """Lines from which a power of s is guessed."""

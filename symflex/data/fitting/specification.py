@@ -12,26 +12,22 @@ import os
 import re
 import tomllib
 import unicodedata
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.fit import ResonanceFit
+from symflex.data.fitting.resonances import Resonances
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, UsageError
 from symflex.model import load_with
 from symflex.model.scope import RESERVED
 from symflex.model.spec import read
 from symflex.model.spec.write import write
 from symflex.transfer.of_model import assemble, check_solvable
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
-    from symflex.data.fitting.fit import ResonanceFit
-    from symflex.data.fitting.resonances import Resonances
 
 DIGITS = 9
 FREE_NAMES = ("U", "Y")

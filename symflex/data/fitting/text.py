@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from math import floor, isfinite, log10, pi, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 from symflex.print.text import INDENT, Passage, passages_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 
 SCHEMA: Final = "symflex.fit/1"
 ERROR_DIGITS: Final = 2

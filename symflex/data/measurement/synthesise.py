@@ -7,8 +7,10 @@ abs(S_xy)^2/(S_xx S_yy) (Bendat & Piersol, Random Data, 4th ed. 2010, sections 6
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from fractions import Fraction
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,11 +19,6 @@ from symflex.budget import spend
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import MeasureOptions, band_ends
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from fractions import Fraction
-
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

@@ -12,16 +12,13 @@ Finding(verdict='holds', evidence=('X/F has no zeros and 2 poles.',))
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import Final
 
 from symflex.errors import counted
 from symflex.report.claims.claim import Finding, Models, Predicate, judged, model_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.report.document import Run
-    from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
+from symflex.report.document import Run
+from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
 
 
 def modes_at(

@@ -6,10 +6,11 @@ import csv
 import io
 import re
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from symflex.analysis.response import SampledResponse
 from symflex.codegen.exporters import EXPORTERS
 from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
@@ -18,9 +19,12 @@ from symflex.figures.axes import FREE
 from symflex.files.write import free_name
 from symflex.model import Figure
 from symflex.report.document import (
+    Block,
+    Cell,
     ChapterPart,
     Code,
     Notice,
+    PageFigure,
     PageLink,
     Table,
     code_of,
@@ -29,12 +33,7 @@ from symflex.report.document import (
     text,
 )
 from symflex.report.study import Study, attempt, said
-
-if TYPE_CHECKING:
-    from symflex.analysis.response import SampledResponse
-    from symflex.report.document import Block, Cell, PageFigure
-    from symflex.transfer import AnyBoundFunction
-
+from symflex.transfer import AnyBoundFunction
 
 MOST_CURVES: Final = 4
 WORDS: Final = {
