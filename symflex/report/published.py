@@ -6,17 +6,20 @@ import os
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import Diagnostic, SymflexError, counted
 from symflex.files.examples import file_or_example
 from symflex.files.write import check_folder, write_tree
+from symflex.options import ReportOptions
 from symflex.report.article import report_article
 from symflex.report.page import report_page
 from symflex.report.report import (
+    Report,
     compose,
     find_claims,
     find_measurements,
@@ -24,13 +27,7 @@ from symflex.report.report import (
     name_specifications,
     write_chapters,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from symflex.options import ReportOptions
-    from symflex.report.report import Report
-    from symflex.roots import Progress
+from symflex.roots import Progress
 
 
 @dataclass(frozen=True, slots=True)

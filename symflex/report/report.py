@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
 from multiprocessing import get_context
+from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.budget import TIME_OVER, Budget, entered_budget
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import (
     BudgetError,
     Diagnostic,
@@ -27,21 +29,22 @@ from symflex.errors import (
 from symflex.errors.diagnostic import printable
 from symflex.files.write import free_name
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
-from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
+from symflex.report.claims.claim import (
+    Finding,
+    Publication,
+    claim_section,
+    claims_json,
+    judge_all,
+    publication_of,
+)
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Badge, Block, Cell, Code, PageLink, Section, Table, columns, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
+from symflex.roots import Progress
 from symflex.roots.pole_zero_map import WORST_FIRST
 from symflex.sweep.run import end_with_parent
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from symflex.data.measurement import MeasuredResponse
-    from symflex.report.claims.claim import Finding, Publication
-    from symflex.roots import Progress
 
 MOST_MODELS: Final = 200
 TICK: Final = 0.5

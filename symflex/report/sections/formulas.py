@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
+from symflex.audit import Audit
 from symflex.audit.text import VERDICTS, audit_document
 from symflex.errors import counted
+from symflex.expressions import Expression
 from symflex.print.forms import PrintedForm, counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
@@ -31,6 +34,8 @@ from symflex.print.mathml import (
 )
 from symflex.report.document import (
     Badge,
+    Block,
+    Cell,
     ChapterPart,
     Code,
     DisplayedFormula,
@@ -39,6 +44,7 @@ from symflex.report.document import (
     Notice,
     Section,
     Table,
+    Tone,
     columns,
     exponents,
     filled,
@@ -51,13 +57,6 @@ from symflex.report.document import (
 )
 from symflex.report.study import MOST_FUNCTIONS, Study
 from symflex.transfer import AnyTransferFunction, TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.audit import Audit
-    from symflex.expressions import Expression
-    from symflex.report.document import Block, Cell, Tone
 
 
 def specification_section(study: Study) -> ChapterPart:

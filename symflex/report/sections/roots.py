@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from math import tau
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+from flint import arb
 
 from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
@@ -14,11 +16,14 @@ from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
     Badge,
+    Block,
+    Cell,
     ChapterPart,
     Code,
     Notice,
     Section,
     Table,
+    Tone,
     code_of,
     columns,
     exponents,
@@ -29,14 +34,8 @@ from symflex.report.document import (
 )
 from symflex.report.sections.formulas import ratio
 from symflex.report.study import Study, attempt, said
-
-if TYPE_CHECKING:
-    from flint import arb
-
-    from symflex.report.document import Block, Cell, Tone
-    from symflex.roots import PoleZeroMap
-    from symflex.roots.pole_zero_map import StabilityVerdict
-
+from symflex.roots import PoleZeroMap
+from symflex.roots.pole_zero_map import StabilityVerdict
 
 DIGITS: Final = 10
 LONGEST: Final = 80
