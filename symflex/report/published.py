@@ -76,7 +76,7 @@ def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | Non
     write_tree(folder, {**report.files, "report.tex": tex.encode(), page.name: report_page(report).encode()})
     if pdf is False:
         return PublishedReport(page, None, "", 0)
-    if shutil.which(COMPILER) is None:
+    if not has_compiler():
         problem = "no report.pdf: there is no pdflatex on this computer; report.tex is written"
         return PublishedReport(page, None, f"{problem}\n  hint: {HOW_TO}", 2 if pdf else 0)
     progress.report(0.92, "pdflatex")
@@ -101,6 +101,11 @@ HOW_TO: Final = (
 )
 _LAST_LINES: Final = 12
 BY_HAND: Final = "report.tex is written: compile it by hand, or ask for --no-pdf"
+
+
+def has_compiler() -> bool:
+    """Tell whether the computer has pdflatex."""
+    return shutil.which(COMPILER) is not None
 
 
 def compile_pdf(tex: str, figures: Mapping[str, bytes], epoch: int | None) -> bytes:
