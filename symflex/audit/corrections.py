@@ -12,10 +12,10 @@ a number, the part with another exponent, another symbol, or a sum of the same t
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, combinations, islice, product
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import by_powers
@@ -46,11 +46,7 @@ from symflex.expressions import (
 )
 from symflex.print.forms import print_form
 from symflex.print.forms.shapes import of_powers, powers_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 # Limits of the search, which is an offer and need not find anything.
 MOST_PARTS = 150
@@ -243,9 +239,8 @@ def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
     reading, part = wanted.reading, wanted.part
     others: list[Expression] = []
     if isinstance(part, Name):
-        others = [
-            Name(n) for n in (*reading.lines, "s", *sorted(reading.formula.parameters)) if n != part.name
-        ]
+        known = (*reading.lines, "s", *sorted(reading.formula.parameters))
+        others = [Name(n) for n in known if n != part.name]
     elif isinstance(part, Call):
         others = [Call(f, part.argument) for f in FUNCTION_SWAPS if f != part.name]
     for other in others:
@@ -567,7 +562,8 @@ def _replaced(expression: Expression, part: Expression, new: Expression) -> Expr
         case Product() if isinstance(new, Quotient) and new in children:
             return quotient(product_of(map(_above, children)), product_of(map(_below, children)))
         case Product():
-            return product_of(children) if is_number(new, 1) else Product(tuple(_flat(children)))
+            flat = (f for c in children for f in (c.factors if isinstance(c, Product) else (c,)))
+            return product_of(children) if is_number(new, 1) else Product(tuple(flat))
         case Negative():
             inner = children[0]
             return inner.operand if isinstance(inner, Negative) else Negative(inner)
@@ -579,15 +575,7 @@ def _replaced(expression: Expression, part: Expression, new: Expression) -> Expr
             return Power(children[0], children[1])
         case Call(name):
             return Call(name, children[0])
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
-
-
-def _flat(children: list[Expression]) -> list[Expression]:
-    flat: list[Expression] = []
-    for child in children:
-        flat.extend(child.factors if isinstance(child, Product) else [child])
-    return flat
+    raise TypeError(f"unexpected expression {type(expression).__name__}")
 
 
 def _above(expression: Expression) -> Expression:

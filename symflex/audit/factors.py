@@ -7,21 +7,14 @@ How the ratio of two functions behaves as s tends to zero is known from exact po
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
-from symflex.audit.field import UNIT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpq_mpoly, fmpz_mpoly
-
-    from symflex.audit.field import Arithmetic
+from symflex.audit.field import UNIT, Arithmetic
 
 MOST_TERMS = 20_000
 
@@ -89,11 +82,8 @@ def _half_angles(field: Arithmetic, ring: Ring, polynomial: fmpz_mpoly) -> fmpz_
 
 
 def _has_roots(field: Arithmetic, part: fmpz_mpoly) -> bool:
-    degrees = part.degrees()
-    return any(
-        int(d) and n.startswith(("root(", "sum(", UNIT))
-        for n, d in zip(field.ring.names, degrees, strict=True)
-    )
+    used = (n for n, d in zip(field.ring.names, part.degrees(), strict=True) if int(d))
+    return any(name.startswith(("root(", "sum(", UNIT)) for name in used)
 
 
 def _varying(field: Arithmetic) -> list[int]:
@@ -144,9 +134,8 @@ def full_angles(field: Arithmetic, ring: Ring, factor: fmpz_mpoly) -> Factored |
     return field.reduced(total)
 
 
-FIRST_TERMS = 8
-LAST_TERMS = 64
-"""Terms of a power series: tried first, and doubled until the last."""
+TERMS = (8, 16, 32, 64)
+"""Of a power series, tried in turn."""
 LARGEST_FACTOR = 60
 MOST_WAVES = 3
 """Larger factors take too long; the limit is then left open."""
@@ -169,43 +158,32 @@ def _leading(field: Arithmetic, factor: fmpz_mpoly) -> tuple[Factored, Fraction]
     steps = _steps(field)
     sums = any(n.startswith("sum(") for n in field.ring.used_in((factor,)))
     used = [i for i in range(len(steps)) if _holds(field, factor, i)]
-    if sums or len(used) > MOST_WAVES or len(factor) > LARGEST_FACTOR:
-        return None
-    if any(steps[i] < 0 for i in used):
+    if sums or len(used) > MOST_WAVES or len(factor) > LARGEST_FACTOR or any(steps[i] < 0 for i in used):
         return None
     names = tuple(f"x{i}" for i in range(len(field.ring.names)))
     context = fmpq_mpoly_ctx.get(names, Ordering.lex)
     rational = context.from_dict({tuple(int(e) for e in m): int(c) for m, c in factor.terms()})
-    terms = FIRST_TERMS
-    while terms <= LAST_TERMS:
+    for terms in TERMS:
         images = [context.gen(i) for i in range(len(names))]
         highest = None
-        for i in used:
+        for i in (i for i in used if steps[i]):
             step = steps[i]
-            if step == 0:
-                continue
             places = [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
             argument = context.gen(places[0]) * context.gen(0) ** step
             images[places[0]], images[places[1]], images[places[2]] = _series(argument, terms)
             highest = min(highest or step * terms, step * terms)
         found = _lowest(field, rational.compose(*images, ctx=context), used, highest)
-        if found is not None:
+        if found is not None or highest is None:
             return found
-        if highest is None:
-            return None
-        terms *= 2
     return None
 
 
 def _steps(field: Arithmetic) -> list[int]:
     """Return per base argument the power of the root of s in it, -1 where it is more than a power."""
-    found = []
-    for wave in field.ground.waves:
-        if any(name.startswith("sum(") for name, _ in wave.key):
-            found.append(-1)
-            continue
-        found.append(int(dict(wave.key).get(LAPLACE, Fraction(0)) * field.ground.order))
-    return found
+    keys, order = [dict(wave.key) for wave in field.ground.waves], field.ground.order
+    are_powers = [not any(name.startswith("sum(") for name in key) for key in keys]
+    powers = [int(key.get(LAPLACE, Fraction(0)) * order) for key in keys]
+    return [power if is_power else -1 for power, is_power in zip(powers, are_powers, strict=True)]
 
 
 def _holds(field: Arithmetic, factor: fmpz_mpoly, wave: int) -> bool:
@@ -215,18 +193,11 @@ def _holds(field: Arithmetic, factor: fmpz_mpoly, wave: int) -> bool:
 
 def _series(x: fmpq_mpoly, terms: int) -> tuple[fmpq_mpoly, fmpq_mpoly, fmpq_mpoly]:
     """Return exp, cos and sin of x up to the power ``terms``."""
-    grown, even, odd, power = x * 0 + 1, x * 0 + 1, x * 0, x * 0 + 1
-    factorial = 1
+    row = [x * 0 + 1]
     for n in range(1, terms + 1):
-        power, factorial = power * x, factorial * n
-        term = power * fmpq(1, factorial)
-        grown = grown + term
-        sign = -1 if n // 2 % 2 else 1
-        if n % 2:
-            odd = odd + sign * term
-        else:
-            even = even + sign * term
-    return grown, even, odd
+        row.append(row[-1] * x * fmpq(1, n))
+    signed = [-term if n // 2 % 2 else term for n, term in enumerate(row)]
+    return sum(row, x * 0), sum(signed[::2], x * 0), sum(signed[1::2], x * 0)
 
 
 def _lowest(
@@ -236,10 +207,8 @@ def _lowest(
     waves = {field.ring.index[f"exp({i})"]: _monomial(field, i) for i in used}
     by_power: dict[int, list[tuple[tuple[int, ...], Fraction]]] = {}
     for monomial, coefficient in expanded.terms():
-        exponents = tuple(int(e) for e in monomial)
-        by_power.setdefault(exponents[0], []).append(
-            (exponents, Fraction(int(coefficient.p), int(coefficient.q)))
-        )
+        exponents, rational = tuple(map(int, monomial)), Fraction(int(coefficient.p), int(coefficient.q))
+        by_power.setdefault(exponents[0], []).append((exponents, rational))
     for power in sorted(by_power):
         if highest is not None and power > highest:
             return None
@@ -248,15 +217,8 @@ def _lowest(
             term = field.number(rational)
             for i, exponent in enumerate(exponents[1:], start=1):
                 if exponent:
-                    term = (
-                        term
-                        * (
-                            waves[i]
-                            if i in waves
-                            else Factored.polynomial(field.ring, field.ring.context.gen(i))
-                        )
-                        ** exponent
-                    )
+                    plain = Factored.polynomial(field.ring, field.ring.context.gen(i))
+                    term = term * waves.get(i, plain) ** exponent
             total = total + term
         if not field.is_zero(total):
             return field.reduced(total), Fraction(power)

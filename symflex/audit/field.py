@@ -23,14 +23,13 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.algebra.normal_form import with_image
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
 
 # Limits of what is read exactly, so that a hostile formula cannot take minutes; beyond them, the printed and
 # the derived function are compared by numbers.
@@ -97,11 +96,9 @@ class Ground:
         ground = replace(self, **more)  # type: ignore[arg-type]
         size = len(ground.primes) + len(ground.sums) + 3 * len(ground.waves)
         if ground.order > FINEST_ROOT:
-            message = f"it needs roots of higher order than {FINEST_ROOT}"
-            raise UnreadError(message)
+            raise UnreadError(f"it needs roots of higher order than {FINEST_ROOT}")
         if size > MOST_GENERATORS:
-            message = "it has too many different roots and functions"
-            raise UnreadError(message)
+            raise UnreadError("it has too many different roots and functions")
         return ground
 
 
@@ -116,16 +113,8 @@ class Arithmetic:
         """Polynomials in all generators."""
         g = self.ground
         waves = [f"{name}({i})" for i in range(len(g.waves)) for name in ("exp", "cos", "sin")]
-        return Ring(
-            (
-                *g.names,
-                *(f"root({p})" for p in g.primes),
-                *(f"sum({i})" for i in range(len(g.sums))),
-                UNIT,
-                *waves,
-                HOLE,
-            )
-        )
+        roots, sums = [f"root({p})" for p in g.primes], [f"sum({i})" for i in range(len(g.sums))]
+        return Ring((*g.names, *roots, *sums, UNIT, *waves, HOLE))
 
     # ------------------------------------------------------------------------------------------ values
 
@@ -172,11 +161,8 @@ class Arithmetic:
             n = exponent.numerator
             bits = max(abs(value.unit.numerator).bit_length(), value.unit.denominator.bit_length())
             if bits * abs(n) > LARGEST_NUMBER_BITS:
-                message, hint = (
-                    f"a number would exceed {LARGEST_NUMBER_BITS} bits",
-                    "name the power in 'where'",
-                )
-                raise BudgetError(Diagnostic("SF501", message, None, hint))
+                message = f"a number would exceed {LARGEST_NUMBER_BITS} bits"
+                raise BudgetError(Diagnostic("SF501", message, None, "name the power in 'where'"))
             return value**n
         unit = self.ring.generator(UNIT)
         turns = (2 if value.unit < 0 else 0) + sum(e for f, e in value.factors if f == unit)
@@ -185,8 +171,7 @@ class Arithmetic:
         # power or reciprocal, the roots of the parts need not multiply to the root of the whole.
         mixed = [e for factor, times in factors for e in self._mixed(factor, times)]
         if mixed and (mixed != [1] or turns % 2):
-            message = "it takes the root of a product, power or reciprocal of differences"
-            raise UnreadError(message)
+            raise UnreadError("it takes the root of a product, power or reciprocal of differences")
         is_flipped = bool(mixed) and turns % 4 == SQUARE
         result = self._number_power(abs(value.unit), exponent)
         if not is_flipped:
@@ -249,8 +234,7 @@ class Arithmetic:
             self._grow_for_root(name, total.denominator)
         parts = self._parts(factor)
         if parts is None:
-            message = "it takes a root that is not one of s and the parameters"
-            raise UnreadError(message)
+            raise UnreadError("it takes a root that is not one of s and the parameters")
         result = self._number_power(Fraction(parts[0]), total)
         for recipe, power in parts[1]:
             turned = is_flipped and not self._is_sum_of_positives(recipe)
@@ -286,8 +270,7 @@ class Arithmetic:
             raise GrowError(g.grown(waves=(*g.waves[:wave], finer, *g.waves[wave + 1 :])))
         if name.startswith(("cos(", "sin(", HOLE, UNIT)) or (name in g.names and name not in g.rootable):
             what = "the imaginary unit" if name == UNIT else "a function" if "(" in name else f"'{name}'"
-            message = f"it takes a root of {what}"
-            raise UnreadError(message)
+            raise UnreadError(f"it takes a root of {what}")
         raise GrowError(g.grown(order=g.order * denominator))
 
     def _is_positive(self, factor: fmpz_mpoly) -> bool:
@@ -345,8 +328,7 @@ class Arithmetic:
         if name == "sqrt":
             return self.power(argument, Fraction(1, 2))
         if name == "log":
-            message = "it takes a logarithm"
-            raise UnreadError(message)
+            raise UnreadError("it takes a logarithm")
         real, imaginary = self._multiples(argument)
         if name in CIRCULAR and not imaginary:
             cosine, sine = self._circular(real)
@@ -415,8 +397,7 @@ class Arithmetic:
                 expanded = expanded * Factored.polynomial(self.ring, factor) ** exponent
                 continue
             if parts is None:
-                message = "the argument of a function has a denominator that holds functions"
-                raise UnreadError(message)
+                raise UnreadError("the argument of a function has a denominator that holds functions")
             common = common * Fraction(parts[0]) ** exponent
             for recipe, times in parts[1]:
                 common = common * self._root_of_sum(recipe) ** (times * exponent * self.ground.order)
@@ -438,8 +419,7 @@ class Arithmetic:
             if not exponent:
                 continue
             if name == HOLE or name.startswith(("exp(", "cos(", "sin(")):
-                message = "the argument of a function holds another function of s"
-                raise UnreadError(message)
+                raise UnreadError("the argument of a function holds another function of s")
             if name.startswith("root("):
                 whole, rest = divmod(exponent, g.order)
                 number *= Fraction(int(name[5:-1])) ** whole
@@ -498,24 +478,19 @@ class Arithmetic:
         """Return ``left / right`` when it is a number times powers of s and the parameters."""
         ratio = left / right
         above, below = self.reduce(ratio.numerator().expand()), self.reduce(ratio.denominator().expand())
-        candidate = Factored.number(
-            self.ring, Fraction(int(above.leading_coefficient()), int(below.leading_coefficient()))
-        )
-        for i, (n, m) in enumerate(zip(above.monoms()[0], below.monoms()[0], strict=True)):
+        leading = Fraction(int(above.leading_coefficient()), int(below.leading_coefficient()))
+        candidate = Factored.number(self.ring, leading)
+        for name, n, m in zip(self.ring.names, above.monoms()[0], below.monoms()[0], strict=True):
             if int(n) != int(m):
-                if self.ring.names[i].startswith(("exp(", "cos(", "sin(", HOLE)):
+                if name.startswith(("exp(", "cos(", "sin(", HOLE)):
                     return None
-                candidate = candidate * Factored.polynomial(self.ring, self.ring.context.gen(i)) ** (
-                    int(n) - int(m)
-                )
+                candidate = candidate * Factored.generator(self.ring, name) ** (int(n) - int(m))
         return candidate if self.equal(left, right * candidate) else None
 
     def depends_on_functions(self, value: Factored) -> bool:
         """Tell whether exponentials or circular functions occur."""
-        first = self.ring.index.get("exp(0)")
-        if first is None:
-            return False
-        return any(any(int(d) for d in f.degrees()[first:]) for f, _ in value.factors)
+        first = self.ring.index.get("exp(0)", len(self.ring.names))
+        return any(any(map(int, f.degrees()[first:])) for f, _ in value.factors)
 
 
 def _recipe_of_plain(names: Sequence[str], part: fmpz_mpoly) -> Recipe:
@@ -538,10 +513,8 @@ def ground_of(parameters: Sequence[tuple[str, bool]]) -> Ground:
 
 def _common_unit(left: Fraction, right: Fraction) -> Fraction:
     """Return the largest number of which both are integer multiples."""
-    return Fraction(
-        gcd(left.numerator * right.denominator, right.numerator * left.denominator),
-        left.denominator * right.denominator,
-    )
+    common = gcd(left.numerator * right.denominator, right.numerator * left.denominator)
+    return Fraction(common, left.denominator * right.denominator)
 
 
 def _primes(number: int) -> list[tuple[int, int]]:
@@ -555,6 +528,5 @@ def _primes(number: int) -> list[tuple[int, int]]:
             found.append((candidate, times))
         candidate += 1
     if rest.bit_length() > LARGEST_COFACTOR_BITS:
-        message = "it takes the root of a large number"
-        raise UnreadError(message)
+        raise UnreadError("it takes the root of a large number")
     return [*found, (rest, 1)] if rest > 1 else found

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
 
 from symflex.audit.corrections import Change, Correction, find_correction
 from symflex.audit.field import UnreadError
@@ -20,17 +21,11 @@ from symflex.audit.numeric import (
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
-from symflex.expressions import Sum, format_expression, nodes
-from symflex.model import Definition
+from symflex.expressions import Expression, Sum, format_expression, nodes
+from symflex.model import Definition, Model, Published
 from symflex.model.units import constant_measure
+from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model import Model, Published
-    from symflex.transfer import TransferFunction
 
 Verdict = Literal["equal", "differs", "agrees", "undecided"]
 
@@ -138,19 +133,14 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
         except BudgetError:  # what is not found within the limits is not reported
             spend()
             reading = None
-    return Audit(
-        audit.tf,
-        audit.published,
-        audit.formula,
-        audit.verdict,
-        audit.unread,
-        ratio,
-        correction,
-        derived,
-        audit.comparison,
-        None if measured is None or vanishes else largest_deviation(measured),
-        () if vanishes else check_laws(reading, measured),
-        tuple(_disagreeing_sums(audit.published, audit.tf.model)),
+    return replace(
+        audit,
+        ratio=ratio,
+        correction=correction,
+        derived=derived,
+        deviation=None if measured is None or vanishes else largest_deviation(measured),
+        laws=() if vanishes else check_laws(reading, measured),
+        units=tuple(_disagreeing_sums(audit.published, audit.tf.model)),
     )
 
 

@@ -7,27 +7,22 @@ output are colocated, zeros and poles alternate on the imaginary axis (Foster 19
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import pi, prod
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, behaviour_at_zero, full_angles, lowest_terms
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
+from symflex.audit.numeric import Numbers
+from symflex.audit.reading import FormulaReading
 from symflex.balls import precision
 from symflex.expressions import Expression, format_expression, quotient
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.audit.numeric import Numbers
-    from symflex.audit.reading import FormulaReading
 
 How = Literal["proved", "measured"]
 AXIS_POINTS = 800
@@ -74,46 +69,31 @@ def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple
 def _poles(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
     extra = _without(printed.poles, derived.poles)
     missing = _without(derived.poles, printed.poles)
-    if not extra and not missing:
-        detail = "the denominators vanish at the same s, equally often"
-        return LawCheck("poles", True, "proved", detail)
-    parts = []
-    if extra:
-        parts.append(f"it has poles that the system does not have{_where_zero(reading, printed, extra)}")
-    if missing:
-        parts.append(f"poles of the system are missing{_where_zero(reading, derived, missing)}")
+    wrong = (
+        ("it has poles that the system does not have", printed, extra),
+        ("poles of the system are missing", derived, missing),
+    )
+    told = [(said, _shown(reading, terms, factors)) for said, terms, factors in wrong if factors]
+    if not told:
+        return LawCheck("poles", True, "proved", "the denominators vanish at the same s, equally often")
+    parts = [f"{said}, where {text} = 0" if text else said for said, text in told]
     return LawCheck("poles", False, "proved", "; ".join(parts))
 
 
-def _where_zero(
-    reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]
-) -> str:
-    text = _shown(reading, terms, factors)
-    return f", where {text} = 0" if text else ""
-
-
-def _double_zeros(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck | None:
+def _double_zeros(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
     double = [(f, e) for f, e in printed.zeros if e > 1 and (f, e) not in derived.zeros]
-    if not double:
-        return LawCheck(
-            "double zeros", True, "proved", "the numerator has no repeated factor the derived one lacks"
-        )
     shown = [(_shown(reading, printed, [(f, 1)]), e) for f, e in double]
     texts = [f"({text})^{e}" if text else f"one of multiplicity {e}" for text, e in shown]
-    return LawCheck(
-        "double zeros", False, "proved", f"the numerator has a repeated factor, {' and '.join(texts)}"
-    )
+    detail = "the numerator has no repeated factor the derived one lacks"
+    detail = f"the numerator has a repeated factor, {' and '.join(texts)}" if double else detail
+    return LawCheck("double zeros", not double, "proved", detail)
 
 
 def _without(
     left: Sequence[tuple[fmpz_mpoly, int]], right: Sequence[tuple[fmpz_mpoly, int]]
 ) -> list[tuple[fmpz_mpoly, int]]:
-    found = []
-    for factor, times in left:
-        other = next((e for f, e in right if f == factor), 0)
-        if times > other:
-            found.append((factor, times - other))
-    return found
+    others = [next((e for f, e in right if f == factor), 0) for factor, _ in left]
+    return [(f, times - other) for (f, times), other in zip(left, others, strict=True) if times > other]
 
 
 def _shown(reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
@@ -133,14 +113,12 @@ def _limit(reading: FormulaReading) -> LawCheck | None:
     law = "limit at zero"
     if order == 0 and reading.field.equal(coefficient, reading.field.number(1)):
         return LawCheck(law, True, "proved", "printed/derived tends to 1 as s tends to 0")
-    varying = coefficient * Factored.generator(reading.field.ring, LAPLACE) ** int(
-        order * reading.field.ground.order
-    )
+    power = int(order * reading.field.ground.order)
+    varying = coefficient * Factored.generator(reading.field.ring, LAPLACE) ** power
     behaviour = _expression_of(reading, varying)
     shown = "" if behaviour is None else format_expression(behaviour)
-    if not 0 < len(shown) <= LONGEST_TEXT:
-        return LawCheck(law, False, "proved", "printed/derived does not tend to 1 as s tends to 0")
-    return LawCheck(law, False, "proved", f"printed/derived behaves as {shown} as s tends to 0")
+    how = f"behaves as {shown}" if 0 < len(shown) <= LONGEST_TEXT else "does not tend to 1"
+    return LawCheck(law, False, "proved", f"printed/derived {how} as s tends to 0")
 
 
 def _expression_of(reading: FormulaReading, value: Factored) -> Expression | None:
@@ -157,7 +135,9 @@ def _expression_of(reading: FormulaReading, value: Factored) -> Expression | Non
 
 def _phase(numbers: Numbers) -> LawCheck | None:
     """Check that a lossless system's printed answer is in phase or in quadrature."""
-    for omega in _probes(numbers.band):
+    low, high = (2 * pi * float(limit) for limit in numbers.band)
+    for i in range(PROBES):
+        omega = Fraction(f"{low * (high / low) ** ((i + 0.5) / PROBES):.3g}")
         values = numbers.both_at((Fraction(0), omega))
         if values is None:
             return None
@@ -175,12 +155,6 @@ def _phase(numbers: Numbers) -> LawCheck | None:
     return LawCheck("lossless phase", True, "measured", f"in phase or in quadrature at {PROBES} frequencies")
 
 
-def _probes(band: tuple[Fraction, Fraction]) -> list[Fraction]:
-    """Return a few angular frequencies spread over a band [rad/s]."""
-    low, high = (2 * pi * float(limit) for limit in band)
-    return [Fraction(f"{low * (high / low) ** ((i + 0.5) / PROBES):.3g}") for i in range(PROBES)]
-
-
 def _is_axial(value: acb) -> bool:
     return _is_in_phase(value) or _is_quadrature(value)
 
@@ -193,10 +167,8 @@ def _is_quadrature(value: acb) -> bool:
     return bool(abs(value.real).upper() < abs(value.imag).lower() * arb(2) ** -100)
 
 
-@dataclass(frozen=True, slots=True)
-class _Event:
-    kind: Literal["pole", "zero"]
-    frequency: float
+_Event = tuple[Literal["pole", "zero"], float]
+"""What lies where [Hz] on the imaginary axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,30 +188,24 @@ def _interlacing(numbers: Numbers) -> LawCheck | None:
     law, printed = "interlacing", _events(numbers.printed_at, numbers.band)
     if printed is not None and _alternate(printed):
         return LawCheck(law, True, "measured", "zeros and poles alternate on the j omega axis over the band")
-    zeros = [e.frequency for e in derived if e.kind == "zero"]
+    zeros = [frequency for kind, frequency in derived if kind == "zero"]
     right = (
         "colocated zeros and poles alternate on the j omega axis; "
-        f"{_zeros(len(zeros))} of the derived function in the band, the first at {zeros[0]:.4g} Hz"
+        f"{_zeros(derived)} of the derived function in the band, the first at {zeros[0]:.4g} Hz"
     )
-    if printed is None:
-        return LawCheck(
-            law, False, "measured", f"{right}; the printed one is complex there and does not change sign"
-        )
-    own = sum(e.kind == "zero" for e in printed)
-    return LawCheck(
-        law,
-        False,
-        "measured",
-        f"{right}; {_zeros(own)} of the printed one, which do not alternate with the poles",
-    )
+    wrong = "the printed one is complex there and does not change sign"
+    if printed is not None:
+        wrong = f"{_zeros(printed)} of the printed one, which do not alternate with the poles"
+    return LawCheck(law, False, "measured", f"{right}; {wrong}")
 
 
-def _zeros(count: int) -> str:
+def _zeros(events: Sequence[_Event]) -> str:
+    count = sum(kind == "zero" for kind, _ in events)
     return "1 zero" if count == 1 else f"{count} zeros"
 
 
 def _alternate(events: Sequence[_Event]) -> bool:
-    return all(a.kind != b.kind for a, b in pairwise(events))
+    return all(a != b for (a, _), (b, _) in pairwise(events))
 
 
 def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]) -> list[_Event] | None:
@@ -259,9 +225,9 @@ def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]
             if not component or not _is_axial(value):
                 return None
             part = value.real if component == "real" else value.imag
-            return (
-                None if part.contains(0) else _Value(frequency, bool(part > 0), float(abs(part).log().mid()))
-            )
+            if part.contains(0):
+                return None
+            return _Value(frequency, bool(part > 0), float(abs(part).log().mid()))
 
     values = [at(frequency) for frequency in grid]
     found = []
@@ -281,4 +247,4 @@ def _settled(at: Callable[[float], _Value | None], left: _Value, right: _Value) 
         if middle is None:
             break
         left, right = (middle, right) if middle.is_positive == left.is_positive else (left, middle)
-    return _Event("zero" if min(left.size, right.size) < start else "pole", left.frequency)
+    return "zero" if min(left.size, right.size) < start else "pole", left.frequency

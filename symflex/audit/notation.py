@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import lcm, prod
-from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import full_angles, lowest_terms
-from symflex.audit.field import HOLE, UNIT
+from symflex.audit.field import HOLE, UNIT, Arithmetic
+from symflex.audit.reading import FormulaReading
 from symflex.expressions import (
     Call,
     Expression,
@@ -27,12 +29,6 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.audit.field import Arithmetic
-    from symflex.audit.reading import FormulaReading
 
 MOST_DEGREE = 4
 MOST_SYMBOLS = 6
@@ -81,19 +77,13 @@ def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) ->
             return None
         coefficients = solve_linear(field, value, [m for _, m in monomials])
         if coefficients is not None:
-            return sum_of(
-                product_of([number(c), *_powers([symbols[i].expression for i in chosen])])
-                for c, (chosen, _) in reversed(list(zip(coefficients, monomials, strict=True)))
-                if c
-            )
+            terms = []
+            for c, (chosen, _) in reversed(list(zip(coefficients, monomials, strict=True))):
+                times = Counter(symbols[i].expression for i in chosen)
+                factors = (power(f, n) if n > 1 else f for f, n in times.items())
+                terms += [product_of([number(c), *factors])] if c else []
+            return sum_of(terms)
     return None
-
-
-def _powers(factors: Sequence[Expression]) -> list[Expression]:
-    found: dict[Expression, int] = {}
-    for factor in factors:
-        found[factor] = found.get(factor, 0) + 1
-    return [power(f, n) if n > 1 else f for f, n in found.items()]
 
 
 def solve_linear(
@@ -165,10 +155,8 @@ def powers_expression(coefficient: Fraction, exponents: dict[str, Fraction]) -> 
             above, below = [*above, *up], [*below, *down]
             continue
         radicand = quotient(product_of(up), product_of(down))
-        is_square = root == SQUARE
-        above.append(
-            Call("sqrt", radicand) if is_square else Power(radicand, quotient(number(1), number(root)))
-        )
+        plain = Power(radicand, quotient(number(1), number(root)))
+        above.append(Call("sqrt", radicand) if root == SQUARE else plain)
     return quotient(product_of(above), product_of(below))
 
 
@@ -229,9 +217,8 @@ def polynomial_expression(field: Arithmetic, value: Factored) -> Expression | No
 
 def _function(field: Arithmetic, name: str, exponent: int) -> Expression:
     wave = field.ground.waves[int(name[4:-1])]
-    exponents = {
-        n.removeprefix("root(").removesuffix(")"): e for n, e in wave.key if not n.startswith("sum(")
-    }
+    plain = [(n, e) for n, e in wave.key if not n.startswith("sum(")]
+    exponents = {n.removeprefix("root(").removesuffix(")"): e for n, e in plain}
     if name.startswith("exp("):
         return Call("exp", powers_expression(wave.unit * exponent, exponents))
     call = Call(name[:3], powers_expression(wave.unit, exponents))

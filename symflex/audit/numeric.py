@@ -5,25 +5,19 @@ A ball that excludes equality proves a difference; balls that agree prove nothin
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import LAPLACE
+from symflex.audit.reading import Formula
 from symflex.balls import ball, precision, precisions
-from symflex.model import ExactValue
-from symflex.transfer import bind
+from symflex.expressions import Expression
+from symflex.model import ExactValue, Model
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import principal_values
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.audit.reading import Formula
-    from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.transfer import BoundTransferFunction, TransferFunction
 
 POINTS = 40
 DIGITS = 50
@@ -212,11 +206,8 @@ def _largest(
     """Return the largest magnitude (0) or angle (1), or the first without bound, and where it is."""
     sizes = [0.0 if z is None else abs(z[which]) for z in values]
     last = len(grid) - 1
-    peaks = [
-        i
-        for i in range(len(grid))
-        if sizes[i] > 0 and (i == 0 or sizes[i] > sizes[i - 1]) and (i == last or sizes[i] >= sizes[i + 1])
-    ]
+    beside = zip([-1.0, *sizes], sizes, [*sizes[1:], -1.0], strict=False)
+    peaks = [i for i, (below, size, above) in enumerate(beside) if size > 0 and below < size >= above]
     highest = sorted(sorted(peaks, key=lambda i: -sizes[i])[:MOST_PEAKS])
     best: tuple[float, float] | None = None
     for i in highest:

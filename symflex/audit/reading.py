@@ -2,36 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored
+from symflex.algebra import Dispersion, Factored, Kernel
 from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
-from symflex.expressions import (
-    Call,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-)
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.model import Model, Published
 from symflex.model.analysis import check_printed, lines_in_order, readable_names
+from symflex.transfer import TransferFunction
 from symflex.transfer.enclose import rational_value
 from symflex.transfer.expansion import compose_rational
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.algebra import Dispersion, Kernel
-    from symflex.audit.field import Ground
-    from symflex.model import Model, Published
-    from symflex.transfer import TransferFunction
 
 MOST_GROWTHS = 200
 
@@ -100,23 +84,15 @@ def read(formula: Formula, tf: TransferFunction) -> FormulaReading:
     divides by zero; BudgetError: SF501 when an expansion would become too large.
     """
     ground = ground_of([(p.name, p.assume != "real") for p in tf.model.parameters])
-
-    def attempt(field: Arithmetic) -> FormulaReading:
-        lines = formula_lines(field, formula)
-        printed = _FormulaReader(field, lines).value(formula.whole)
-        return FormulaReading(field, formula, lines, printed, derived_value(field, tf))
-
-    return _grown(ground, attempt)
-
-
-def _grown(ground: Ground, attempt: Callable[[Arithmetic], FormulaReading]) -> FormulaReading:
     for _ in range(MOST_GROWTHS):
+        field = Arithmetic(ground)
         try:
-            return attempt(Arithmetic(ground))
+            lines = formula_lines(field, formula)
+            printed = _FormulaReader(field, lines).value(formula.whole)
+            return FormulaReading(field, formula, lines, printed, derived_value(field, tf))
         except GrowError as more:
             ground = more.ground
-    message = "it has too many different roots and functions"
-    raise UnreadError(message)
+    raise UnreadError("it has too many different roots and functions")
 
 
 def formula_lines(field: Arithmetic, formula: Formula) -> dict[str, Factored]:
@@ -139,12 +115,8 @@ class _FormulaReader:
         try:
             return self._value(expression)
         except BudgetError as error:
-            raise BudgetError(
-                *(
-                    d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
-                    for d in error.diagnostics
-                )
-            ) from None
+            placed = (replace(d, span=d.span or expression.span) for d in error.diagnostics)
+            raise BudgetError(*placed) from None
 
     def _value(self, expression: Expression) -> Factored:
         if expression is self.hole:
@@ -174,8 +146,7 @@ class _FormulaReader:
                 return self.field.power(inner, power)
             case Call(name, argument):
                 return self._call(expression, name, self._value(argument))
-        message = f"unexpected expression {type(expression).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"unexpected expression {type(expression).__name__}")
 
     def _call(self, expression: Call, name: str, argument: Factored) -> Factored:
         try:
@@ -194,9 +165,7 @@ def derived_value(field: Arithmetic, tf: TransferFunction) -> Factored:
     Raises UnreadError, GrowError as :class:`~symflex.audit.field.Field`.
     """
     ring, table = tf.ratio.ring, tf.kernels
-    images: dict[str, Factored] = {}
-    for name in field.ground.names:
-        images[name] = field.name(name)
+    images = {name: field.name(name) for name in field.ground.names}
     for constant in tf.constants:
         if tf.ratio.depends_on(constant.generator):
             images[constant.generator] = _FormulaReader(field, {}).value(constant.expression)
@@ -233,8 +202,7 @@ def _wavenumbers(
         case "exponential":
             return {}
         case _:
-            message = "the derived function has wavenumbers without a closed form"
-            raise UnreadError(message)
+            raise UnreadError("the derived function has wavenumbers without a closed form")
     return {dispersion.wavenumbers[0]: field.power(power, root)}
 
 
@@ -245,6 +213,5 @@ def _kernel(
     if kernel.function == "exp":
         return field.function("exp", -image(kernel.dispersion.shift) * length)
     if kernel.function == "fundamental":
-        message = "the derived function has kernels without a closed form"
-        raise UnreadError(message)
+        raise UnreadError("the derived function has kernels without a closed form")
     return field.function(kernel.function, images[kernel.wavenumber] * length)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import asdict
 from math import isfinite
-from typing import TYPE_CHECKING
 
+from symflex.audit.judge import Audit
+from symflex.audit.numeric import Comparison, Deviation
 from symflex.expressions import Expression, format_expression, quotient
 from symflex.print.forms import print_form
 from symflex.print.text import INDENT, WIDTH, hanging, wrapped
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.audit.judge import Audit
-    from symflex.audit.numeric import Comparison, Deviation
 
 NOTHING = 1e-30
 NEGLIGIBLE = 1e-6
@@ -31,9 +28,7 @@ def audit_text(audit: Audit, width: int = WIDTH) -> str:
     """Return an audit as lines of at most ``width`` columns where they can be broken."""
     verdict = VERDICTS[audit.verdict]
     if audit.verdict == "agrees" and audit.comparison is not None:
-        verdict = (
-            f"agrees with the derived function to 50 digits at {audit.comparison.agreed} points: NOT PROVED"
-        )
+        verdict = verdict.replace("40 points", f"{audit.comparison.agreed} points")
     lines = [f"{audit.tf.name}   {verdict}"]
     if audit.published.source:
         lines += _filled(f"printed in: {audit.published.source}", width, INDENT)
@@ -47,17 +42,13 @@ def audit_text(audit: Audit, width: int = WIDTH) -> str:
 
 def _difference(audit: Audit, width: int) -> list[str]:
     changes, correction = audit.changes, audit.correction
-    lines = [
-        "",
-        INDENT + "printed",
-        *_marked(audit.published.expression, [(c.place, c.printed) for c in changes], width),
-    ]
-    lines += _where(audit.formula.lines, audit.published.scale, width)
-    lines.append("")
+    printed = _marked(audit.published.expression, [(c.place, c.printed) for c in changes], width)
+    lines = ["", INDENT + "printed", *printed]
+    lines += [*_where(audit.formula.lines, audit.published.scale, width), ""]
     if audit.ratio is not None:
-        lines += _filled(
-            f"The printed formula is {_times(audit.ratio)} the derived function (proved).", width, INDENT
-        )
+        text = format_expression(audit.ratio)
+        times = "minus" if text == "-1" else f"{text} times"
+        lines += _filled(f"The printed formula is {times} the derived function (proved).", width, INDENT)
     elif correction is not None:
         lines.append(INDENT + "derived, in the same symbols")
         lines += _marked(correction.expression, [(c.place, c.derived) for c in changes], width)
@@ -85,16 +76,8 @@ def _derived(audit: Audit, width: int) -> list[str]:
     if audit.derived is not None:
         return [INDENT + "derived, in the same symbols", *_marked(audit.derived, [], width)]
     form = print_form(audit.tf)
-    return [
-        INDENT + "derived",
-        *_marked(quotient(form.num, form.den), [], width),
-        *_where(form.where, None, width),
-    ]
-
-
-def _times(ratio: Expression) -> str:
-    text = format_expression(ratio)
-    return "minus" if text == "-1" else f"{text} times"
+    ratio = _marked(quotient(form.num, form.den), [], width)
+    return [INDENT + "derived", *ratio, *_where(form.where, None, width)]
 
 
 def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], width: int) -> list[str]:
@@ -123,13 +106,8 @@ def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], wid
 
 def _places(line: str, text: str) -> list[int]:
     """Return where a part stands in a line by itself."""
-    found, start = [], line.find(text)
-    while start >= 0:
-        before, after = line[:start][-1:], line[start + len(text) :][:1]
-        if not (before.isalnum() or before in ("_", ".", "^") or after.isalnum() or after in ("_", ".", "^")):
-            found.append(start)
-        start = line.find(text, start + 1)
-    return found
+    alone = rf"(?<![\w.^])(?={re.escape(text)}(?![\w.^]))"
+    return [match.start() for match in re.finditer(alone, line)]
 
 
 def _where(lines: Sequence[tuple[str, Expression]], scale: Expression | None, width: int) -> list[str]:
@@ -233,17 +211,12 @@ def audit_json(audit: Audit) -> dict[str, object]:
         "where": _lines(audit.formula.lines),
         "ratio": _text(audit.ratio),
         "changes": [
-            {
-                "place": c.place,
-                "printed": format_expression(c.printed),
-                "derived": format_expression(c.derived),
-            }
+            {"place": c.place, "printed": _text(c.printed), "derived": _text(c.derived)}
             for c in audit.changes
         ],
-        "corrected": None
-        if correction is None
-        else {
-            "expr": format_expression(correction.expression),
+        "corrected": correction
+        and {
+            "expr": _text(correction.expression),
             "scale": _text(correction.scale),
             "where": _lines(correction.lines),
         },
@@ -283,11 +256,6 @@ def _complex_json(value: complex) -> dict[str, float] | None:
 def _deviation(found: Deviation | None) -> dict[str, object] | None:
     if found is None:
         return None
-    return {
-        "band_hz": [float(limit) for limit in found.band],
-        "magnitude_db": None if found.unbounded else found.magnitude_db,
-        "magnitude_hz": found.magnitude_hz,
-        "unbounded": found.unbounded,
-        "phase_deg": found.phase_deg,
-        "phase_hz": found.phase_hz,
-    }
+    plain = asdict(found)
+    band = [float(limit) for limit in plain.pop("band")]
+    return {"band_hz": band, **plain, "magnitude_db": None if found.unbounded else found.magnitude_db}

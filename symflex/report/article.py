@@ -7,7 +7,8 @@ with every distribution.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final, assert_never
+from collections.abc import Iterable, Sequence
+from typing import Final, assert_never
 
 from symflex.print.latex import TEXT_WIDTH_MM, escape_text
 from symflex.print.latex.page import preamble
@@ -16,6 +17,8 @@ from symflex.print.width import EM_MM
 from symflex.report.document import (
     Aside,
     Badge,
+    Block,
+    Cell,
     Code,
     DisplayedFormula,
     Listing,
@@ -24,15 +27,11 @@ from symflex.report.document import (
     PageFigure,
     PageLink,
     Paragraph,
+    Run,
     Section,
     Table,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from symflex.report.document import Block, Cell, Run
-    from symflex.report.report import Report
+from symflex.report.report import Report
 
 OVERVIEW: Final = "models"
 """Anchor of the section that follows the table of contents on its page."""

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.errors import SpecError, SymflexError
-from symflex.report.document import Notice, Section, code_of, text
+from symflex.report.document import Block, Notice, Section, code_of, text
 from symflex.report.facts import ModelFacts, bare_facts
 from symflex.report.sections import SECTIONS
 from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
     from symflex.data.measurement import MeasuredResponse
-    from symflex.report.document import Block
     from symflex.roots import Progress
 
 

@@ -5,10 +5,9 @@ A new column is a function of :class:`~symflex.report.facts.ModelFacts` and a li
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import counted
 from symflex.report.document import (
@@ -18,20 +17,15 @@ from symflex.report.document import (
     Code,
     PageLink,
     Paragraph,
+    Run,
     Section,
     Side,
     Table,
     columns,
     text,
 )
-from symflex.report.facts import ModelFacts
+from symflex.report.facts import ModelFacts, TransferFacts
 from symflex.report.structure import PLACES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.report.document import Run
-    from symflex.report.facts import TransferFacts
 
 NONE: Final = "–"
 ANCHOR: Final = "comparison"
@@ -53,9 +47,8 @@ def flexibility_cell(facts: ModelFacts) -> Iterator[Run]:
 
 def modes_cell(facts: ModelFacts) -> Cell:
     """Return the number of flexible modes."""
-    if any(f.is_infinite for f in facts.functions):
-        return ("∞",)
-    return (str(max((f.modes for f in facts.functions), default=0)),)
+    is_infinite = any(f.is_infinite for f in facts.functions)
+    return ("∞" if is_infinite else str(max((f.modes for f in facts.functions), default=0)),)
 
 
 def added_cell(facts: ModelFacts) -> Iterable[Run]:
@@ -66,7 +59,10 @@ def added_cell(facts: ModelFacts) -> Iterable[Run]:
             continue
         zeros, poles = function.added
         where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
-        runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
+        is_even = not (poles % function.modes or zeros % function.modes)
+        per, of = (function.modes, "") if is_even else (1, f" in {counted(function.modes, 'mode')}")
+        each = f"{counted(poles // per, 'pole')}, {counted(zeros // per, 'zero')}{of}"
+        runs += [each, "\n", Aside(function.tf + where), "\n"]
     if not runs and any(f.modes and f.is_still_when_rigid for f in facts.functions):
         return (NONE, "\n", Aside("no response when rigid"))
     return runs
@@ -127,33 +123,27 @@ def bandwidth_cell(facts: ModelFacts) -> Iterator[Run]:
             yield from (f"{at_least}{loop.bandwidth_hz:.4g} Hz", "\n")
 
 
-@dataclass(frozen=True, slots=True)
-class ComparisonColumn:
-    """A column of the comparison."""
-
-    cell: Callable[[ModelFacts], Iterable[Run]]  # returns its cell in a model's row, lines that end
-    side: Side = "text"  # as in :class:`~symflex.report.document.Column`
-
-
+ComparisonColumn = tuple[Callable[[ModelFacts], Iterable["Run"]], Side]
+"""What returns the cell of a model's row, lines that end, and how its column stands."""
 COLUMNS: dict[str, ComparisonColumn] = {
-    "Model": ComparisonColumn(model_cell, "plain"),
-    "Flexibility": ComparisonColumn(flexibility_cell),
-    "Modes": ComparisonColumn(modes_cell, "number"),
-    "Added by each mode": ComparisonColumn(added_cell, "plain"),
-    "Minimum phase": ComparisonColumn(phase_cell),
-    "Colocated or not": ComparisonColumn(both_cell),
+    "Model": (model_cell, "plain"),
+    "Flexibility": (flexibility_cell, "text"),
+    "Modes": (modes_cell, "number"),
+    "Added by each mode": (added_cell, "plain"),
+    "Minimum phase": (phase_cell, "text"),
+    "Colocated or not": (both_cell, "text"),
 }
 """Of the structures, by their heads, in the order of the table."""
 DATA_COLUMNS: dict[str, ComparisonColumn] = {
-    "Model": ComparisonColumn(model_cell, "plain"),
-    "Off the data by": ComparisonColumn(data_cell),
+    "Model": (model_cell, "plain"),
+    "Off the data by": (data_cell, "text"),
 }
 """Of models that measured responses are there for."""
 LOOP_COLUMNS: dict[str, ComparisonColumn] = {
-    "Model": ComparisonColumn(model_cell, "plain"),
-    "Outputs together up to": ComparisonColumn(together_cell),
-    "Loop stable for": ComparisonColumn(loop_cell),
-    "Bandwidth allowed": ComparisonColumn(bandwidth_cell),
+    "Model": (model_cell, "plain"),
+    "Outputs together up to": (together_cell, "text"),
+    "Loop stable for": (loop_cell, "text"),
+    "Bandwidth allowed": (bandwidth_cell, "text"),
 }
 """Of what matters to control: models with loops, or with outputs here and elsewhere."""
 
@@ -184,22 +174,20 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
         ),
     )
     if controlled:
-        explained = (
-            *explained,
-            text(
-                "Two outputs are together if one differs from the output on which the input does work by at "
-                "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
-                "left half plane; the model's chapter says how far the stable gains are proved. The "
-                "bandwidth allowed is the frequency at which the loop gain first falls below one, with half "
-                "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
-            ),
+        words = (
+            "Two outputs are together if one differs from the output on which the input does work by at "
+            "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
+            "left half plane; the model's chapter says how far the stable gains are proved. The "
+            "bandwidth allowed is the frequency at which the loop gain first falls below one, with half "
+            "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
         )
+        explained = (*explained, text(words))
     return Section("Comparison of models", (*tables, *explained), ANCHOR)
 
 
 def _table(models: Sequence[ModelFacts], chosen: dict[str, ComparisonColumn]) -> Table:
-    rows = tuple(tuple(_cell(column.cell(facts)) for column in chosen.values()) for facts in models)
-    return Table(columns(*((head, column.side) for head, column in chosen.items())), rows)
+    rows = tuple(tuple(_cell(cell(facts)) for cell, _ in chosen.values()) for facts in models)
+    return Table(columns(*((head, side) for head, (_, side) in chosen.items())), rows)
 
 
 def _cell(runs: Iterable[Run]) -> Cell:
@@ -229,9 +217,3 @@ def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
         for_all = " for all values" if function.condition in ("never", "as given") else " for these values"
         return (Badge("no", "bad"), for_all + count)
     return (Badge("yes", "good"), f" for these values{shown}")
-
-
-def _per_mode(poles: int, zeros: int, function: TransferFacts) -> str:
-    if poles % function.modes or zeros % function.modes:
-        return f"{counted(poles, 'pole')}, {counted(zeros, 'zero')} in {counted(function.modes, 'mode')}"
-    return f"{counted(poles // function.modes, 'pole')}, {counted(zeros // function.modes, 'zero')}"

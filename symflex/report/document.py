@@ -10,24 +10,20 @@ What a section of a report hands over: its blocks, and the files that belong to 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from symflex.errors import UncertifiedError
+from symflex.errors import SymflexError, UncertifiedError
 from symflex.figures import render
 from symflex.print.latex import latex_expression, model_labels
-from symflex.print.mathml import mathml_expression
+from symflex.print.mathml import MathRow, mathml_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.figure import Figure
 
-    from symflex.errors import SymflexError
     from symflex.expressions import Expression
     from symflex.model import Model
-    from symflex.print.mathml import MathRow
 
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
@@ -199,9 +195,8 @@ def filled(heads: tuple[PageColumn, ...], rows: Sequence[tuple[Cell, ...]], late
     ((('k',),), (('b',),))
     """
     kept = [i for i in range(len(heads)) if any(row[i] not in (("",), ("–",)) for row in rows)]
-    return Table(
-        tuple(heads[i] for i in kept), tuple(tuple(row[i] for i in kept) for row in rows), latex=latex
-    )
+    chosen = tuple(tuple(row[i] for i in kept) for row in rows)
+    return Table(tuple(heads[i] for i in kept), chosen, latex=latex)
 
 
 def mathematics(expression: Expression, model: Model) -> Mathematics:
@@ -215,7 +210,6 @@ def labelled(expression: Expression, labels: Mapping[str, str]) -> Mathematics:
 
 
 _RAISED: Final = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-_POWER: Final = re.compile(r"\^(-?[0-9]+)")
 
 
 def exponents(decimal: str) -> str:
@@ -239,9 +233,8 @@ def unit_text(unit: str) -> str:
     >>> unit_text("kg*m^2"), unit_text("1")
     ('kg·m²', '')
     """
-    if unit == "1":
-        return ""
-    return _POWER.sub(lambda m: m[1].translate(_RAISED), unit).replace("*", "·")
+    raised = re.sub(r"\^(-?[0-9]+)", lambda m: m[1].translate(_RAISED), unit)
+    return "" if unit == "1" else raised.replace("*", "·")
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,6 +263,5 @@ def code_of(error: SymflexError) -> int:
 def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> PageFigure:
     """Return a figure as a block: its SVG stands on the page, and beside its PDF in ``files`` for papers."""
     svg = render(drawn, "svg")
-    files[f"figures/{stem}.svg"] = svg
-    files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
+    files |= {f"figures/{stem}.svg": svg, f"figures/{stem}.pdf": render(drawn, "pdf")}
     return PageFigure(stem, svg.decode(), caption)

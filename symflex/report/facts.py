@@ -15,19 +15,17 @@ from symflex.errors import SymflexError
 from symflex.expressions import format_expression
 from symflex.report.document import Mathematics, mathematics
 from symflex.report.minimum_phase import PhaseCondition, minimum_phase
-from symflex.report.structure import compliances, is_colocated
-from symflex.roots.pole_zero_map import NOT_EXAMINED
+from symflex.report.structure import Compliance, compliances, is_colocated
+from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 
 if TYPE_CHECKING:
     from flint import arb
 
     from symflex.audit import Audit
-    from symflex.loops import AllowedBandwidth, DynamicColocation, StabilityMap
+    from symflex.loops import DynamicColocation, StabilityMap
     from symflex.model import Model
-    from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
@@ -169,26 +167,22 @@ class TransferFacts:
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the facts as JSON data; the roots themselves are in the report's ``roots.json``."""
-        added = self.added
+        added, condition = self.added, {"condition": self.condition, "reason": self.reason}
         return {
             "tf": self.tf,
             "quantity": self.quantity,
             "certified": self.certified,
             "stability": self.verdict.word,
             "is_infinite": self.is_infinite,
-            "zeros": None if self.counts is None else self.counts[0],
-            "poles": None if self.counts is None else self.counts[1],
+            "zeros": self.counts and self.counts[0],
+            "poles": self.counts and self.counts[1],
             "modes": self.modes,
-            "zeros_added": None if added is None else added[0],
-            "poles_added": None if added is None else added[1],
+            "zeros_added": added and added[0],
+            "poles_added": added and added[1],
             "colocated": self.colocated,
             "zeros_are_poles_of": self.explained,
             "right_half_plane_zeros": self.right_half_plane_zeros,
-            "minimum_phase": {
-                "condition": self.condition,
-                "reason": self.reason,
-                "bracket": self.bracket or None,
-            },
+            "minimum_phase": condition | {"bracket": self.bracket or None},
             "alternates": self.alternates,
             "mirrored_real_zeros": self.has_mirrored_real_zeros,
         }
@@ -268,10 +262,7 @@ class ModelFacts:
 
         Raises KeyError when there are none.
         """
-        for facts in self.functions:
-            if facts.tf == tf:
-                return facts
-        raise KeyError(tf)
+        return {facts.tf: facts for facts in reversed(self.functions)}[tf]
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the facts as JSON data."""
@@ -293,11 +284,8 @@ class ModelFacts:
 def _loop_json(loop: LoopFacts) -> dict[str, object]:
     """Return the facts of a loop; JSON has no infinity, and says by a flag that nothing limits it."""
     is_unlimited = loop.bandwidth_hz == inf
-    return {
-        **asdict(loop),
-        "bandwidth_hz": None if is_unlimited else loop.bandwidth_hz,
-        "is_bandwidth_unlimited": is_unlimited,
-    }
+    hertz = None if is_unlimited else loop.bandwidth_hz
+    return asdict(loop) | {"bandwidth_hz": hertz, "is_bandwidth_unlimited": is_unlimited}
 
 
 def bare_facts(stem: str, model: Model) -> ModelFacts:
@@ -361,29 +349,23 @@ def _of_roots(model: Model, tf: AnyTransferFunction, found: PoleZeroMap, reason:
 
 
 def _loop(found: StabilityMap) -> LoopFacts:
+    band = found.bandwidth
+    last = None if band is None else _number(band.frequency, tau)
     return LoopFacts(
         gain=found.gain,
         unit=found.unit,
-        stable=tuple((_end(i.low), _end(i.high)) for i in found.stable),
+        stable=tuple((_number(i.low), _number(i.high)) for i in found.stable),
         unstable_at_last=found.intervals[-1].poles.right if found.intervals else found.verdict.found,
         crossings_hz=tuple(float(w.mid()) / tau for b in found.boundaries for w in b.frequencies),
         is_bounded=found.limits[1] is not None,
         certified=found.certified,
-        bandwidth_hz=_bandwidth_hz(found.bandwidth),
-        is_bandwidth_limited=found.bandwidth is not None and found.bandwidth.is_limited,
+        bandwidth_hz=inf if band is not None and band.gain is None else last,
+        is_bandwidth_limited=band is not None and band.is_limited,
     )
 
 
-def _bandwidth_hz(found: AllowedBandwidth | None) -> float | None:
-    if found is None:
-        return None
-    if found.gain is None:
-        return inf
-    return None if found.frequency is None else float(found.frequency.mid()) / tau
-
-
-def _end(value: arb | None) -> float | None:
-    return None if value is None else float(value.mid())
+def _number(value: arb | None, unit: float = 1.0) -> float | None:
+    return None if value is None else float(value.mid()) / unit
 
 
 def _colocation(found: DynamicColocation) -> ColocationFact:
@@ -392,7 +374,7 @@ def _colocation(found: DynamicColocation) -> ColocationFact:
         reference=found.reference,
         phase_degrees=found.phase,
         magnitude_db=found.magnitude,
-        bandwidth_hz=None if found.edge is None else float(found.edge.mid()) / tau,
+        bandwidth_hz=_number(found.edge, tau),
         examined_hz=found.limits[1],
         is_together=found.begins,
         certified=found.is_decided,
@@ -409,24 +391,15 @@ def _changes(audit: Audit) -> str:
 
 
 def _root_fact(root: Root) -> RootFact:
-    place: Place = "plane"
-    if root.is_zero:
-        place = "origin"
-    elif root.on_imaginary_axis:
-        place = "imaginary axis"
-    elif root.is_real:
-        place = "real axis"
-    radius = float(root.decimal(15).radius)
-    return RootFact(
-        float(root.re.mid()), float(root.im.mid()), radius, place, root.multiplicity, root.frequency_hz()
-    )
+    on_axis: Place = "imaginary axis" if root.on_imaginary_axis else "real axis" if root.is_real else "plane"
+    place: Place = "origin" if root.is_zero else on_axis
+    re, im, radius = float(root.re.mid()), float(root.im.mid()), float(root.decimal(15).radius)
+    return RootFact(re, im, radius, place, root.multiplicity, root.frequency_hz())
 
 
 def _truncation(study: Study, tf: TransferFunction, found: PoleZeroMap) -> TruncationFacts | None:
     last = max((p.frequency_hz() for p in found.poles if p.im > 0), default=0.0)
-    if not found.is_infinite or not last:
-        return None
-    kept = study.rational(tf)
+    kept = study.rational(tf) if found.is_infinite and last else None
     if kept is None:
         return None
     return TruncationFacts(kept.modes, last, kept.valid_to(0.01), kept.valid_to(0.05))

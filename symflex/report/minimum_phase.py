@@ -11,7 +11,7 @@ import itertools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.algebra import LAPLACE, by_powers, degree_in, irreducible_factors
+from symflex.algebra import LAPLACE, Ring, by_powers, degree_in, irreducible_factors
 from symflex.library.elements import CIRCUITS
 from symflex.model.signs import is_passive
 from symflex.print.forms import Arranger
@@ -19,7 +19,6 @@ from symflex.print.forms import Arranger
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Ring
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.expressions import Expression
     from symflex.model import Model

@@ -9,31 +9,30 @@ from __future__ import annotations
 import html
 import re
 from base64 import b64encode
+from collections.abc import Iterable, Iterator
 from importlib import resources
 from itertools import takewhile
-from typing import TYPE_CHECKING, Final, assert_never
+from typing import Final, assert_never
 
 from symflex.print.mathml import EQUALS, math_element
 from symflex.report.document import (
     Aside,
     Badge,
+    Block,
     Code,
     DisplayedFormula,
     Listing,
     Mathematics,
     Notice,
+    PageColumn,
     PageFigure,
     PageLink,
     Paragraph,
+    Run,
     Section,
     Table,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from symflex.report.document import Block, PageColumn, Run
-    from symflex.report.report import Report
+from symflex.report.report import Report
 
 DEEPEST_HEADING: Final = 6
 CONTENTS_DEPTH: Final = 2

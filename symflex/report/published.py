@@ -6,17 +6,20 @@ import os
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import Diagnostic, SymflexError, counted
 from symflex.files.examples import file_or_example
 from symflex.files.write import check_folder, write_tree
+from symflex.options import ReportOptions
 from symflex.report.article import report_article
 from symflex.report.page import report_page
 from symflex.report.report import (
+    Report,
     compose,
     find_claims,
     find_measurements,
@@ -24,13 +27,7 @@ from symflex.report.report import (
     name_specifications,
     write_chapters,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from symflex.options import ReportOptions
-    from symflex.report.report import Report
-    from symflex.roots import Progress
+from symflex.roots import Progress
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +77,8 @@ def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | Non
     if pdf is False:
         return PublishedReport(page, None, "", 0)
     if not has_compiler():
-        problem = (
-            f"no report.pdf: there is no pdflatex on this computer; report.tex is written\n  hint: {HOW_TO}"
-        )
-        return PublishedReport(page, None, problem, 2 if pdf else 0)
+        problem = "no report.pdf: there is no pdflatex on this computer; report.tex is written"
+        return PublishedReport(page, None, f"{problem}\n  hint: {HOW_TO}", 2 if pdf else 0)
     progress.report(0.92, "pdflatex")
     figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
     try:

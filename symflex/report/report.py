@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 import platform
 import re
-from collections.abc import Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
 from multiprocessing import get_context
+from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.budget import TIME_OVER, Budget, entered_budget
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import (
     BudgetError,
     Diagnostic,
@@ -27,24 +29,22 @@ from symflex.errors import (
 from symflex.errors.diagnostic import printable
 from symflex.files.write import free_name
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
-from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
+from symflex.report.claims.claim import (
+    Finding,
+    Publication,
+    claim_section,
+    claims_json,
+    judge_all,
+    publication_of,
+)
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, filled, text
+from symflex.report.document import Badge, Block, Cell, Code, PageLink, Section, Table, columns, filled, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
+from symflex.roots import Progress
 from symflex.roots.pole_zero_map import WORST_FIRST
 from symflex.sweep.run import end_with_parent
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from concurrent.futures import Future
-    from pathlib import Path
-
-    from symflex.data.measurement import MeasuredResponse
-    from symflex.report.claims.claim import Finding, Publication
-    from symflex.report.document import Block, Cell
-    from symflex.roots import Progress
 
 MOST_MODELS: Final = 200
 TICK: Final = 0.5
@@ -136,9 +136,7 @@ def find_claims(
     Raises UsageError, SpecError: See :func:`symflex.report.claims.read.read_claims`.
     """
     folders = dict.fromkeys(path.parent for path in specifications)
-    files = [
-        folder / CLAIMS for folder in folders if not _leads_out(folder / CLAIMS, (folder, *allow_outside))
-    ]
+    files = [f / CLAIMS for f in folders if not _leads_out(f / CLAIMS, (f, *allow_outside))]
     return tuple(read_claims(file) for file in files if is_claims(file))
 
 
@@ -217,10 +215,9 @@ def write_chapters(
     if processes < 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
+            told = progress if len(named) == 1 else None
             with entered_budget().share(CHAPTERS).entered():
-                done[stem] = chapter_of(
-                    path, stem, measured, allow_outside, progress if len(named) == 1 else None
-                )
+                done[stem] = chapter_of(path, stem, measured, allow_outside, told)
         return tuple(done.values())
     done = _in_processes(named, processes, progress, measured, allow_outside)
     # A process that ends takes with it what others have begun: alone, the models show which one it is.
@@ -247,12 +244,8 @@ def _in_processes(
     done: dict[str, Chapter] = {}
     chapters, time = entered_budget().share(CHAPTERS), entered_budget().share(WAITING)
     with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
-        waiting = {
-            pool.submit(
-                _chapter_in, path, stem, measured, allow_outside, chapters.deadline, chapters.memory
-            ): stem
-            for stem, path in named.items()
-        }
+        given = (measured, allow_outside, chapters.deadline, chapters.memory)
+        waiting = {pool.submit(_chapter_in, path, stem, *given): stem for stem, path in named.items()}
         total = len(waiting)
         try:
             while waiting:
@@ -328,9 +321,7 @@ def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publi
         sections.append(claim_section(publication, findings))
         document = claims_json(publication, findings)
         files["data/claims.json"] = json.dumps(document, indent=1, ensure_ascii=False).encode()
-    comparison = comparison_section(facts)
-    if comparison:
-        sections.append(comparison)
+    sections += filter(None, [comparison_section(facts)])
     sections += [c.section for c in ordered]
     if len(ordered) > 1:
         # The overview is what a reader sees first; the rest opens where it is asked for.
@@ -364,29 +355,21 @@ def _overview(
     if publication:
         held = sum(f.verdict.startswith("holds") for f in findings)
         failed = sum(f.verdict == "does not hold" for f in findings)
-        open_ = len(findings) - held - failed
-        blocks.append(
-            text(
-                f"The publication makes {counted(len(findings), 'claim')}: {held} hold, {failed} do not, "
-                f"and {open_} are not examined here. See ",
-                PageLink("the claims", "#claims"),
-                ".",
-            )
-        )
+        counts = f"{held} hold, {failed} do not, and {len(findings) - held - failed} are not examined here"
+        lead = f"The publication makes {counted(len(findings), 'claim')}: {counts}. See "
+        blocks.append(text(lead, PageLink("the claims", "#claims"), "."))
     rows: list[tuple[Cell, ...]] = []
     for c in chapters:
         functions = c.facts.functions
-        mark: Badge
-        certified = bool(functions) and all(f.certified for f in functions)
         if c.failure:
             mark = Badge("not computed", "bad")
-        elif certified:
-            mark = Badge("certified", "good")
+        elif not functions:
+            mark = Badge("no numbers", "quiet")
         else:
-            mark = Badge("not certified", "bad") if functions else Badge("no numbers", "quiet")
-        rows.append(
-            ((PageLink(c.section.title, f"#{c.stem}"),), (c.facts.source or "–",), (mark,), (_stability(c),))
-        )
+            certified = all(f.certified for f in functions)
+            mark = Badge("certified", "good") if certified else Badge("not certified", "bad")
+        link = PageLink(c.section.title, f"#{c.stem}")
+        rows.append(((link,), (c.facts.source or "–",), (mark,), (_stability(c),)))
     heads = columns("Model", "Source", ("Poles and zeros", "plain"), ("Stability", "plain"))
     blocks.append(filled(heads, rows))
     return Section("Overview", tuple(blocks), "models")
@@ -404,19 +387,14 @@ def _provenance(date: str) -> Section:
     versions += [(name, _version(name)) for name in LIBRARIES]
     rows = tuple(((name,), (Code(version),)) for name, version in versions)
     when = f" on {date}" if date else ""
-    return Section(
-        "Provenance",
-        (
-            text(
-                f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
-                "specification printed with its model; every root marked certified is enclosed in ball "
-                "arithmetic, and none is missing from the region named. Results that were sampled rather "
-                "than proved are marked as such."
-            ),
-            Table(columns("Program", ("Version", "plain")), rows),
-        ),
-        "provenance",
+    lead = text(
+        f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
+        "specification printed with its model; every root marked certified is enclosed in ball "
+        "arithmetic, and none is missing from the region named. Results that were sampled rather "
+        "than proved are marked as such."
     )
+    table = Table(columns("Program", ("Version", "plain")), rows)
+    return Section("Provenance", (lead, table), "provenance")
 
 
 def _version(name: str) -> str:

@@ -15,11 +15,14 @@ roots that stay.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
+
+from flint import fmpz_mpoly
 
 from symflex import pipeline
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.analysis.explanation.coordinates import in_one_way, joined_values
 from symflex.expressions import (
     Attribute,
@@ -31,18 +34,8 @@ from symflex.expressions import (
     names,
     product_of,
 )
-from symflex.model import ModelParameter, with_numbers
+from symflex.model import Input, Model, ModelParameter, Output, PlacedElement, with_numbers
 from symflex.print.forms.notation import names_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored, Ring
-    from symflex.expressions import Expression
-    from symflex.model import Input, Model, Output, PlacedElement
-
 
 Place = Literal["base", "transmission", "link", "contact"]
 PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")

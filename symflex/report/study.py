@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import numpy as np
 
 from symflex import pipeline
-from symflex.analysis.explanation import explain_zeros
-from symflex.analysis.rational import approximate
-from symflex.analysis.response import adaptive_grid, default_band, respond
-from symflex.audit import audit, check_published
+from symflex.analysis.explanation import ZeroExplanation, explain_zeros
+from symflex.analysis.rational import RationalApproximation, approximate
+from symflex.analysis.response import SampledResponse, adaptive_grid, default_band, respond
+from symflex.audit import Audit, audit, check_published
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.loops import find_stable_gains
+from symflex.loops import AnyLoop, DynamicColocation, StabilityMap, find_stable_gains
 from symflex.loops.of_model import characteristic_loop, colocation
-from symflex.model import with_numbers
+from symflex.model import Model, with_numbers
 from symflex.options import ColocationOptions
-from symflex.print.forms import print_forms
-from symflex.report.facts import facts_of
-from symflex.report.structure import rigid_counts, undamped_counts
+from symflex.print.forms import PrintedForm, print_forms
+from symflex.report.facts import ModelFacts, facts_of
+from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
 from symflex.transfer import BoundNested, BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
@@ -29,16 +29,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.analysis.explanation import ZeroExplanation
-    from symflex.analysis.rational import RationalApproximation
-    from symflex.analysis.response import SampledResponse
-    from symflex.audit import Audit
     from symflex.data.measurement import MeasuredResponse
-    from symflex.loops import AnyLoop, DynamicColocation, StabilityMap
-    from symflex.model import Model
-    from symflex.print.forms import PrintedForm
-    from symflex.report.facts import ModelFacts
-    from symflex.report.structure import Counts, RigidCounts
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
@@ -232,10 +223,7 @@ class Study:
     def loops(self) -> tuple[StabilityMap | SymflexError, ...]:
         """Stable values of every gain that a figure names, or why there are none."""
         gains = dict.fromkeys(figure.gain for figure in self.model.figures if figure.gain)
-        return tuple(attempt(partial(self._stable_gains, gain)) for gain in gains)
-
-    def _stable_gains(self, gain: str) -> StabilityMap:
-        return find_stable_gains(self.loop(gain))
+        return tuple(attempt(lambda g=gain: find_stable_gains(self.loop(g))) for gain in gains)  # type: ignore[misc]
 
     def loop(self, gain: str) -> AnyLoop:
         """Return the characteristic function as a polynomial in a gain.
@@ -259,15 +247,12 @@ class Study:
 
         What the zeros mean tells which that is: of it they are the poles of the system held there.
         """
-        joints = {
-            (tf.input.name, tf.quantity, tf.unit): tf
-            for tf, _, told in self.located
-            if told.kind == "colocated"
-        }
+        kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), told.kind) for tf, _, told in self.located]
+        joints = {key: tf for tf, key, kind in kinds if kind == "colocated"}
         found = []
-        for tf, _, told in self.located:
-            joint = joints.get((tf.input.name, tf.quantity, tf.unit))
-            if told.kind != "colocated" and joint is not None:
+        for tf, key, kind in kinds:
+            joint = joints.get(key)
+            if kind != "colocated" and joint is not None:
                 one = attempt(partial(colocation, self.model, ColocationOptions(tf.name, joint.name)))
                 if not isinstance(one, SymflexError):
                     found.append(one)

@@ -6,7 +6,7 @@ Designs are read from text such as ``k=1e4:1e6:log:200``, ``m_2=1,2,5``, ``l=+-5
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import product
 from math import pi, prod
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -23,14 +23,9 @@ from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Tex
 from symflex.loops import pick_gain
 from symflex.model import ExactValue, Model, ModelParameter, check_value, with_numbers
 from symflex.quantities import parse_quantity
+from symflex.roots import Region
+from symflex.transfer import AnyTransferFunction, Given
 from symflex.transfer.bind import read_values
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.roots import Region
-    from symflex.transfer import AnyTransferFunction, Given
-
 
 Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]
@@ -164,14 +159,9 @@ def points_between(start: Point, end: Point, pieces: int) -> list[Point] | None:
     """
     if any(a.pi_power != b.pi_power for a, b in zip(start, end, strict=True)):
         return None
-    shares = (Fraction(i, pieces) for i in range(1, pieces))
-    return [
-        tuple(
-            ExactValue(a.rational + (b.rational - a.rational) * share, a.pi_power)
-            for a, b in zip(start, end, strict=True)
-        )
-        for share in shares
-    ]
+    ways = [(a.rational, b.rational - a.rational, a.pi_power) for a, b in zip(start, end, strict=True)]
+    shares = [Fraction(i, pieces) for i in range(1, pieces)]
+    return [tuple(ExactValue(first + way * x, power) for first, way, power in ways) for x in shares]
 
 
 def number(value: ExactValue) -> float:
@@ -310,24 +300,19 @@ def check_design(model: Model, design: Design) -> None:
 
 
 def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
-    axes: list[Axis] = []
-    ranges: list[Range] = []
-    names: set[str] = set()
-    for each in found:
-        if each.name in names:
-            raise UsageError(Diagnostic("SF902", f"'{each.name}' is swept twice"))
-        names.add(each.name)
-        if isinstance(each, Axis):
-            axes.append(each)
-        else:
-            ranges.append(each)
+    names = [each.name for each in found]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise UsageError(Diagnostic("SF902", f"'{name}' is swept twice"))
+    axes = tuple(each for each in found if isinstance(each, Axis))
+    ranges = tuple(each for each in found if isinstance(each, Range))
     if ranges and not draws:
         hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
         raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))
     if draws and not ranges:
         hint = "leave out the count of a range, as in k=1:10 or k=1:10:log"
         raise UsageError(Diagnostic("SF902", "there is no range to draw from", None, hint))
-    return Design(tuple(axes), tuple(ranges), draws, seed)
+    return Design(axes, ranges, draws, seed)
 
 
 def _read(parameters: Sequence[ModelParameter], text: str) -> Axis | Range:
@@ -391,19 +376,15 @@ def _about(parameter: ModelParameter, said: str, text: str) -> Range:
             share = parse_quantity(source)
         except SpecError:
             raise _unreadable(text) from None
-        if share.unit:
-            raise _unreadable(text)
-        amount = abs(value.rational) * share.angular()[0] / 100
+        amount = Fraction(0) if share.unit else abs(value.rational) * share.angular()[0] / 100
     else:
         by = _value(parameter, said, text)
-        if by.pi_power != value.pi_power:
-            raise _unreadable(text)
-        amount = by.rational
+        amount = by.rational if by.pi_power == value.pi_power else Fraction(0)
     if amount <= 0:
         raise _unreadable(text)
-    low, high = (ExactValue(value.rational + side * amount, value.pi_power) for side in (-1, 1))
-    for limit in (low, high):
-        _assumed(parameter, limit)
+    low, high = (
+        _assumed(parameter, ExactValue(value.rational + side * amount, value.pi_power)) for side in (-1, 1)
+    )
     return _range(parameter, low, high, "lin", text)
 
 

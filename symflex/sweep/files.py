@@ -13,11 +13,11 @@ import json
 import os
 import shutil
 import zipfile
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from hashlib import sha256
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,14 +27,9 @@ from symflex.errors.optional import installed
 from symflex.files import write
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes
+from symflex.sweep.design import Array, Rows
 from symflex.sweep.points import MARGINS, VERDICTS
 from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from symflex.sweep.design import Array, Rows
-
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)
 """The date of every file in an archive."""
@@ -83,14 +78,10 @@ def netcdf_bytes(sweep: Sweep) -> bytes:
     file = netcdf_file(buffer, "w", version=2)
     for name, value in sweep.attributes:
         setattr(file, name, value.encode())
-    sizes = {
-        dim: size
-        for e in (*sweep.coordinates, *sweep.variables)
-        for dim, size in zip(e.dims, e.values.shape, strict=True)
-    }
-    for dim, size in sizes.items():
+    every = (*sweep.coordinates, *sweep.variables)
+    for dim, size in dict(d for e in every for d in zip(e.dims, e.values.shape, strict=True)).items():
         file.createDimension(dim, size)
-    for each in (*sweep.coordinates, *sweep.variables):
+    for each in every:
         values, dims = each.values, each.dims
         if values.dtype.kind == "U":
             width = max(values.dtype.itemsize // 4, 1)
@@ -351,7 +342,8 @@ def _prepare(folder: Path, key: str, *, is_fresh: bool) -> None:
         raise UsageError(Diagnostic("SF916", f"'{folder}' is not a journal of a sweep", None, "move it away"))
     if folder.is_dir():
         found = _key_of(about)
-        if found is None and any(folder.iterdir()) and not _is_begun(folder):
+        # A kill may have come between making a folder and saying whose it is.
+        if found is None and not all(path.match(".symflex-*.tmp") for path in folder.iterdir()):
             message = f"'{folder}' is not a journal of a sweep"
             raise UsageError(Diagnostic("SF916", message, None, "move it away or choose another -o"))
         if found is not None and found != key and not is_fresh:
@@ -371,11 +363,9 @@ def _prepare(folder: Path, key: str, *, is_fresh: bool) -> None:
 def _discard(folder: Path) -> None:
     """Remove a journal; what says whose it is goes last, so that after a kill it is still one."""
     for path in folder.iterdir():
-        if path.name == ABOUT:
-            continue
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
-        else:
+        elif path.name != ABOUT:
             path.unlink()
     shutil.rmtree(folder)
 
@@ -388,8 +378,3 @@ def _key_of(about: Path) -> str | None:
     if not isinstance(found, dict) or found.get("schema") != JOURNAL_SCHEMA:
         return None
     return str(found.get("key"))
-
-
-def _is_begun(folder: Path) -> bool:
-    """Tell whether a kill came between making a folder and saying whose it is."""
-    return all(path.name.startswith(".symflex-") and path.suffix == ".tmp" for path in folder.iterdir())

@@ -15,7 +15,7 @@ from enum import IntEnum
 from fractions import Fraction
 from functools import lru_cache
 from hashlib import sha256
-from math import hypot, inf, isfinite, nan, nextafter, pi, ulp
+from math import hypot, inf, nan, nextafter, pi, ulp
 from typing import Literal
 
 import numpy as np
@@ -90,19 +90,14 @@ def rounded(ball: arb) -> tuple[float, float, bool]:
     centre = _nearest(size, least)
     unit = Fraction(2) ** least
     ends = ((size - around) * unit, (size + around) * unit)
-    return centre, _upwards(max(abs(Fraction(centre) - end) for end in ends)), False
+    farthest = max(abs(Fraction(centre) - end) for end in ends)
+    radius = float(farthest)
+    return centre, nextafter(radius, inf) if Fraction(radius) < farthest else radius, False
 
 
 def _nearest(mantissa: int, exponent: int) -> float:
     """Return the double nearest to ``mantissa * 2^exponent``: quotients of integers are rounded correctly."""
     return mantissa / (1 << -exponent) if exponent < 0 else float(mantissa << exponent)
-
-
-def _upwards(value: Fraction) -> float:
-    result = float(value)
-    if not isfinite(result):
-        return inf
-    return nextafter(result, inf) if Fraction(result) < value else result
 
 
 RootKind = Literal["poles", "zeros"]
@@ -203,9 +198,7 @@ class RootSolver:
         return bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
 
     def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
-        similarity = None
-        if self._similarities is not None:
-            similarity = self._similarities.at({**self._declared, **values})
+        similarity = self._similarities.at({**self._declared, **values}) if self._similarities else None
         if similarity is None:
             return self._searched(self._bound(values), 0)
         family = _family(similarity)
@@ -229,9 +222,8 @@ class RootSolver:
         """Return the roots at a point to many digits, none where not all is proved."""
         found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
         model, roots = self._chosen(found, family), _upper(self._all(found))
-        if model.status is PointStatus.CERTIFIED and all(root.certified for root in roots):
-            return _Known(similarity, model, roots)
-        return _Known(similarity, None, ())
+        is_proved = model.status is PointStatus.CERTIFIED and all(root.certified for root in roots)
+        return _Known(similarity, model, roots) if is_proved else _Known(similarity, None, ())
 
     def _searched(self, bound: AnyBoundFunction, family: int) -> PointRoots:
         for digits in LADDER:
@@ -249,12 +241,9 @@ class RootSolver:
         if not certificate.certified:
             status = PointStatus.NOT_CERTIFIED
         every = self._all(found)
+        kinds = {True: RootStatus.CERTIFIED, False: RootStatus.TOGETHER}
         rows = tuple(
-            FoundRoot(
-                doubles(root.re, root.im),
-                root.multiplicity,
-                RootStatus.CERTIFIED if root.certified else RootStatus.TOGETHER,
-            )
+            FoundRoot(doubles(root.re, root.im), root.multiplicity, kinds[root.certified])
             for root in _upper(every)
         )
         at_zero = sum(root.multiplicity for root in every if root.is_zero)
@@ -269,11 +258,9 @@ def _upper(roots: Sequence[Root]) -> tuple[Root, ...]:
 def _scaled(roots: Sequence[Root], known: Similarity, wanted: Similarity) -> tuple[FoundRoot, ...]:
     with precision(SCALE_BITS):
         factor = arb(wanted.scale / known.scale).root(wanted.degree)
-        found = []
-        for root in roots:
-            place = doubles(root.re * factor, root.im * factor)
-            found.append(FoundRoot(place, root.multiplicity, RootStatus.CERTIFIED))
-    return tuple(found)
+        places = [doubles(root.re * factor, root.im * factor) for root in roots]
+    pairs = zip(places, roots, strict=True)
+    return tuple(FoundRoot(place, root.multiplicity, RootStatus.CERTIFIED) for place, root in pairs)
 
 
 def _family(similarity: Similarity) -> int:
@@ -363,8 +350,8 @@ def solve_margins(task: Task) -> Solver:
         raise BudgetError(Diagnostic("SF502", message, None, "split the model, or sweep its poles"))
 
     def solve(points: Sequence[Point]) -> Rows:
-        values = {name: np.full(len(points), np.nan) for name in MARGINS}
-        radii = {name: np.full(len(points), np.nan) for name in MARGINS}
+        every = (*MARGINS, *(f"{name}_radius" for name in MARGINS))
+        values = {name: np.full(len(points), np.nan) for name in every}
         verdicts = [NOT_EXAMINED] * len(points)
 
         def one(i: int, point: Point) -> PointStatus:
@@ -372,15 +359,14 @@ def solve_margins(task: Task) -> Solver:
             found = find_stable_gains(loop)
             verdicts[i] = found.verdict
             for name, (centre, radius) in _margins_of(found).items():
-                values[name][i], radii[name][i] = centre, radius
+                values[name][i], values[f"{name}_radius"][i] = centre, radius
             return PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
 
         told = _each(points, one)
         said = _said(verdicts)
         word = said["verdict"]
         stable = np.where(word == STABLE, 1, np.where(word == UNKNOWN, -1, 0)).astype(np.int8)
-        radius = {f"{name}_radius": radii[name] for name in MARGINS}
-        return {**values, **radius, "stable": stable, **said, **told}
+        return {**values, "stable": stable, **said, **told}
 
     return solve
 

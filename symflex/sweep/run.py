@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import pickle
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from hashlib import sha256
@@ -18,7 +18,6 @@ from multiprocessing import connection, get_context, parent_process
 from pathlib import Path
 from threading import Thread
 from time import monotonic
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -28,8 +27,10 @@ from symflex.errors.optional import installed
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
+from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
+from symflex.roots import Progress, Region
 from symflex.roots.region import region_of
 from symflex.sweep.design import (
     Array,
@@ -44,18 +45,11 @@ from symflex.sweep.design import (
     read_design,
     written,
 )
-from symflex.sweep.files import check_writable, open_journal, sweep_bytes
+from symflex.sweep.files import FolderJournal, check_writable, open_journal, sweep_bytes
+from symflex.sweep.follow import Between, Complexes
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
 from symflex.sweep.sweep import Sweep, assembled
 from symflex.transfer.of_model import derive_for_values, pick_pairs
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from symflex.model import Model
-    from symflex.roots import Progress, Region
-    from symflex.sweep.follow import Between, Complexes
-
 
 CONNECT_SECONDS = 10
 
@@ -123,9 +117,8 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
                 executor.shutdown(wait=False)
     except distributed.KilledWorker as error:
         message = f"a worker stopped before it was done: {error}"
-        raise BudgetError(
-            Diagnostic("SF508", message, None, "use fewer workers, or more memory for each")
-        ) from None
+        hint = "use fewer workers, or more memory for each"
+        raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
 
 
 CHUNKS = 200
@@ -137,18 +130,6 @@ MOST_BETWEEN = (40, 400)
 """Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
 MINUTE = 60.0
 HOUR = 3600.0
-
-
-class Journal(Protocol):
-    """Keeps the chunks that are done."""
-
-    def read(self, chunk: int) -> Rows | None:
-        """Return a chunk that was kept, ``None`` where it was not."""
-        ...
-
-    def write(self, chunk: int, rows: Rows) -> None:
-        """Keep a chunk."""
-        ...
 
 
 def chunk_size(count: int) -> int:
@@ -176,7 +157,7 @@ def run_sweep(
     executor: Executor | None = None,
     *,
     workers: int = 1,
-    journal: Journal | None = None,
+    journal: FolderJournal | None = None,
     progress: Progress | None = None,
     attributes: Mapping[str, str] | None = None,
     clock: Callable[[], float] = monotonic,
@@ -190,17 +171,11 @@ def run_sweep(
     """
     size = chunk_size(design.count)
     chunks = range(-(-design.count // size))
-    done: dict[int, Rows] = {}
-    missing = []
-    for chunk in chunks:
-        rows = None if journal is None else journal.read(chunk)
-        if rows is None:
-            missing.append(chunk)
-        else:
-            done[chunk] = rows
-    shown = _Shown(
-        progress or Silent(), design.count, sum(len(rows["point_status"]) for rows in done.values()), clock
-    )
+    kept = {} if journal is None else {chunk: journal.read(chunk) for chunk in chunks}
+    done: dict[int, Rows] = {chunk: rows for chunk, rows in kept.items() if rows is not None}
+    missing = [chunk for chunk in chunks if chunk not in done]
+    before = sum(len(rows["point_status"]) for rows in done.values())
+    ended, start, told = before, clock(), progress or Silent()
     pickled = pickle.dumps(task)
     solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
     try:
@@ -208,7 +183,9 @@ def run_sweep(
             done[chunk] = rows
             if journal is not None:
                 journal.write(chunk, rows)
-            shown.add(len(rows["point_status"]))
+            ended += len(rows["point_status"])
+            left = time_left((clock() - start) / (ended - before) * (design.count - ended))
+            told.report(ended / design.count, f"{ended} of {design.count} points, {left} left")
     except BrokenExecutor as error:
         hint = "there may be too little memory; with -o, the same command continues where this one stopped"
         message = f"a worker stopped before it was done: {error}"
@@ -269,24 +246,8 @@ def _stacked(arrays: Sequence[Array]) -> Array:
         return np.concatenate(arrays)
     width = max(array.shape[1] for array in arrays)
     empty = np.nan if arrays[0].dtype.kind == "f" else 0
-    return np.concatenate(
-        [np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=empty) for a in arrays]
-    )
-
-
-class _Shown:
-    """Says how many points are done and how long the others will take."""
-
-    def __init__(self, progress: Progress, count: int, before: int, clock: Callable[[], float]) -> None:
-        self._progress, self._count, self._before = progress, count, before
-        self._done, self._clock, self._start = before, clock, clock()
-
-    def add(self, points: int) -> None:
-        """Count points that are done."""
-        self._done += points
-        rate = (self._clock() - self._start) / (self._done - self._before)
-        left = time_left(rate * (self._count - self._done))
-        self._progress.report(self._done / self._count, f"{self._done} of {self._count} points, {left} left")
+    wide = [np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=empty) for a in arrays]
+    return np.concatenate(wide)
 
 
 def time_left(seconds: float) -> str:
@@ -314,10 +275,11 @@ def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] =
     if given.of != "response":
         check_causal(model, f"a sweep of {given.of}")
     pair = pick_pairs(model, [given.tf] if given.tf else [])[0]
+    drawn = (given.draws or 0, given.seed)
     if isinstance(given.over, Mapping):
-        design = design_of(model.parameters, given.over, given.draws or 0, given.seed)
+        design = design_of(model.parameters, given.over, *drawn)
     else:
-        design = read_design(model.parameters, given.over, given.draws or 0, given.seed)
+        design = read_design(model.parameters, given.over, *drawn)
     region = None
     if given.of in ("poles", "zeros"):
         region = region_of(RootsOptions(modes=given.modes, band=None if given.modes else given.band))
@@ -347,9 +309,8 @@ def sweep_task(
     if of == "margins":
         pick_gain(model.parameters, gain)
     check_design(model, design)
-    return Task(
-        model, pair, of, design.names, derive_for_values, region, tuple(map(float, frequencies)), gain
-    )
+    lines = tuple(map(float, frequencies))
+    return Task(model, pair, of, design.names, derive_for_values, region, lines, gain)
 
 
 def sweep(

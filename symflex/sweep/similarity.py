@@ -8,18 +8,14 @@ dimension. Where all of them are equal, exactly, the functions are similar.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.model import ExactValue
-    from symflex.transfer import TransferFunction
+from symflex.model import ExactValue
+from symflex.transfer import TransferFunction
 
 KERNELS = ("cosh", "sinh", "cos", "sin")
 PI = "pi"

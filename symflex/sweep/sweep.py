@@ -51,8 +51,7 @@ class Labelled:
         values = np.array(self.values)
         values.setflags(write=False)
         if values.ndim != len(self.dims):
-            message = f"'{self.name}' has {values.ndim} axes and {len(self.dims)} names for them"
-            raise ValueError(message)
+            raise ValueError(f"'{self.name}' has {values.ndim} axes and {len(self.dims)} names for them")
         object.__setattr__(self, "values", values)
 
 
@@ -74,10 +73,7 @@ class Sweep:
 
     def __getitem__(self, name: str) -> Array:
         """Return an array by its name."""
-        for each in (*self.variables, *self.coordinates):
-            if each.name == name:
-                return each.values
-        raise KeyError(name)
+        return {each.name: each.values for each in (*self.coordinates, *self.variables)}[name]
 
     def attribute(self, name: str) -> str:
         """Return an attribute, empty where there is none."""
@@ -180,22 +176,13 @@ def label(name: str) -> str:
 
 def _parameters(task: Task, design: Design) -> list[Labelled]:
     known = {p.name: p for p in task.model.parameters}
-    found = [
-        Labelled(
-            label(axis.name),
-            (label(axis.name),),
-            np.array([number(value) for value in axis.values]),
-            known[axis.name].unit,
-            known[axis.name].doc,
-        )
-        for axis in design.axes
-    ]
-    first = design.points[: design.draws]
+    rows = [(axis.name, label(axis.name), axis.values) for axis in design.axes]
     for i, limits in enumerate(design.ranges, start=len(design.axes)):
-        values = np.array([number(point[i]) for point in first])
-        about = known[limits.name]
-        found.append(Labelled(label(limits.name), (DRAW,), values, about.unit, about.doc))
-    return found
+        rows.append((limits.name, DRAW, tuple(point[i] for point in design.points[: design.draws])))
+    return [
+        Labelled(label(name), (dim,), np.array(list(map(number, values))), known[name].unit, known[name].doc)
+        for name, dim, values in rows
+    ]
 
 
 Named = tuple[str, tuple[str, ...], "Array", str, str]
@@ -205,9 +192,8 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
     """Return the arrays of roots, sorted by the names of modes, and how many modes there are."""
     s = rows["re"] + 1j * rows["im"]
     names = follow(s, rows["family"].astype(np.int64), predecessors(design), between)
-    modes_kept = max(
-        names.modes, 1
-    )  # one at least, absent everywhere: not all formats and readers take an empty axis
+    # One at least, absent everywhere: not all formats and readers take an empty axis.
+    modes_kept = max(names.modes, 1)
     shape = (design.count, modes_kept)
     points, places = np.nonzero(names.mode >= 0)
     modes = names.mode[points, places]
@@ -309,18 +295,11 @@ def _stability(sweep: Sweep, points: str) -> list[str]:
     words = _words(sweep)
     if not words:
         return [f"{INDENT}stability not known: this file does not say"]
-    said = [
-        f"{'stability not known' if word == 'unknown' else word} at {count}"
-        for word, count in words.items()
-        if count
-    ]
+    shown = {word.replace("unknown", "stability not known"): count for word, count in words.items() if count}
+    first, *said = [f"{word} at {count}" for word, count in shown.items()]
     unseen = int(np.sum(sweep["hidden_motion"]))
-    lines = [f"{INDENT}{', '.join([f'{said[0]} of {points}', *said[1:]])}"]
-    return (
-        [*lines, f"{INDENT}hidden poles on the imaginary axis or right of it at {unseen}"]
-        if unseen
-        else lines
-    )
+    hidden = f"{INDENT}hidden poles on the imaginary axis or right of it at {unseen}"
+    return [f"{INDENT}{', '.join([f'{first} of {points}', *said])}", *([hidden] if unseen else [])]
 
 
 def _doubts(sweep: Sweep) -> list[str]:
@@ -337,14 +316,8 @@ def _mode_rows(sweep: Sweep) -> list[tuple[str, ...]]:
     every = range(sweep["status"].shape[-1])
     for k in every[:MODES_SHOWN]:
         there = sweep["status"][..., k] > 0
-        rows.append(
-            (
-                str(k + 1),
-                _span(sweep["frequency_hz"][..., k][there]),
-                _span(sweep["damping_ratio"][..., k][there]),
-                str(int(np.sum(there))),
-            )
-        )
+        spans = (_span(sweep[name][..., k][there]) for name in ("frequency_hz", "damping_ratio"))
+        rows.append((str(k + 1), *spans, str(int(np.sum(there)))))
     return rows
 
 
@@ -356,26 +329,23 @@ def _links(sweep: Sweep) -> list[str]:
     )
     lines = [f"{counted(counts[name], what)} {text}" for name, what, text in said if counts[name]]
     if counts["appears"] == 1:
-        return [*lines, "1 root enters the region or leaves it, and has a name of its own"]
-    if counts["appears"]:
+        lines.append("1 root enters the region or leaves it, and has a name of its own")
+    elif counts["appears"]:
         text = "enter the region or leave it, and have names of their own"
-        return [*lines, f"{counts['appears']} roots {text}"]
+        lines.append(f"{counts['appears']} roots {text}")
     return lines
 
 
 def _link_counts(sweep: Sweep) -> dict[str, int]:
-    link = sweep["link"]
-    return {
-        each.name.lower(): int(np.sum(link == each)) for each in NameOrigin if each is not NameOrigin.ABSENT
-    }
+    named = (each for each in NameOrigin if each is not NameOrigin.ABSENT)
+    return {each.name.lower(): int(np.sum(sweep["link"] == each)) for each in named}
 
 
 def _margins(sweep: Sweep) -> list[str]:
     stable = sweep["stable"]
     points = counted(stable.size, "point")
-    lines = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {points}"]
-    if _words(sweep):
-        lines = _stability(sweep, points)
+    plain = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {points}"]
+    lines = _stability(sweep, points) if _words(sweep) else plain
     for name, unit, _ in _margin_names()[: len(MARGINS)]:
         values = sweep[name][np.isfinite(sweep[name])]
         if values.size:
@@ -401,13 +371,8 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         "points": sweep.counts,
         "shape": list(sweep["point_status"].shape),
         "parameters": [
-            {
-                "name": each.name,
-                "unit": each.unit,
-                "count": int(each.values.size),
-                "range": _ends(each.values),
-            }
-            for each in sweep.parameters
+            {"name": p.name, "unit": p.unit, "count": int(p.values.size), "range": _ends(p.values)}
+            for p in sweep.parameters
         ],
         "codes": sorted({code for code in sweep["code"].reshape(-1).tolist() if code}),
     }
@@ -430,8 +395,7 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         ]
     elif sweep.of == "margins":
         document["stable"] = int(np.sum(sweep["stable"] == 1))
-        for name in MARGINS:
-            document[name] = _ends(sweep[name])
+        document |= {name: _ends(sweep[name]) for name in MARGINS}
     return document
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
@@ -35,16 +36,11 @@ from symflex.data.fitting.problem import (
     with_noise,
     with_rough_noise,
 )
-from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Mask, Real, Resonances, Whole
+from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
-
-    from symflex.data.measurement import MeasuredResponse
 
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8
@@ -180,29 +176,16 @@ class ResonanceFit:
         deviation = np.full(found.size(free), np.inf)
         if covariance is not None:
             deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        omega_z, zeta_z = np.zeros_like(found.omega_z), np.zeros_like(found.zeta_z)
-        gain, lag, delay, real_z = (np.zeros(found.responses) for _ in range(4))
-        for r, shown in enumerate(found.has_zeros):
-            at = found.places(r, free)
-            omega_z[r, shown] = np.abs(found.omega_z[r, shown]) * deviation[at["omega_z"]]
-            zeta_z[r, shown] = deviation[at["zeta_z"]]
-            # Parameters that were not fitted have an empty place.
-            if np.isfinite(found.real_z[r]):
-                real_z[r : r + 1] = np.abs(found.real_z[r]) * deviation[at["real_z"]]
-            gain[r : r + 1][: free.gain] = np.abs(found.gain[r]) * deviation[at["gain"]]
-            lag[r : r + 1][: free.lag] = MILLISECOND * deviation[at["lag"]]
-            delay[r : r + 1][: free.delay] = MILLISECOND * deviation[at["delay"]]
-        return type(found)(
-            found.omega_p * deviation[:n],
-            found.zeta_p * deviation[n : 2 * n],
-            omega_z,
-            zeta_z,
-            gain,
-            lag,
-            delay,
-            found.slope,
-            found.real_p * deviation[2 * n : found.shared()],
-            real_z,
+        own = {name: np.zeros_like(getattr(found, name)) for name in UNITS}
+        for name, index, place in found.own_places(free):
+            sizes = np.abs(getattr(found, name)[index]) if name in LOGARITHMIC else UNITS[name]
+            own[name][index] = sizes * deviation[place]
+        return replace(
+            found,
+            omega_p=found.omega_p * deviation[:n],
+            zeta_p=found.zeta_p * deviation[n : 2 * n],
+            real_p=found.real_p * deviation[2 * n : found.shared()],
+            **own,
         )
 
     def of_response(self, response: int) -> str:
@@ -220,10 +203,8 @@ class ResonanceFit:
         return measured.misfit_degrees(model)
 
     def _seen(self, response: int) -> tuple[MeasuredResponse, Complex]:
-        seen = _seen(self.problem, response, self.resonances)
-        return self.problem.lines[response].at(seen).measured, self.problem.values(self.resonances, response)[
-            seen
-        ]
+        problem, seen = self.problem, _seen(self.problem, response, self.resonances)
+        return problem.lines[response].at(seen).measured, problem.values(self.resonances, response)[seen]
 
 
 def fit_resonances(
@@ -253,10 +234,8 @@ def fit_resonances(
     >>> print(fit.resonances.omega_p.round(6), fit.resonances.zeta_p.round(6), fit.resonances.gain.round(6))
     [62.8] [0.02] [3.]
     """
-    for name, known, what in (
-        (given.start, ("auto", *STARTS), "start"),
-        (given.criterion, CRITERIA, "criterion"),
-    ):
+    choices = ((given.start, ("auto", *STARTS), "start"), (given.criterion, CRITERIA, "criterion"))
+    for name, known, what in choices:
         if name not in known:
             hint = nearest(name, known) or f"choose from: {', '.join(known)}"
             raise UsageError(Diagnostic("SF902", f"there is no {what} '{name[:64]}'", None, hint))
@@ -286,14 +265,8 @@ def _fit(
         if wrong.any():
             place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
-            raise FitError(
-                Diagnostic(
-                    "SF615",
-                    message,
-                    None,
-                    "add damping to the base, or choose a --band without this frequency",
-                )
-            )
+            hint = "add damping to the base, or choose a --band without this frequency"
+            raise FitError(Diagnostic("SF615", message, None, hint))
     problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
     stages = Stages()
@@ -315,16 +288,14 @@ def _fit(
     fitted = candidate.refined.resonances
     thin = problem.thinned(most)
     thin = thin.at([_seen(thin, r, fitted) for r in range(len(measured))])
-    tests = tuple(
-        stages.within(
-            PHASE_SHARE, partial(judge_phase, thin, r, fitted), partial(not_judged, thin, r, fitted)
-        )
-        for r in range(len(measured))
-    )
+    judged = [partial(judge_phase, thin, r, fitted) for r in range(len(bases))]
+    otherwise = [partial(not_judged, thin, r, fitted) for r in range(len(bases))]
+    ways = zip(judged, otherwise, strict=True)
+    tests = tuple(stages.within(PHASE_SHARE, judge, give_up) for judge, give_up in ways)
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     if stages.is_cut:
         reasons = ("the time budget ended before the fit was complete", *reasons)
-    elif _is_drowned(fit):
+    elif not fitted.order and np.median([fit.misfit_db(r) for r in range(len(bases))]) > DROWNED_DB:
         reasons = (*reasons, "the data show no resonance, and noise as large as the response")
     return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
 
@@ -373,9 +344,8 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
     found = []
     for r, line in enumerate(problem.lines):
         every = line.every
-        model = every.observation(
-            every.base * candidate.refined.resonances.factor(r, every.observation.omega)
-        )
+        factor = candidate.refined.resonances.factor(r, every.observation.omega)
+        model = every.observation(every.base * factor)
         off = np.abs(model - every.measured.values) / line.deviation_of_every()
         # What is larger than the noise everywhere is no matter of single lines.
         off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
@@ -426,12 +396,6 @@ def _is_rounded(fit: ResonanceFit) -> bool:
     return False
 
 
-def _is_drowned(fit: ResonanceFit) -> bool:
-    """Tell whether nothing but noise was found."""
-    misfits = [fit.misfit_db(r) for r in range(fit.resonances.responses)]
-    return not fit.resonances.order and float(np.median(misfits)) > DROWNED_DB
-
-
 def named_pair(fit: ResonanceFit, i: int) -> str:
     """Return what a pole pair is called: resonances are counted from 1."""
     return f"pole pair {int(fit.modes[: i + 1].sum())}" if fit.modes[i] else "a residual pole pair"
@@ -468,21 +432,18 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             if not found.has_zeros[r, i]:
                 continue
             pair = f"zero pair {i + 1}{fit.of_response(r)}"
+            damped = f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}"
             if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
                 errors.omega_z[r, i] > WEAK * abs(found.omega_z[r, i])
             ):
                 warnings.append(f"{pair} is not determined by the data: its error is of its own size")
                 continue
             if abs(found.zeta_z[r, i]) > OVERDAMPED:
-                warnings.append(
-                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
-                    "zeros, which stand for behaviour that a gain, a power of s and resonances cannot have"
-                )
+                lacking = "behaviour that a gain, a power of s and resonances cannot have"
+                warnings.append(f"{damped}: two real zeros, which stand for {lacking}")
             elif abs(found.zeta_z[r, i]) > FLAT and not is_exact:
-                warnings.append(
-                    f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g} and no sharp "
-                    "trough: modes outside the band may move it by more than its standard error"
-                )
+                moved = "modes outside the band may move it by more than its standard error"
+                warnings.append(f"{damped} and no sharp trough: {moved}")
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
@@ -492,28 +453,18 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         spacing = line.measured.spacing_hz
         if spacing is None or line.observation.matrix is not None:
             continue
-        narrow = [
-            int(fit.modes[: i + 1].sum())
-            for i in np.flatnonzero(fit.modes).tolist()
-            if found.zeta_p[i] * found.omega_p[i] / np.pi < 4 * spacing
-        ]
+        widths = (found.zeta_p * found.omega_p / np.pi)[fit.modes]
+        narrow = (np.flatnonzero(widths < 4 * spacing) + 1).tolist()
         if narrow:
             pairs = ", ".join(map(str, narrow))
-            warnings.append(
-                f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
-                "used a Hann window, say --window hann, or damping comes out too large"
-            )
+            said = f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
+            warnings.append(f"{said}used a Hann window, say --window hann, or damping comes out too large")
             break
-    advice = ""
-    if not fit.problem.has_base:
-        advice = "; try --slope N" + (
-            ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
-        )
+    several = ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
+    advice = "" if fit.problem.has_base else f"; try --slope N{several}"
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
-        warnings.append(
-            f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
-            "the model lacks something that the data show" + advice
-        )
+        said = f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains"
+        warnings.append(f"{said}: the model lacks something that the data show{advice}")
     if fit.refined.correlation > SMOOTH and not is_exact:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
         warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")

@@ -24,20 +24,16 @@ step for 50,000 lines costs what forming their derivatives costs.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
+from symflex.data.fitting.problem import FitProblem, FittedLines
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from symflex.data.fitting.problem import FitProblem, FittedLines
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""
@@ -96,7 +92,7 @@ class Refined:
 
 
 def refine(
-    problem: FitProblem, start: Resonances, *, steps: int = STEPS, tolerance: float = TOLERANCE
+    problem: FitProblem, start: Resonances, steps: int = STEPS, tolerance: float = TOLERANCE
 ) -> Refined:
     """Return the minimum that a start leads to: logarithmic first, then complex where deviations are known.
 
@@ -113,7 +109,7 @@ def refine(
 
 
 def refine_directly(
-    problem: FitProblem, start: Resonances, *, steps: int = STEPS, tolerance: float = TOLERANCE
+    problem: FitProblem, start: Resonances, steps: int = STEPS, tolerance: float = TOLERANCE
 ) -> Refined:
     """Return the minimum near a start that is close to one, by the last residual alone."""
     kind = "complex" if problem.has_deviations else "logarithmic"
@@ -236,14 +232,13 @@ def _parts(values: Complex) -> Real:
 
 
 def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[Complex]:
-    found: list[Complex] = []
-    for r, line in enumerate(problem.lines):
-        model = problem.values(resonances, r)
-        if kind == "logarithmic":
-            found.append(np.asarray(np.log(model / line.measured.values) / _capped(line.deviation), complex))
-        else:
-            found.append((model - line.measured.values) / _absolute(line))
-    return found
+    pairs = [(problem.values(resonances, r), line) for r, line in enumerate(problem.lines)]
+    if kind == "complex":
+        return [(model - line.measured.values) / _absolute(line) for model, line in pairs]
+    return [
+        np.asarray(np.log(model / line.measured.values) / _capped(line.deviation), complex)
+        for model, line in pairs
+    ]
 
 
 def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> Iterator[Complex]:

@@ -10,24 +10,20 @@ Pereyra 1973), from those of a fit to the driven point, where poles show best. A
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import least_squares
 
+from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.lines import isolated, wild_lines
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
 from symflex.quantities import parse_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.data.fitting.fit import ResonanceFit
-    from symflex.data.measurement import MeasuredResponse
 
 STEP = 1e-6
 """Of the logarithms by which derivatives are taken."""
@@ -98,16 +94,10 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
         raise FitError(Diagnostic("SF616", message, None, "a response at the driven point has positive ones"))
     turned = np.where(np.abs(turned) > RIGHT_ANGLE, turned - np.copysign(2 * RIGHT_ANGLE, turned), turned)
     driven = np.sqrt(found[at].real)
-    return FittedModeShapes(
-        names,
-        at,
-        np.asarray(found.real / driven, np.float64),
-        np.array([_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]),
-        turned,
-        units[0],
-        np.exp(logarithms[:count]) / (2 * np.pi),
-        np.exp(logarithms[count:]),
-    )
+    shapes = np.asarray(found.real / driven, np.float64)
+    errors = [_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]
+    frequency, damping = np.exp(logarithms[:count]) / (2 * np.pi), np.exp(logarithms[count:])
+    return FittedModeShapes(names, at, shapes, np.array(errors), turned, units[0], frequency, damping)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,16 +9,13 @@ factorisation of the widest, and told apart by the BIC. The sign of the gain is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 from symflex.data.fitting.starts import solved_real
-
-if TYPE_CHECKING:
-    from symflex.data.fitting.problem import FitProblem
 
 TURNS, PER_TURN = 2.5, 8
 """Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""
@@ -84,17 +81,10 @@ def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonance
     # Two real poles are a pair; one that is left stays alone.
     first, second = corners[: corners.size // 2 * 2 : 2], corners[1::2]
     centre = np.sqrt(first * second)
-    found = Resonances(
-        np.append(omega, centre),
-        np.append(zeta, (first + second) / (2 * centre)),
-        np.array([one.omega_z for one in chosen]),
-        np.array([one.zeta_z for one in chosen]),
-        np.array([one.gain for one in chosen]),
-        delay=np.array([one.delay for one in chosen]),
-        slope=np.array([one.slope for one in chosen]),
-        real_p=corners[corners.size // 2 * 2 :],
-        real_z=np.array([one.real_z for one in chosen]),
-    )
+    omega_p, zeta_p = np.append(omega, centre), np.append(zeta, (first + second) / (2 * centre))
+    own = ("omega_z", "zeta_z", "gain", "delay", "slope", "real_z")
+    arrays = {name: np.array([getattr(one, name) for one in chosen]) for name in own}
+    found = Resonances(omega_p, zeta_p, real_p=corners[corners.size // 2 * 2 :], **arrays)
     return sum(one.bic for one in chosen), found.ordered()
 
 

@@ -114,15 +114,11 @@ def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observ
 def seen_amplitudes() -> Real:
     """Return with which amplitudes a line sees the frequencies around it; their squares add up to 1."""
     steps = np.arange(-REACH_IN_LINES * STEPS_PER_LINE, REACH_IN_LINES * STEPS_PER_LINE + 1)
-    spectrum = _hann_spectrum(steps / STEPS_PER_LINE)
+    lines = steps / STEPS_PER_LINE
+    near = np.isclose(np.abs(lines), 1)
+    safe = np.where(near, 0.0, lines)
+    spectrum = np.where(near, 0.5, np.sinc(safe) / (1 - safe * safe))  # of a Hann window
     return np.asarray(spectrum / np.sqrt(np.sum(spectrum**2)), np.float64)
-
-
-def _hann_spectrum(line: Real) -> Real:
-    """Return the spectrum of a Hann window over its value at 0, by the distance in lines."""
-    near = np.isclose(np.abs(line), 1)
-    safe = np.where(near, 0.0, line)
-    return np.where(near, 0.5, np.sinc(safe) / (1 - safe * safe))
 
 
 LARGEST_LAG = 4

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import fdtrc
@@ -28,23 +28,11 @@ from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined,
 from symflex.data.fitting.numerator import FAR_OUTSIDE, STRANGE, over_poles, strange
 from symflex.data.fitting.problem import FitProblem, estimated
 from symflex.data.fitting.resonances import Complex, Resonances, Whole
-from symflex.data.fitting.starts import (
-    poles_from_aaa,
-    poles_from_vector_fitting,
-    relocated,
-    start_from_peaks,
-)
+from symflex.data.fitting.starts import poles_from_aaa, poles_from_vector_fitting, relocated, start_from_peaks
 from symflex.errors import BudgetError, Diagnostic
 from symflex.options import FitOptions
 
 Result = TypeVar("Result")
-
-
-class _Effort(TypedDict):
-    """What a search may take."""
-
-    steps: int
-    tolerance: float
 
 
 CRITERIA = ("bic", "aicc")
@@ -57,9 +45,8 @@ PATIENCE, MORE_PATIENCE = 1, 3
 NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.15, 0.6, 0.7, 0.85, 0.92
 """Parts of the time given when the noise has to be known, numbers of poles compared, the fit found, fitted to
 all lines, and its phase tested."""
-THOROUGH = _Effort(steps=STEPS, tolerance=TOLERANCE)
-QUICK = _Effort(steps=25, tolerance=ROUGH)
-"""A quarter of the steps of a whole search, enough to compare numbers of poles."""
+THOROUGH, QUICK = (STEPS, TOLERANCE), (25, ROUGH)
+"""Steps and tolerance of a whole search, and of one that is enough to compare numbers of poles."""
 EXPLAINED = 1.15
 """Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
 WEAK = 0.5
@@ -136,11 +123,6 @@ class Score:
     # strong evidence for one resonance more is missing.
     status: str
 
-    @property
-    def is_usable(self) -> bool:
-        """Whether it is a result."""
-        return self.status == "usable"
-
 
 def _from_peaks(problem: FitProblem, order: int) -> Iterator[Resonances]:
     """Return the start of the paper, and what linear least squares put over its poles."""
@@ -163,12 +145,10 @@ def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
     known: list[Complex] = []
     found: list[tuple[float, Resonances]] = []
     for poles in choices:
-        if any(
-            other.size == poles.size and np.all(abs(other - poles) < SAME * abs(poles)) for other in known
-        ):
-            continue
-        known.append(poles)
-        found += over_poles(problem, poles, MOST_NUMERATORS)
+        alike = (other for other in known if other.size == poles.size)
+        if not any(np.all(abs(other - poles) < SAME * abs(poles)) for other in alike):
+            known.append(poles)
+            found += over_poles(problem, poles, MOST_NUMERATORS)
     for _, resonances in sorted(found, key=lambda one: one[0])[:MOST_STARTS]:
         yield resonances
 
@@ -203,19 +183,13 @@ def best_of_starts(
         if name == "aaa" and best is not None and best.failure is None and kind == "auto":
             break  # the slowest of the three, for where the others fail
         for start in STARTS[name](problem, order):
-            effort = QUICK if is_quick else THOROUGH
-            refined = refine(problem, start, **effort)
+            refined = refine(problem, start, *(QUICK if is_quick else THOROUGH))
             if not (refined.has_converged or is_quick) and (
                 best is None or _merit(problem, refined) < _merit(problem, best.refined)
             ):
-                refined = refine_directly(problem, refined.resonances, steps=2 * STEPS)
-            found = Candidate(
-                order,
-                name if order else "none",
-                start,
-                refined,
-                _failure(problem, refined, is_quick=is_quick),
-            )
+                refined = refine_directly(problem, refined.resonances, 2 * STEPS)
+            failure = _failure(problem, refined, is_quick=is_quick)
+            found = Candidate(order, name if order else "none", start, refined, failure)
             met.append(refined)
             if best is None or _is_better(problem, found, best):
                 best = found
@@ -262,17 +236,13 @@ def chosen_order(
     given_up: list[tuple[Score, Candidate]] = []
     result: Candidate | None = None
     for score in sorted(wanted, key=lambda s: _value(s, criterion)):
-        far_better = [
-            one for s, one in given_up if FAR_BETTER * (s.reduced + NEGLIGIBLE) < score.reduced + NEGLIGIBLE
-        ]
-        if far_better:
-            result = far_better[0]
+        limit = (score.reduced + NEGLIGIBLE) / FAR_BETTER
+        result = next((one for s, one in given_up if s.reduced + NEGLIGIBLE < limit), None)
+        if result is not None:
             break
         best = _continued(problem, thin, by_order[score.order], tried, given.start, stages)
-        status = "usable"
-        if best.failure is not None:
-            status = "failed"
-        elif score.order and modes is None:
+        status = "usable" if best.failure is None else "failed"
+        if status == "usable" and score.order and modes is None:
             is_weak = _is_weak(thin, best.refined) or not _is_founded(scores, score, criterion)
             status = "weak" if is_weak else status
         scores = [replace(s, status=status) if s.order == score.order else s for s in scores]
@@ -297,7 +267,7 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
     def values() -> list[float]:
         """Return what the criterion says of each one tried; infinite where that failed."""
         scores = [_score(thin, one, tried[-1].refined.correlation) for one in tried]
-        return [_value(s, given.criterion) if s.is_usable else np.inf for s in scores]
+        return [_value(s, given.criterion) if s.status == "usable" else np.inf for s in scores]
 
     def attempt(order: int) -> bool:
         """Try a number; return whether that settles it."""
@@ -355,10 +325,8 @@ def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate
     near = [one for one in tried if one.order <= best.order] + [best]
     rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
     slope, limit = _slope_in_band(problem, best.refined.resonances), _merit(problem, best.refined) + CLEAR
-    return any(
-        np.any(_slope_in_band(problem, rival.resonances) != slope) and _merit(problem, rival) < limit
-        for rival in rivals
-    )
+    others = [one for one in rivals if np.any(_slope_in_band(problem, one.resonances) != slope)]
+    return any(_merit(problem, rival) < limit for rival in others)
 
 
 def _slope_in_band(problem: FitProblem, found: Resonances) -> Whole:
@@ -385,16 +353,15 @@ def _continued(
     stages.budget.progress.report(THOROUGH_SHARE, f"fit with {best.order} poles to {problem.count} lines")
     refined = stages.within(
         LAST_SHARE,
-        lambda: refine_directly(problem, best.refined.resonances, steps=3 * STEPS),
-        lambda: refine_directly(problem, best.refined.resonances, steps=0),
+        lambda: refine_directly(problem, best.refined.resonances, 3 * STEPS),
+        lambda: refine_directly(problem, best.refined.resonances, 0),
     )
     return replace(best, refined=refined, failure=_failure(problem, refined))
 
 
 def _thorough(thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
     """Return where a quick fit leads with all steps, and from other starts where it leaves something."""
-    refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
-    best = replace(quick, refined=refined, failure=_failure(thin, refined))
+    best = refitted(quick, thin, 3 * STEPS)
     best = _signs_tried(thin, _without_far_poles(thin, _simplified(thin, best, is_quick=False)))
     if best.failure is not None or not _is_explained(thin, best.refined):
         again = best_of_starts(thin, quick.order, kind)
@@ -415,22 +382,12 @@ def too_few(problem: FitProblem, count: int, found: int) -> str:
     return f"{count} resonances are asked for, and the best fit has {found}{over} {band}"
 
 
-def undetermined() -> Diagnostic:
-    """Return the message that the parameters have no covariance."""
-    return Diagnostic(
-        "SF613",
-        "the data do not determine all parameters: their covariance is singular",
-        None,
-        "ask for fewer resonances, or measure a wider band",
-    )
-
-
 def _nothing(problem: FitProblem) -> Candidate:
     """Return the function without poles that no start led to: the base, or a gain."""
     none = np.zeros(0, np.complex128)
     empty = np.zeros((len(problem.lines), 0))
     plain = Resonances(none.real, none.real, empty, empty, np.ones(len(problem.lines)))
-    refined = refine(problem, plain, **QUICK)
+    refined = refine(problem, plain, *QUICK)
     return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
@@ -457,7 +414,7 @@ def _better_of(
     problem: FitProblem, best: Candidate, start: Resonances, *, is_quick: bool = False
 ) -> Candidate:
     """Return where another start leads, if that is better than the fit so far."""
-    refined = refine_directly(problem, start, **(QUICK if is_quick else THOROUGH))
+    refined = refine_directly(problem, start, *(QUICK if is_quick else THOROUGH))
     failure = _failure(problem, refined, is_quick=is_quick)
     found = replace(best, order=start.order, refined=refined, failure=failure)
     return found if _is_better(problem, found, best) else best
@@ -469,44 +426,37 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
     A pair far above the band is left out; one far below is a power of s, where that may be chosen, and so are
     two real zeros of which one lies below and one above.
     """
-    low, high = problem.band
     for r in range(len(problem.lines)):
-        for i in reversed(range(best.refined.resonances.count)):
+        for i in (*reversed(range(best.refined.resonances.count)), None):
             now = best.refined.resonances
-            place, twice = abs(now.omega_z[r, i]), 2 * now.zeta_z[r, i]
-            is_apart = place < low * abs(twice) and abs(twice) * place > high  # two real ones
-            if not np.isfinite(place) or (low <= place <= high and not is_apart):
+            start = _without_zeros(now, r, i, *problem.band)
+            if start is None or start.slope[r] not in (now.slope[r], *problem.slopes):
                 continue
-            omega_z, gain, slope = now.omega_z.copy(), now.gain.copy(), now.slope.copy()
-            if is_apart:
-                slope[r] += 1
-                gain[r] *= twice / place
-                if slope[r] not in problem.slopes:
-                    continue
-            elif place < low:
-                slope[r] += 2
-                gain[r] *= np.sign(omega_z[r, i]) / place**2
-                if slope[r] not in problem.slopes:
-                    continue
-            omega_z[r, i] = np.inf
-            start = replace(now, omega_z=omega_z, gain=gain, slope=slope).ordered()
             if _is_promising(problem, r, now, start):
                 best = _better_of(problem, best, start, is_quick=is_quick)
-        now = best.refined.resonances
-        corner = abs(now.real_z[r])
-        if not np.isfinite(corner) or low <= corner <= high:
-            continue
-        real_z, gain, slope = now.real_z.copy(), now.gain.copy(), now.slope.copy()
-        if corner < low:
-            slope[r] += 1
-            gain[r] /= real_z[r]
-            if slope[r] not in problem.slopes:
-                continue
-        real_z[r] = np.inf
-        start = replace(now, real_z=real_z, gain=gain, slope=slope)
-        if _is_promising(problem, r, now, start):
-            best = _better_of(problem, best, start, is_quick=is_quick)
     return best
+
+
+def _without_zeros(now: Resonances, r: int, i: int | None, low: float, high: float) -> Resonances | None:
+    """Return a fit without a pair of zeros, or the real one, outside the band; None where it is inside."""
+    omega_z, real_z = now.omega_z.copy(), now.real_z.copy()
+    gain, slope = now.gain.copy(), now.slope.copy()
+    zeros, place = (real_z, r) if i is None else (omega_z, (r, i))
+    size, twice = abs(zeros[place]), 0.0 if i is None else 2 * now.zeta_z[r, i]
+    is_apart = size < low * abs(twice) and abs(twice) * size > high  # two real ones
+    if not np.isfinite(size) or (low <= size <= high and not is_apart):
+        return None
+    if is_apart:
+        slope[r] += 1
+        gain[r] *= twice / size
+    elif size < low and i is None:
+        slope[r] += 1
+        gain[r] /= real_z[r]
+    elif size < low:
+        slope[r] += 2
+        gain[r] *= np.sign(omega_z[r, i]) / size**2
+    zeros[place] = np.inf
+    return replace(now, omega_z=omega_z, real_z=real_z, gain=gain, slope=slope).ordered()
 
 
 def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
@@ -550,7 +500,7 @@ def _is_promising(problem: FitProblem, r: int, now: Resonances, start: Resonance
     if len(problem.lines) == 1:
         return True
     single = replace(problem, lines=problem.lines[r : r + 1], delays=problem.delays[r : r + 1])
-    best, other = (refine_directly(single, one.one(r), **QUICK) for one in (now, start))
+    best, other = (refine_directly(single, one.one(r), *QUICK) for one in (now, start))
     return _merit(single, other) < _merit(single, best) - LOWER
 
 
@@ -576,13 +526,12 @@ def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -
     if not (refined.has_converged or is_quick) or not np.isfinite(refined.cost):
         hint = "ask for fewer resonances, or for another --start"
         return Diagnostic("SF612", "the fit did not converge", None, hint)
-    if refined.covariance is None:
-        return undetermined()
     # Residual terms may be undetermined: what a mode far outside damps is not seen in the band.
-    modes = np.tile(refined.resonances.in_band(*problem.band), 2)
-    if not np.isfinite(np.diag(refined.covariance)[: modes.size][modes]).all():
-        return undetermined()
-    return None
+    modes, covariance = np.tile(refined.resonances.in_band(*problem.band), 2), refined.covariance
+    if covariance is not None and np.isfinite(np.diag(covariance)[: modes.size][modes]).all():
+        return None
+    message = "the data do not determine all parameters: their covariance is singular"
+    return Diagnostic("SF613", message, None, "ask for fewer resonances, or measure a wider band")
 
 
 def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
@@ -592,15 +541,15 @@ def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate
         return candidate, problem
     values = [problem.values(refined.resonances, r) for r in range(len(problem.lines))]
     own = estimated(problem, values, refined.parameters)
-    again = refine_directly(own, refined.resonances, steps=2 * STEPS)
+    again = refine_directly(own, refined.resonances, 2 * STEPS)
     if _failure(own, again) is not None:
         return candidate, problem
     return replace(candidate, refined=again), own
 
 
-def refitted(candidate: Candidate, problem: FitProblem) -> Candidate:
-    """Return the fit to a problem with other lines than those it was found with."""
-    refined = refine_directly(problem, candidate.refined.resonances, steps=2 * STEPS)
+def refitted(candidate: Candidate, problem: FitProblem, steps: int = 2 * STEPS) -> Candidate:
+    """Return the fit to a problem with other lines, or more steps, than those it was found with."""
+    refined = refine_directly(problem, candidate.refined.resonances, steps)
     return replace(candidate, refined=refined, failure=_failure(problem, refined))
 
 
@@ -627,12 +576,7 @@ def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Sco
     fit = size * float(np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE))
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
-    return Score(
-        candidate.order,
-        int(refined.resonances.in_band(*problem.band).sum()),
-        parameters,
-        fit + parameters * float(np.log(size)),
-        float(aicc),
-        refined.reduced,
-        "usable" if candidate.failure is None else "failed",
-    )
+    bic = fit + parameters * float(np.log(size))
+    count = int(refined.resonances.in_band(*problem.band).sum())
+    status = "usable" if candidate.failure is None else "failed"
+    return Score(candidate.order, count, parameters, bic, float(aicc), refined.reduced, status)

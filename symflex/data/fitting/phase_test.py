@@ -21,16 +21,14 @@ there is none, not even with a lag linear in frequency, is the function called n
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from scipy.signal import medfilt
 
 from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
+from symflex.data.fitting.problem import FitProblem, FittedLines
 from symflex.data.fitting.resonances import Complex, Real, Resonances
-
-if TYPE_CHECKING:
-    from symflex.data.fitting.problem import FitProblem, FittedLines
 
 Verdict = Literal["minimum", "undetermined", "nonminimum"]
 
@@ -101,11 +99,8 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     mirrored = search.mirrored
     if problem.free.gain and np.mean(np.cos(np.angle(line.measured.values / model))) < 0:
         # A magnitude does not tell the sign of a gain, and zeros moved to the other side may have turned it.
-        alone, mirrored, model = (
-            replace(alone, gain=-alone.gain),
-            replace(mirrored, gain=-mirrored.gain),
-            -model,
-        )
+        alone, mirrored = (replace(one, gain=-one.gain) for one in (alone, mirrored))
+        model = -model
     difference = np.angle(line.measured.values / model)
     bands = _parted(line.measured.frequency_hz, difference, search.noise)
     magnitude_db = float(20 / np.log(10) * np.sqrt(np.mean(search.level(model) ** 2)))
@@ -113,16 +108,16 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
         is_lost = SIGNIFICANT * np.median(search.noise) > MOST_NOISE
         return PhaseTest(alone, difference, bands, magnitude_db, "undetermined" if is_lost else "minimum")
     misfit = search.misfit(model)
+    verdict: Verdict
     for kind in KINDS[1:]:
         for start in (mirrored, alone):
             other, lag = search.found(start, kind)
             turned = search.single.values(other, 0) * np.exp(-1j * line.omega * lag)
             if search.is_as_measured(turned, misfit):
-                verdict: Verdict = "undetermined" if kind == "lag" else "minimum"
+                verdict = "undetermined" if kind == "lag" else "minimum"
                 return PhaseTest(alone, difference, bands, magnitude_db, verdict, other, lag)
-    return PhaseTest(
-        alone, difference, bands, magnitude_db, "undetermined" if misfit > POOR else "nonminimum"
-    )
+    verdict = "undetermined" if misfit > POOR else "nonminimum"
+    return PhaseTest(alone, difference, bands, magnitude_db, verdict)
 
 
 def not_judged(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
@@ -231,20 +226,10 @@ def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBa
     level = medfilt(np.pad(noise, half, mode="edge"), SMOOTHED_LINES)[half:-half]
     limit = np.maximum(np.radians(LIMIT_DEGREES), SIGNIFICANT * level)
     outside = np.flatnonzero(np.abs(smooth) > limit)
-    if not outside.size:
-        return ()
-    runs = np.split(outside, np.flatnonzero(np.diff(outside) > LONGEST_GAP) + 1)
     bands = []
-    for run in runs:
-        if run.size < SHORTEST_RUN:
-            continue
-        worst = run[int(np.argmax(np.abs(smooth[run])))]
-        bands.append(
-            PartedBand(
-                float(frequency_hz[run[0]]),
-                float(frequency_hz[run[-1]]),
-                float(np.degrees(smooth[worst])),
-                float(frequency_hz[worst]),
-            )
-        )
+    for run in np.split(outside, np.flatnonzero(np.diff(outside) > LONGEST_GAP) + 1):
+        if run.size >= SHORTEST_RUN:
+            worst = run[int(np.argmax(np.abs(smooth[run])))]
+            low, high, at = (float(frequency_hz[i]) for i in (run[0], run[-1], worst))
+            bands.append(PartedBand(low, high, float(np.degrees(smooth[worst])), at))
     return tuple(bands)

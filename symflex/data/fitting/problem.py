@@ -11,8 +11,8 @@ Gaussian errors, found by multiplicative steps that never lower it (Fevotte & Id
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +20,7 @@ from symflex.data.fitting.lines import telling_lines, written_step
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
 from symflex.data.fitting.starts import generous_fit
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.data.measurement import MeasuredResponse
+from symflex.data.measurement import MeasuredResponse
 
 FEWEST_FOR_SLOPE = 5
 """Lines from which a power of s is guessed."""
@@ -148,9 +144,8 @@ class FitProblem:
         for line, chosen in zip(self.lines, places, strict=True):
             every = line.every
             if every.deviation is None and line.deviation is not None:
-                every = replace(
-                    every, deviation=line.deviation_of_every() / np.abs(every.measured.values), whole=every
-                )
+                relative = line.deviation_of_every() / np.abs(every.measured.values)
+                every = replace(every, deviation=relative, whole=every)
             lines.append(line if np.array_equal(every.omega[chosen], line.omega) else every.at(chosen))
         if all(a is b for a, b in zip(lines, self.lines, strict=True)):
             return self
@@ -168,10 +163,8 @@ class FitProblem:
 
     def without_window(self) -> FitProblem:
         """Return the same problem with lines taken as the values themselves."""
-        lines = tuple(
-            replace(line, observation=Observation(line.omega), base=line.base_at_lines) for line in self.lines
-        )
-        return replace(self, lines=lines)
+        plain = [(line, Observation(line.omega), line.base_at_lines) for line in self.lines]
+        return replace(self, lines=tuple(replace(x, observation=o, base=base) for x, o, base in plain))
 
     def quotient(self, response: int) -> Complex:
         """Return measured values over the base, the dead time to begin with, and s to a known power."""
@@ -192,13 +185,9 @@ class FitProblem:
         lines = []
         for line, delay in zip(self.lines, self.delays, strict=True):
             inside, at_lines = 1j * line.observation.omega, 1j * line.omega
-            lines.append(
-                replace(
-                    line,
-                    base=line.base * inside ** float(slope) * np.exp(-inside * delay),
-                    base_at_lines=line.base_at_lines * at_lines ** float(slope) * np.exp(-at_lines * delay),
-                )
-            )
+            base = line.base * inside ** float(slope) * np.exp(-inside * delay)
+            at_lines = line.base_at_lines * at_lines ** float(slope) * np.exp(-at_lines * delay)
+            lines.append(replace(line, base=base, base_at_lines=at_lines))
         return replace(self, lines=tuple(lines), slopes=(0,), delays=())
 
     def values(self, resonances: Resonances, response: int) -> Complex:

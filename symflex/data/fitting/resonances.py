@@ -13,6 +13,7 @@ real zero of each response, 1 + s/z, stand beside the pairs: the lag of a motor,
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -24,6 +25,10 @@ Whole = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
 MILLISECOND = 1e-3
+UNITS = {"omega_z": 1.0, "zeta_z": 1.0, "real_z": 1.0, "gain": 1.0, "lag": MILLISECOND, "delay": MILLISECOND}
+"""Parameters that each response has of its own, and in which units a packed vector holds them."""
+LOGARITHMIC = ("omega_z", "real_z", "gain")
+"""Those of which it holds the logarithm."""
 NO_PEAK = 0.5**0.5
 """Damping ratio from which a pair of poles raises no magnitude."""
 
@@ -123,13 +128,9 @@ class Resonances:
         """
         poles = np.argsort(self.omega_p, kind="stable")
         zeros = np.argsort(np.abs(self.omega_z), axis=1, kind="stable")
-        return replace(
-            self,
-            omega_p=self.omega_p[poles],
-            zeta_p=self.zeta_p[poles],
-            omega_z=np.take_along_axis(self.omega_z, zeros, 1),
-            zeta_z=np.take_along_axis(self.zeta_z, zeros, 1),
-        )
+        omega_z, zeta_z = (np.take_along_axis(own, zeros, 1) for own in (self.omega_z, self.zeta_z))
+        omega_p, zeta_p = self.omega_p[poles], self.zeta_p[poles]
+        return replace(self, omega_p=omega_p, zeta_p=zeta_p, omega_z=omega_z, zeta_z=zeta_z)
 
     def real_corners(self) -> list[float]:
         """Return the corner frequencies of all real poles, the single one and those in pairs.
@@ -166,16 +167,7 @@ class Resonances:
     def one(self, response: int) -> Resonances:
         """Return those of one response."""
         r = slice(response, response + 1)
-        return replace(
-            self,
-            omega_z=self.omega_z[r],
-            zeta_z=self.zeta_z[r],
-            gain=self.gain[r],
-            lag=self.lag[r],
-            delay=self.delay[r],
-            slope=self.slope[r],
-            real_z=self.real_z[r],
-        )
+        return replace(self, **{name: getattr(self, name)[r] for name in (*UNITS, "slope")})
 
     def factor(self, response: int, omega: Real) -> Complex:
         """Return the product with the response's gain at ``1j*omega``, shape (k,)."""
@@ -209,6 +201,13 @@ class Resonances:
             at += size
         return found
 
+    def own_places(self, free: Free) -> Iterator[tuple[str, tuple[int, Mask] | slice, slice]]:
+        """Yield for every response its parameters: name, place in the array of it, place in the vector."""
+        for r, shown in enumerate(self.has_zeros):
+            for name, place in self.places(r, free).items():
+                single = slice(r, r + place.stop - place.start)  # empty where it is not fitted
+                yield name, (r, shown) if name in ("omega_z", "zeta_z") else single, place
+
     def _own(self, response: int, free: Free) -> int:
         """Return how many parameters a response has beside the poles."""
         shown = int(self.has_zeros[response].sum())
@@ -232,48 +231,21 @@ class Resonances:
         milliseconds.
         """
         parts = [np.log(self.omega_p), np.log(self.zeta_p), np.log(self.real_p)]
-        for r in range(self.responses):
-            shown = self.has_zeros[r]
-            parts += [np.log(np.abs(self.omega_z[r, shown])), self.zeta_z[r, shown]]
-            if np.isfinite(self.real_z[r]):
-                parts.append(np.log(np.abs(self.real_z[r : r + 1])))
-            if free.gain:
-                parts.append(np.log(np.abs(self.gain[r : r + 1])))
-            if free.lag:
-                parts.append(self.lag[r : r + 1] / MILLISECOND)
-            if free.delay:
-                parts.append(self.delay[r : r + 1] / MILLISECOND)
+        for name, index, _ in self.own_places(free):
+            values = getattr(self, name)[index]
+            parts.append(np.log(np.abs(values)) if name in LOGARITHMIC else values / UNITS[name])
         return np.concatenate(parts)
 
     def unpack(self, vector: Real, free: Free) -> Resonances:
         """Return the resonances of a vector as :meth:`pack` makes it; gains keep their sign."""
         n = self.count
-        omega_z, zeta_z, real_z = self.omega_z.copy(), self.zeta_z.copy(), self.real_z.copy()
-        gain, lag, delay = self.gain.copy(), self.lag.copy(), self.delay.copy()
-        for r in range(self.responses):
-            shown, at = self.has_zeros[r], self.places(r, free)
-            omega_z[r, shown] = np.sign(omega_z[r, shown]) * np.exp(vector[at["omega_z"]])
-            zeta_z[r, shown] = vector[at["zeta_z"]]
-            if np.isfinite(real_z[r]):
-                real_z[r : r + 1] = np.sign(real_z[r]) * np.exp(vector[at["real_z"]])
-            if free.gain:
-                gain[r : r + 1] = np.sign(gain[r]) * np.exp(vector[at["gain"]])
-            if free.lag:
-                lag[r : r + 1] = MILLISECOND * vector[at["lag"]]
-            if free.delay:
-                delay[r : r + 1] = MILLISECOND * vector[at["delay"]]
-        return replace(
-            self,
-            omega_p=np.exp(vector[:n]),
-            zeta_p=np.exp(vector[n : 2 * n]),
-            real_p=np.exp(vector[2 * n : self.shared()]),
-            omega_z=omega_z,
-            zeta_z=zeta_z,
-            real_z=real_z,
-            gain=gain,
-            lag=lag,
-            delay=delay,
-        )
+        own: dict[str, Real] = {name: getattr(self, name).copy() for name in UNITS}
+        for name, index, place in self.own_places(free):
+            signs, found = np.sign(own[name][index]), vector[place]
+            own[name][index] = signs * np.exp(found) if name in LOGARITHMIC else UNITS[name] * found
+        shared = {"omega_p": vector[:n], "zeta_p": vector[n : 2 * n], "real_p": vector[2 * n : self.shared()]}
+        own |= {name: np.exp(logarithms) for name, logarithms in shared.items()}
+        return replace(self, **own)  # type: ignore[arg-type]
 
     def log_derivatives(self, response: int, omega: Real, free: Free) -> Complex:
         """Return d ln(factor) by the packed parameters that :meth:`columns` names, shape (k, p)."""

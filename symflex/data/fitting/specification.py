@@ -12,26 +12,22 @@ import os
 import re
 import tomllib
 import unicodedata
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.fit import ResonanceFit
+from symflex.data.fitting.resonances import Resonances
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, UsageError
 from symflex.model import load_with
 from symflex.model.scope import RESERVED
 from symflex.model.spec import read
 from symflex.model.spec.write import write
 from symflex.transfer.of_model import assemble, check_solvable
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
-    from symflex.data.fitting.fit import ResonanceFit
-    from symflex.data.fitting.resonances import Resonances
 
 DIGITS = 9
 FREE_NAMES = ("U", "Y")
@@ -53,9 +49,8 @@ def fit_specification(found: ResonanceFit, folder: str | Path, loop: str | None 
     taken = {name for base in found.bases for name in base.taken}
     ways: list[Mapping[str, object] | None] = [None]
     if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
-        raise UsageError(
-            Diagnostic("SF902", f"'{loop[:64]}' is not a valid name for the gain of a loop", None, "say K")
-        )
+        message = f"'{loop[:64]}' is not a valid name for the gain of a loop"
+        raise UsageError(Diagnostic("SF902", message, None, "say K"))
     if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])
         whole = tomllib.loads(source.text, parse_float=Decimal)
@@ -95,7 +90,7 @@ def _written(
     found, errors = fit.resonances, fit.standard_errors()
     prefix = _prefix(taken)
     outputs = _output_names(fit)
-    source_name = fit.bases[0].tf.split("/")[1] if fit.bases[0].tf else _input_name(fit)
+    source_name = fit.bases[0].tf.partition("/")[2] or _ends(fit.measured[0].name)[1]
     parameters: dict[str, object] = {}
     blocks: dict[str, object] = {}
     expressions: dict[str, object] = {}
@@ -103,11 +98,8 @@ def _written(
     used = {source_name, *outputs, *taken}
     for i in range(found.count):
         name = f"{prefix}omega_p{i + 1}"
-        parameters[name] = _frequency(
-            found.omega_p[i],
-            errors.omega_p[i],
-            f"pole pair {i + 1}" + ("" if fit.modes[i] else ", a residual term"),
-        )
+        what = f"pole pair {i + 1}" + ("" if fit.modes[i] else ", a residual term")
+        parameters[name] = _frequency(found.omega_p[i], errors.omega_p[i], what)
         parameters[f"{prefix}zeta_p{i + 1}"] = _ratio(found.zeta_p[i], errors.zeta_p[i])
     for r, output in enumerate(outputs):
         base = fit.bases[r]
@@ -194,8 +186,11 @@ def _pairs(
             where = where if omega_z > 0 else f"real zeros of opposite sign, {where}"
             parameters[pair["omega_z"]] = _frequency(abs(omega_z), errors.omega_z[response, i], where)
             parameters[pair["zeta_z"]] = _ratio(found.zeta_z[response, i], errors.zeta_z[response, i])
-            factors += _real_zeros(pair) if omega_z < 0 else []
-        blocks[block] = _resonance(pair, omega_z)
+        if omega_z < 0:  # two real zeros of opposite sign, whose frequency is in Hz
+            omega, zeta = f"(2*pi*{pair['omega_z']})", pair["zeta_z"]
+            factors.append(f"(1 + 2*{zeta}*s/{omega} - s^2/{omega}^2)")
+        low_pass = {"type": "low_pass", "omega": pair["omega_p"], "zeta": pair["zeta_p"]}
+        blocks[block] = {"type": "resonance", **pair} if 0 < omega_z < np.inf else low_pass
         factors.append(block)
     return parameters, blocks, factors
 
@@ -246,19 +241,6 @@ def _prefix(taken: Collection[str]) -> str:
     return prefix
 
 
-def _resonance(names: Mapping[str, str], omega_z: float) -> dict[str, object]:
-    """Return the block of one resonance, whose pair of zeros may be absent."""
-    if 0 < omega_z < np.inf:
-        return {"type": "resonance", **names}
-    return {"type": "low_pass", "omega": names["omega_p"], "zeta": names["zeta_p"]}
-
-
-def _real_zeros(names: Mapping[str, str]) -> list[str]:
-    """Return the factor of two real zeros of opposite sign, whose frequency is in Hz."""
-    omega, zeta = f"(2*pi*{names['omega_z']})", names["zeta_z"]
-    return [f"(1 + 2*{zeta}*s/{omega} - s^2/{omega}^2)"]
-
-
 def _loop(
     gain: str, driven: str, expressions: Mapping[str, object], used: Collection[str]
 ) -> dict[str, object]:
@@ -285,9 +267,8 @@ def _with_copy(
         section = copied.get(name)
         if not isinstance(section, dict):
             continue
-        entries = {}
+        entries = dict(section)
         for key, entry in section.items():
-            entries[key] = entry
             if name == "blocks" and isinstance(entry, dict) and entry.get("type") == "model":
                 entries[key] = entry | {"spec": _relative(origin / str(entry["spec"]), folder)}
         own = found.get(name)
@@ -318,9 +299,8 @@ def _ratio(value: float, error: float) -> dict[str, object]:
 
 
 def _said_error(error: float, unit: str = "") -> str:
-    return (
-        f"standard error {error:.2g} {unit}".rstrip() if np.isfinite(error) else "not determined by the data"
-    )
+    known = f"standard error {error:.2g} {unit}".rstrip()
+    return known if np.isfinite(error) else "not determined by the data"
 
 
 def _plain(value: float) -> str:
@@ -353,10 +333,6 @@ def _ends(name: str) -> tuple[str, str]:
     """Return names of the output and the input that a response is called by: a quotient of two, or one."""
     above, _, below = name.rpartition("/") if name.count("/") == 1 else (name, "", "")
     return _named(above) or FREE_NAMES[1], _named(below) or FREE_NAMES[0]
-
-
-def _input_name(fit: ResonanceFit) -> str:
-    return _ends(fit.measured[0].name)[1]
 
 
 def _output_names(fit: ResonanceFit) -> list[str]:

@@ -15,15 +15,12 @@ and Peeters, Shock and Vibration Digest 36(1), 2004).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.resonances import Mask, Real
 from symflex.data.fitting.starts import relocated, spread
-
-if TYPE_CHECKING:
-    from symflex.data.fitting.fit import ResonanceFit
 
 FEWEST_ORDERS, MORE_ORDERS, MOST_ORDER = 6, 4, 40
 """Numbers of pairs shown at least, beyond those of the fit, and of poles at most."""

@@ -83,7 +83,7 @@ MOST_LINES = 300
 
 def find_modes(problem: FitProblem) -> list[int]:
     """Return the lines of the first response's peaks over its base, the most prominent first."""
-    level = _level(problem, 0)
+    level = np.log(np.abs(problem.lines[0].ratio))
     noise = _noise(level)
     smooth = _smoothed(level)
     peaks, found = find_peaks(smooth, prominence=max(LEAST_PROMINENCE, NOISE_MULTIPLE * noise))
@@ -102,21 +102,11 @@ def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
         if more is None:
             return None
         found.append(more)
-    peaks = sorted(found)
-    omega_p: list[float] = []
-    zeta_p: list[float] = []
-    zeros: list[list[tuple[float, float]]] = []
-    gains = []
-    for r in range(len(problem.lines)):
-        modes, gain = _one_response(problem, r, peaks)
-        if r == 0:
-            omega_p, zeta_p = [m[0] for m in modes], [m[1] for m in modes]
-        zeros.append([(m[2], m[3]) for m in modes])
-        gains.append(gain)
-    table = np.array(zeros, dtype=np.float64)
-    return Resonances(
-        np.array(omega_p), np.array(zeta_p), table[:, :, 0], table[:, :, 1], np.array(gains)
-    ).ordered()
+    fitted = [_one_response(problem, r, sorted(found)) for r in range(len(problem.lines))]
+    table = np.array([modes for modes, _ in fitted], np.float64)
+    gains = np.array([gain for _, gain in fitted])
+    omega_p, zeta_p = table[0, :, 0], table[0, :, 1]
+    return Resonances(omega_p, zeta_p, table[:, :, 2], table[:, :, 3], gains).ordered()
 
 
 def _hidden_peak(problem: FitProblem, peaks: list[int]) -> int | None:
@@ -188,10 +178,6 @@ def _matched(omega: Real, smooth: Real, top: int, trough: int | None) -> tuple[f
     return omega_p, zeta_p, omega_z, zeta_z
 
 
-def _level(problem: FitProblem, response: int) -> Real:
-    return np.log(np.abs(problem.lines[response].ratio))
-
-
 def _noise(level: Real) -> float:
     """Return the scatter of a smoothed level from line to line."""
     if level.size < SMOOTHED:
@@ -237,11 +223,8 @@ def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
     low, high = problem.band
     for degree in (2 * count, 2 * count + SPARE, 3 * count + SPARE):
         poles = _aaa_poles(line.omega, problem.quotient(0), degree)
-        wanted = [
-            (size, pole)
-            for size, pole in poles
-            if low <= abs(pole) <= high and abs(pole.real) < 0.5 * abs(pole) and pole.imag > 0
-        ]
+        inside = [(size, pole) for size, pole in poles if low <= abs(pole) <= high]
+        wanted = [(size, pole) for size, pole in inside if abs(pole.real) < 0.5 * abs(pole)]
         chosen = sorted(wanted, key=lambda item: -item[0])[:count]
         if len(chosen) == count:
             upper = np.array([complex(-max(abs(p.real), LOWEST_DAMPING * abs(p)), p.imag) for _, p in chosen])
@@ -386,14 +369,8 @@ def relocated(
             total += float(np.linalg.norm(weight * np.abs(quotients[r]))) ** 2
         size = sum(line.omega.size for line in problem.lines)
         mean = np.sqrt(total) / size
-        summed = np.sum(
-            [
-                np.concatenate((_basis(line.omega, poles).real.sum(axis=0), [line.omega.size]))
-                for line in problem.lines
-            ],
-            axis=0,
-        )
-        rows.append(mean * summed[None, :])
+        sums = [np.append(_basis(x.omega, poles).real.sum(axis=0), x.omega.size) for x in problem.lines]
+        rows.append(mean * np.sum(sums, axis=0)[None, :])
         right.append(np.array([mean * size]))
         matrix, target = np.concatenate(rows), np.concatenate(right)
         norms = np.maximum(np.linalg.norm(matrix, axis=0), np.finfo(float).tiny)
@@ -456,9 +433,8 @@ def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, c
         away = pole - support
         with np.errstate(all="ignore"):  # data that an approximant meets exactly leave poles on its points
             residue = np.sum(weights * at / away) / np.sum(-weights / away**2)
-        if not np.isfinite(residue):
-            continue
-        found.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
+        if np.isfinite(residue):
+            found.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
     return found
 
 

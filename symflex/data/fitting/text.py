@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from math import floor, isfinite, log10, pi, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 from symflex.print.text import INDENT, Passage, passages_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 
 SCHEMA: Final = "symflex.fit/1"
 ERROR_DIGITS: Final = 2
@@ -46,14 +43,10 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
             lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
         lines.append(INDENT + _data_line(fit, r))
     yield Passage([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
-    modes = np.flatnonzero(fit.modes).tolist()
-    rows = [
-        _row(str(k), found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
-        for k, i in enumerate(modes, 1)
-    ]
-    yield Passage(
-        [f"{INDENT}poles" + ("" if rows else ": no resonance in the band")], [HEAD, *rows] if rows else ()
-    )
+    poles = list(zip(found.omega_p, errors.omega_p, found.zeta_p, errors.zeta_p, strict=True))
+    rows = [_row(str(k), *poles[i]) for k, i in enumerate(np.flatnonzero(fit.modes), 1)]
+    none = "" if rows else ": no resonance in the band"
+    yield Passage([f"{INDENT}poles{none}"], [HEAD, *rows] if rows else ())
     rows = _residual_terms(fit)
     if rows:
         yield Passage([f"{INDENT}residual terms: poles that are no resonances in the band"], [HEAD, *rows])
@@ -61,19 +54,17 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
         yield _zeros(fit, r)
     if shapes is not None:
         yield _shapes(shapes)
+    misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(found.responses)]
     residuals = [
-        f"{INDENT}residual{fit.of_response(r)}: {fit.misfit_db(r):.2g} dB and "
-        f"{fit.misfit_degrees(r):.2g} degrees rms"
-        for r in range(found.responses)
+        f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB and {turn:.2g} degrees rms"
+        for r, (level, turn) in enumerate(misfits)
     ]
     yield Passage([*residuals, INDENT + _accuracy(fit)])
     if fit.scores:
         yield _orders(fit)
-    tests = [
-        f"{INDENT}phase test{fit.of_response(r)}: {_phase_words(test, fit, r)}"
-        for r, test in enumerate(fit.phase_tests)
-    ]
-    yield Passage([*tests, *(f"{INDENT}warning: {warning}" for warning in fit.warnings)])
+    words = enumerate(_phase_words(test, fit, r) for r, test in enumerate(fit.phase_tests))
+    tests = [f"phase test{fit.of_response(r)}: {said}" for r, said in words]
+    yield Passage([INDENT + line for line in [*tests, *(f"warning: {said}" for said in fit.warnings)]])
 
 
 def _zeros(fit: ResonanceFit, r: int) -> Passage:
@@ -118,7 +109,7 @@ def _orders(fit: ResonanceFit) -> Passage:
     """Return the numbers of poles that were tried."""
     rows = [("poles", "modes", "parameters", "BIC", "AICc", "residual", "")]
     for s in fit.scores:
-        mark = "<" if s.order == fit.resonances.order else "" if s.is_usable else s.status
+        mark = "<" if s.order == fit.resonances.order else s.status.replace("usable", "")
         numbers = (f"{s.bic:.1f}", f"{s.aicc:.1f}", f"{sqrt(s.reduced):.4g}")
         rows.append((str(s.order), str(s.count), str(s.parameters), *numbers, mark))
     told = "did not fail"
@@ -174,15 +165,9 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
         },
         "criterion": fit.criterion,
         "orders": [
-            {
-                "poles": s.order,
-                "modes": s.count,
-                "parameters": s.parameters,
-                "bic": _finite(s.bic),
-                "aicc": _finite(s.aicc),
-                "reduced": _finite(s.reduced),
-                "status": s.status,
-            }
+            {"poles": s.order, "modes": s.count, "parameters": s.parameters}
+            | {name: _finite(getattr(s, name)) for name in ("bic", "aicc", "reduced")}
+            | {"status": s.status}
             for s in fit.scores
         ],
         "mode_shapes": None if shapes is None else _shapes_json(shapes),
@@ -194,7 +179,10 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
     measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
     found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
     shown = found.has_zeros[r]
-    zeros = (found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r])
+    omega = found.omega_z[r, shown]
+    parts = (start.omega_p, start.zeta_p, start.omega_z[r], start.zeta_z[r])
+    begun = zip(*(part.tolist() for part in parts), strict=True)
+    zeros = _pairs(np.abs(omega), found.zeta_z[r, shown], errors.omega_z[r, shown], errors.zeta_z[r, shown])
     return {
         "name": measured.name,
         "synthetic": measured.is_synthetic,
@@ -209,24 +197,9 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "gain": {"value": float(found.gain[r]), "standard_error": _finite(float(errors.gain[r]))},
         "lag": {"value": float(found.lag[r]), "standard_error": _finite(float(errors.lag[r]))},
         "delay": {"value": float(found.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
-        "zeros": [
-            pair | {"real_of_opposite_sign": bool(omega < 0)}
-            for pair, omega in zip(
-                _pairs(*(np.abs(x[shown]) if k == 0 else x[shown] for k, x in enumerate(zeros))),
-                found.omega_z[r, shown],
-                strict=True,
-            )
-        ],
+        "zeros": [p | {"real_of_opposite_sign": bool(w < 0)} for p, w in zip(zeros, omega, strict=True)],
         "real_zeros": [_real(found.real_z[r], errors.real_z[r])] if np.isfinite(found.real_z[r]) else [],
-        "start": [
-            {
-                "omega_p": float(start.omega_p[i]),
-                "zeta_p": float(start.zeta_p[i]),
-                "omega_z": _finite(float(start.omega_z[r, i])),
-                "zeta_z": float(start.zeta_z[r, i]),
-            }
-            for i in range(start.count)
-        ],
+        "start": [{"omega_p": p, "zeta_p": x, "omega_z": _finite(z), "zeta_z": y} for p, x, z, y in begun],
         "residual_db": fit.misfit_db(r),
         "residual_degrees": fit.misfit_degrees(r),
         "phase_test": {
@@ -293,9 +266,8 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
     if measured.coherence is None:
         parts.append("no coherence: the noise is estimated")
     else:
-        parts.append(
-            f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}"
-        )
+        shares = measured.coherence
+        parts.append(f"coherence {shares.min():.3f} or more, median {np.median(shares):.3f}")
         if measured.averages:
             parts.append(f"{measured.averages:g} averages")
     if measured.window:
@@ -334,15 +306,12 @@ def _error(error: float) -> str:
 
 def _accuracy(fit: ResonanceFit) -> str:
     errors = "standard errors are scaled to the residual"
-    if fit.refined.correlation > 1:
-        errors += f" and count neighbouring lines as correlated (a mean has {_times(fit)} the variance)"
+    if (correlation := fit.refined.correlation) > 1:
+        variance = f"a mean has {correlation:.2f} times the variance"
+        errors += f" and count neighbouring lines as correlated ({variance})"
     if not _is_scaled(fit):
         return errors
     return f"that is {sqrt(fit.refined.reduced):.3g} times what coherence explains; {errors}"
-
-
-def _times(fit: ResonanceFit) -> str:
-    return f"{fit.refined.correlation:.2f} times"
 
 
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
@@ -370,7 +339,5 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
             f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "
             f"{1e3 * test.lag_s:.3g} ms"
         )
-    return (
-        f"undetermined: {parts}, and the minimum-phase fit leaves {test.magnitude_db:.2g} dB rms of the "
-        "magnitude"
-    )
+    left = f"{test.magnitude_db:.2g} dB rms of the magnitude"
+    return f"undetermined: {parts}, and the minimum-phase fit leaves {left}"

@@ -18,7 +18,7 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from math import prod
@@ -84,9 +84,8 @@ class ByteReader:
         ValueError when there are fewer bytes, or it is not a shape; nothing is allocated for what is not
         there.
         """
-        if len(shape) > DIMENSIONS_LIMIT or any(size < 0 for size in shape):
-            message = f"an array has the shape {' x '.join(map(str, shape))}"[:SHOWN]
-            raise ValueError(message)
+        is_shape = len(shape) <= DIMENSIONS_LIMIT and all(size >= 0 for size in shape)
+        require(is_shape, f"an array has the shape {' x '.join(map(str, shape))}"[:SHOWN])
         dtype = np.dtype(self.order + kind)
         count = prod(shape)
         if not count:
@@ -108,7 +107,6 @@ class ByteReader:
 Arrays = dict[str, npt.NDArray[Any]]
 
 _MAGIC: Final = b"\x93NUMPY"
-_ENDING: Final = ".npy"
 _DESCRIPTION: Final = re.compile(r"'descr': '([<>|=]?)([biufcSU?]\d{0,6})'")
 _FIELDS: Final = re.compile(
     r"'descr': \[((?:\('\w{1,60}', '[<>|=]?(?:[iu][1248]|f[48]|c8|c16)'\),? ?){1,99})\]"
@@ -119,8 +117,6 @@ _END, _END_SIZE, _END_64, _COMMENT = b"PK\x05\x06", 22, b"PK\x06\x07", 0xFFFF
 """The record that ends an archive: signature, size, its locator of 64 bits, the longest comment."""
 _DIRECTORY_LIMIT: Final = 2**20
 """Bytes of an archive's list of members: some ten thousand of them."""
-_IS_ENCRYPTED = 1
-"""Bit of a member's flags."""
 
 
 def read_archive(data: bytes, limit: int, members: int) -> Arrays:
@@ -135,7 +131,7 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
             infos = file.infolist()
             if len(infos) > members or sum(info.file_size for info in infos) > limit:
                 raise OverflowError
-            named = ((info.filename.removesuffix(_ENDING), _member(file, info)) for info in infos)
+            named = ((info.filename.removesuffix(".npy"), _member(file, info)) for info in infos)
             return {key: array for name, member in named for key, array in read_array(name, member).items()}
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, NotImplementedError) as error:
         raise ValueError(str(error)[:100] or CUT) from None
@@ -151,14 +147,15 @@ def _check_directory(data: bytes) -> None:
 
 
 def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    require(not info.flag_bits & _IS_ENCRYPTED, f"'{info.filename[:40]}' in it is encrypted")
-    require(
+    name, is_known = (
+        f"'{info.filename[:40]}'",
         info.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED),
-        f"'{info.filename[:40]}' in it is compressed in an unknown way",
     )
+    require(not info.flag_bits & 1, f"{name} in it is encrypted")
+    require(is_known, f"{name} in it is compressed in an unknown way")
     with file.open(info) as member:
         content = member.read(info.file_size + 1)
-    require(len(content) == info.file_size, f"'{info.filename[:40]}' in it is cut short")
+    require(len(content) == info.file_size, f"{name} in it is cut short")
     return content
 
 
@@ -179,15 +176,13 @@ def read_array(name: str, content: bytes) -> Arrays:
         rows = np.frombuffer(reader.take(count * dtype.itemsize), dtype)
         return {field: rows[field] for field in dtype.names or ()}
     if description is None or order is None or shape is None:
-        message = "an array holds neither plain numbers nor text"
-        raise ValueError(message)
+        raise ValueError("an array holds neither plain numbers nor text")
     sizes = [int(size) for size in re.findall(r"\d+", shape[1])]
     reader.order = description[1] or "="
     try:
         return {name: reader.numbers(description[2], sizes, "F" if order[1] == "True" else "C")}
     except TypeError:  # a kind of number that numpy has not
-        message = f"an array is of an unknown kind '{description[2]}'"
-        raise ValueError(message) from None
+        raise ValueError(f"an array is of an unknown kind '{description[2]}'") from None
 
 
 Attributes = dict[str, str]
@@ -218,9 +213,8 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
     for _ in range(_count(reader, _VARIABLE, items)):
         name = _name(reader)
         numbers = [reader.integer("i4") for _ in range(_checked(reader.integer("i4"), items))]
-        require(
-            all(0 <= number < len(dimensions) for number in numbers), "a variable has an unknown dimension"
-        )
+        are_known = all(0 <= number < len(dimensions) for number in numbers)
+        require(are_known, "a variable has an unknown dimension")
         about = _attributes(reader, items)
         kind = _type(reader)
         reader.integer("i4")  # the size, which dimensions and type say as well
@@ -317,10 +311,8 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     if 0 in data[:4]:  # in version 5 text stands there
         return _version_4(data)
     require(len(data) >= _HEADER, CUT)
-    order = {b"IM": "<", b"MI": ">"}.get(data[126:128])
-    if order is None:
-        message = "no byte-order mark"
-        raise ValueError(message)
+    require(data[126:128] in (b"IM", b"MI"), "no byte-order mark")
+    order = "<" if data[126:128] == b"IM" else ">"
     version = ByteReader(data[_VERSION:126], order).integer("u2") >> 8
     if version == _VERSION_7_3:
         raise NewerFileError
@@ -340,22 +332,11 @@ def read_variables(data: bytes, limit: int) -> Arrays:
             require(stream.eof, CUT)
             kind, content = _element(ByteReader(inflated, order))
         if kind == _MATRIX:
-            name, value = _matrix(ByteReader(content, order), DEEPEST)
-            _flatten(name, value, found)
+            name, values = _matrix(ByteReader(content, order), DEEPEST)
+            found |= {name + key: value for key, value in values.items()}
             if len(found) > VARIABLES_LIMIT:
                 raise OverflowError
     raise OverflowError
-
-
-_Value = npt.NDArray[Any] | Mapping[str, "_Value"]
-
-
-def _flatten(name: str, value: _Value, found: Arrays) -> None:
-    if not isinstance(value, Mapping):
-        found[name] = value
-        return
-    for field, inner in value.items():
-        _flatten(f"{name}{field}", inner, found)
 
 
 def _element(reader: ByteReader) -> tuple[int, memoryview]:
@@ -369,53 +350,59 @@ def _element(reader: ByteReader) -> tuple[int, memoryview]:
     return kind, content
 
 
-def _matrix(reader: ByteReader, depth: int) -> tuple[str, _Value]:
-    """Return name and value of an array: flags, dimensions, name, then what its class asks for."""
+def _matrix(reader: ByteReader, depth: int) -> tuple[str, Arrays]:
+    """Return name and value of an array: flags, dimensions, name, then what its class asks for.
+
+    The value of a structure or a cell array is several, by what is to be added to the name; others have "".
+    """
     flags = ByteReader(_element(reader)[1], reader.order).integer("u4")
     kind = flags & 0xFF
     if kind == _OPAQUE:
-        name, _, of = (bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT] for _ in range(3))
-        return name, np.array([ClassName(of)], object)
-    dimensions = _numbers(*_element(reader), reader.order)
-    shape = [int(size) for size in dimensions]
-    name = bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT]
+        name, _, of = (_short_text(reader) for _ in range(3))
+        return name, {"": np.array([ClassName(of)], object)}
+    shape = [int(size) for size in _numbers(*_element(reader), reader.order)]
+    name = _short_text(reader)
     if kind == _CHAR:
-        return name, _lines(*_element(reader), reader.order, shape)
+        return name, {"": _lines(*_element(reader), reader.order, shape)}
     if kind == _OBJECT:
-        of = bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT]
-        return name, np.array([ClassName(of)], object)
+        return name, {"": np.array([ClassName(_short_text(reader))], object)}
     if kind == _CELL and depth:
         return name, _cells(_inner(reader, depth))
     if kind == _STRUCT and depth:
         return name, _fields(reader, depth)
     if kind not in _NUMERIC:
-        return name, _OTHER
+        return name, {"": _OTHER}
     values = _shaped(_numbers(*_element(reader), reader.order), shape)
     if flags & _COMPLEX_FLAG:
         values = _complex(values, _shaped(_numbers(*_element(reader), reader.order), shape))
-    return name, values
+    return name, {"": values}
 
 
-def _inner(reader: ByteReader, depth: int) -> list[_Value]:
+def _short_text(reader: ByteReader) -> str:
+    return bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT]
+
+
+def _inner(reader: ByteReader, depth: int) -> list[Arrays]:
     """Return the arrays that follow, which are those of a cell array or a structure."""
-    values: list[_Value] = []
+    values: list[Arrays] = []
     while reader.left:
         inner, content = _element(reader)
         if inner == _MATRIX:
-            values.append(_matrix(ByteReader(content, reader.order), depth - 1)[1] if content else _OTHER)
+            empty: Arrays = {"": _OTHER}
+            values.append(_matrix(ByteReader(content, reader.order), depth - 1)[1] if content else empty)
             if len(values) > VARIABLES_LIMIT:
                 raise OverflowError
     return values
 
 
-def _cells(values: Sequence[_Value]) -> _Value:
-    texts = [v for v in values if not isinstance(v, Mapping) and v.dtype.kind == "U" and v.size == 1]
+def _cells(values: Sequence[Arrays]) -> Arrays:
+    texts = [v[""] for v in values if "" in v and v[""].dtype.kind == "U" and v[""].size == 1]
     if values and len(texts) == len(values):
-        return np.array([str(text.item()) for text in texts])
-    return {f"{{{i + 1}}}": value for i, value in enumerate(values)}
+        return {"": np.array([str(text.item()) for text in texts])}
+    return {f"{{{i + 1}}}{key}": v for i, value in enumerate(values) for key, v in value.items()}
 
 
-def _fields(reader: ByteReader, depth: int) -> _Value:
+def _fields(reader: ByteReader, depth: int) -> Arrays:
     """Return the fields of a structure, or of an array of them: the names' common length, names, values."""
     length = ByteReader(_element(reader)[1], reader.order).integer("i4")
     text = bytes(_element(reader)[1])
@@ -424,9 +411,9 @@ def _fields(reader: ByteReader, depth: int) -> _Value:
     values = _inner(reader, depth)
     many = len(values) > len(names)
     return {
-        (f"({i // len(names) + 1})" if many else "") + f".{names[i % len(names)]}": value
-        for i, value in enumerate(values)
-        if names
+        (f"({i // len(names) + 1})" if many else "") + f".{names[i % len(names)]}{key}": v
+        for i, value in enumerate(values if names else ())
+        for key, v in value.items()
     }
 
 

@@ -38,7 +38,6 @@ from symflex.data.measurement.measured_response import (
     averages_of,
     checked_response,
     listed_names,
-    nowhere,
     unit_of,
     window_of,
 )
@@ -117,19 +116,18 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
         hint = "in MATLAB: load('FILE.mat'), then save('FILE.mat', '-v7')"
         raise DataError(Diagnostic("SF601", message, None, hint)) from None
     except (ValueError, zlib.error) as error:
-        raise _unreadable(name, kind, error) from None
+        reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
+        raise DataError(Diagnostic("SF601", f"'{name}' is not {kind}: {reason}")) from None
     except OverflowError:
-        raise _too_large(name) from None
+        raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_BYTES} bytes of data")) from None
     if suffix != ".mat":
         return arrays
-    objects = {k: a.item() for k, a in arrays.items() if a.dtype.kind == "O" and a.size}
+    objects = ((k, a.item()) for k, a in arrays.items() if a.dtype.kind == "O" and a.size and k)
     plain = {k: a for k, a in arrays.items() if a.dtype.kind != "O" and not k.startswith("__") and k}
-    objects = {k: o for k, o in objects.items() if isinstance(o, ClassName) and k}
-    if objects and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
-        variable, of = next(iter(objects.items()))
-        message = (
-            f"'{name}': {variable[:40]} is an object of the class {of.name[:40]}, which MATLAB alone reads"
-        )
+    variable, of = next(((k, o) for k, o in objects if isinstance(o, ClassName)), ("", None))
+    if of and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
+        what = f"an object of the class {of.name[:40]}"
+        message = f"'{name}': {variable[:40]} is {what}, which MATLAB alone reads"
         hint = (
             f"in MATLAB: [H, w] = frdata({variable}); save('FILE.mat', 'H', 'w', '-v7') "
             f"(w in rad/s, unless {variable}.FrequencyUnit says Hz: then call it f)"
@@ -212,14 +210,11 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
     for part in asked.split(","):
         kind, _, key = (text.strip() for text in part.partition("="))
         if kind not in known or key not in arrays:
-            what = f"--columns {part[:60]}: " + (
-                f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
-            )
-            hint = (
-                f"the names left of '=' are {', '.join(sorted(known))}; those right of it are "
-                f"{listed_names(list(arrays))}"
-            )
-            raise UsageError(Diagnostic("SF902", f"'{name}': {what}", None, hint))
+            what = f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
+            message = f"'{name}': --columns {part[:60]}: {what}"
+            names = listed_names(list(arrays))
+            hint = f"the names left of '=' are {', '.join(sorted(known))}; those right of it are {names}"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
         found[words.get(kind, kind)] = arrays[key]
     return found
 
@@ -270,25 +265,23 @@ def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
 def _responses(
     known: Arrays, made: Sequence[Assembled], name: str, stem: str, guesses: Sequence[str]
 ) -> list[MeasuredResponse]:
-    averages = known.get("averages")
+    told = {
+        key: _word(known[key]) for key in ("averages", "window", "unit", "synthetic", "note") if key in known
+    }
+    averages = averages_of(told["averages"], name) if "averages" in told else None
+    window, unit = window_of(told.get("window", "")), unit_of(told.get("unit", ""), name)
+    is_synthetic = told.get("synthetic", "").lower() in ("yes", "true", "1", "1.0")
+    notes = (told["note"],) if "note" in told else ()
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(made):
         names = names_of(made, stem)
     found = []
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
-            called,
-            one.frequency_hz,
-            one.values,
-            one.coherence,
-            None if averages is None else averages_of(_word(averages), name),
-            window_of(_word(known["window"])) if "window" in known else "",
-            unit_of(_word(known["unit"]), name) if "unit" in known else "",
-            "synthetic" in known and _word(known["synthetic"]).lower() in ("yes", "true", "1", "1.0"),
-            (_word(known["note"]),) if "note" in known else (),
-            tuple(guesses),
-        )
-        found.append(checked_response(response, name, nowhere))
+            called, one.frequency_hz, one.values, one.coherence, averages, window, unit, is_synthetic,
+            notes, tuple(guesses),
+        )  # fmt: skip
+        found.append(checked_response(response, name, lambda *_: None))
     return found
 
 
@@ -326,15 +319,13 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
             raise _ask_unit(f"the first column of {key}", name, "--columns f,h", "--columns omega,h")
         guesses.append(f"the first column of '{key}' is read in {unit}, in which its ends are round numbers")
         first = ColumnMeaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
-        meanings = [first, *(ColumnMeaning("complex") for _ in range(width - 1))]
+        meanings = [first, *[ColumnMeaning("complex")] * (width - 1)]
     else:
         unit = unit_by_round_ends(numbers[0])
         word = "omega" if unit == "rad/s" else "f"
         message = f"'{name}': {key} is a matrix of {width} real columns without names"
-        hint = (
-            f"say what they are: --columns {word},re,im or --columns {word},mag,phase_deg (omega for rad/s)"
-        )
-        raise DataError(Diagnostic("SF602", message, None, hint))
+        option = f"--columns {word},re,im or --columns {word},mag,phase_deg"
+        raise DataError(Diagnostic("SF602", message, None, f"say what they are: {option} (omega for rad/s)"))
     columns = [
         DataColumn(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
         for n, m, v in zip(names, meanings, numbers, strict=True)
@@ -385,8 +376,7 @@ def _word(array: Array) -> str:
 
 def _numeric(array: Array, name: str, what: str) -> Array:
     if array.dtype.kind not in "fciub":
-        message = f"'{name}': {what} is not an array of numbers"
-        raise DataError(Diagnostic("SF602", message, None, _HINT))
+        raise DataError(Diagnostic("SF602", f"'{name}': {what} is not an array of numbers", None, _HINT))
     return array.astype(np.complex128)
 
 
@@ -406,12 +396,3 @@ def _rows(array: Array, size: int, name: str, what: str) -> Array:
     if len(table) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} responses"))
     return table
-
-
-def _too_large(name: str) -> DataError:
-    return DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_BYTES} bytes of data"))
-
-
-def _unreadable(name: str, what: str, error: Exception) -> DataError:
-    reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
-    return DataError(Diagnostic("SF601", f"'{name}' is not {what}: {reason}"))

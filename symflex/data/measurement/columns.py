@@ -210,15 +210,10 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", low))  # F in X/F is a force
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
     if not kind and unit:
-        kind = (
-            "frequency"
-            if unit.lower() in _FREQUENCY_UNITS
-            else "phase"
-            if unit.lower() in (*_DEGREES[:-2], low)
-            else ""
-        )
-        is_impedance = unit.lower() in _OHMS and low.startswith("z")
-        kind = "magnitude" if unit.lower() in _LEVELS or is_impedance else kind
+        is_size = unit.lower() in _LEVELS or (unit.lower() in _OHMS and low.startswith("z"))
+        is_phase = unit.lower() in (*_DEGREES[:-2], low)
+        is_frequency = unit.lower() in _FREQUENCY_UNITS
+        kind = "magnitude" if is_size else "frequency" if is_frequency else "phase" if is_phase else ""
     kind, unit = ("magnitude", text.strip()) if not kind and text.strip().lower() in _OHMS else (kind, unit)
     if unit.lower() in _FREQUENCY_UNITS and {"frequency", "freq"} & set(words):
         kind = "frequency"  # "Frequency - Phase (Hz)", beside the phase
@@ -250,23 +245,15 @@ def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> Co
     small = unit.lower().rstrip(".")
     if found.kind in ("frequency", "omega"):
         own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
-        factor = _FREQUENCY_UNITS.get(small or own)
-        factor = 1e-3 if unit == "mHz" else factor
-        factor = _FREQUENCY_UNITS["rad/s"] if found.kind == "omega" and small in ("1/s", "s^-1") else factor
-        factor = _FREQUENCY_UNITS["rad/s"] if small == "rad" else factor
+        is_angular = small == "rad" or (found.kind == "omega" and small in ("1/s", "s^-1"))
+        factor = 1e-3 if unit == "mHz" else _FREQUENCY_UNITS.get("rad/s" if is_angular else small or own)
         return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
     if found.kind == "phase":
         factor = _PHASE_UNITS.get(small)
         return replace(found, factor=None if factor is None else sign * factor)
     if found.kind == "magnitude":
-        is_level = (
-            small.startswith(_LEVELS)
-            or found.word == "logmag"
-            or found.word.startswith("db")
-            or found.word == "spl"
-        )
-        is_plain = bool(small) and not is_level and small != "-"
-        return replace(found, scale="decibel" if is_level else "linear" if is_plain else "unknown")
+        is_level = small.startswith(_LEVELS) or found.word.startswith(("db", "logmag", "spl"))
+        return replace(found, scale="decibel" if is_level else "unknown" if small in ("", "-") else "linear")
     return replace(found, factor=sign)
 
 
@@ -287,12 +274,9 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
         turned = {m.label for m in found if m.kind == "phase"}
         ratios = {m.label for m in found if not m.kind and "/" in m.unit + m.label}
         turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
-        found = [
-            meaning_of(f"magnitude {m.label}", m.unit)
-            if not m.kind and m.label in turned and "/" in m.unit + m.label
-            else m
-            for m in found
-        ]
+        for i, m in enumerate(found):
+            if not m.kind and m.label in turned and "/" in m.unit + m.label:
+                found[i] = meaning_of(f"magnitude {m.label}", m.unit)
         kinds = {m.kind for m in found}
     if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
         return found
@@ -318,10 +302,9 @@ def counts(numbers: npt.NDArray[Any]) -> bool:
 def names_of(made: Sequence[Assembled], stem: str) -> list[str]:
     """Return what responses are called: the file's stem, their labels, or the stem with a number."""
     labels = [one.label for one in made]
-    if len(made) == 1:
-        return [stem]
-    are_names = all(labels) and len(set(labels)) == len(labels)
-    return labels if are_names else [f"{stem} {i + 1}" for i in range(len(made))]
+    if len(made) == 1 or (all(labels) and len(set(labels)) == len(labels)):
+        return [stem] if len(made) == 1 else labels
+    return [f"{stem} {i + 1}" for i in range(len(made))]
 
 
 def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[ColumnMeaning]:
@@ -367,18 +350,16 @@ def assembled(
         message = f"column '{crossed.name[:40]}' is named like a cross spectrum, which is not a response"
         hint = "divide it by the spectrum of the input, or say with --columns what the columns are"
         raise DataError(Diagnostic("SF602", message, crossed.span, hint))
-    sections = _sections(columns)
     made: list[Assembled] = []
     used: set[int] = set()
-    for section in sections:
-        frequency, *rest = section
+    for frequency, *rest in _sections(columns):
         lines = _hertz(frequency, guesses)
         for label, group in _groups(rest, is_asked=is_asked, guesses=guesses):
             values = _values(group, lines, guesses)
             coherence = group.get("coherence")
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
             shares = None if coherence is None else _shares(coherence, guesses)
-            kept = tuple(c for c in (frequency, *group.values()))
+            kept = (frequency, *group.values())
             used |= {id(c) for c in kept} if np.any(values) else set()
             same = [m for m in made if m.label != label and m.values.shape == values.shape]
             with np.errstate(all="ignore"):
@@ -388,19 +369,13 @@ def assembled(
             elif not any(np.array_equal(values, m.values, equal_nan=True) for m in same):
                 made.append(Assembled(label, lines, values, shares, unit, kept))
     if not made:
-        raise DataError(*_missing(columns, file, header))
+        raise DataError(_missing(columns, file, header))
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)
-    problems = [
-        d
-        for m in made
-        if not are_few(~np.isfinite(m.values))
-        for c in m.columns
-        for d in _wrong(c, m.frequency_hz)
-    ]
-    if problems:
+    gappy = [m for m in made if not are_few(~np.isfinite(m.values))]
+    if problems := [d for m in gappy for c in m.columns for d in _wrong(c, m.frequency_hz)]:
         raise DataError(*problems[:MAX_ERRORS])
     names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
     unused = [f"'{name[:30]}'" for name in names if name]
@@ -464,12 +439,8 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
     what = "magnitude" if "magnitude" in kinds else "spectrum"
     guesses.append(f"the {what} is '{result.name[:30]}' over '{over.name[:30]}'")
-    whole = replace(
-        result,
-        meaning=ColumnMeaning(kinds.pop(), word=_RATIO),
-        numbers=ratio,
-        wrong=tuple({*result.wrong, *over.wrong}),
-    )
+    meaning, wrong = ColumnMeaning(kinds.pop(), word=_RATIO), tuple({*result.wrong, *over.wrong})
+    whole = replace(result, meaning=meaning, numbers=ratio, wrong=wrong)
     return [whole if c is result else c for c in columns if c is not over]
 
 
@@ -496,10 +467,9 @@ def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assemble
 def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     """Return each frequency column with the columns that belong to it."""
     lines = [c for c in columns if c.meaning.kind == "frequency"]
-    lines.sort(key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
-    first = lines[0]
+    first, *others = sorted(lines, key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
     own = [first]
-    for other in lines[1:]:
+    for other in others:
         a, b = _hertz(first, []), _hertz(other, [])
         if a.shape != b.shape or not np.allclose(a, b, rtol=SAME_FREQUENCY, equal_nan=True):
             own.append(other)
@@ -508,8 +478,8 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
         return [[first, *rest]]
     order = list(columns)
     begins = sorted(map(order.index, own))
-    cut = [*begins, len(order)]
-    found = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in pairwise(cut)]
+    cuts = pairwise([*begins, len(order)])
+    found = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in cuts]
     if not any(found[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
         return [[first, *rest]]
     if not all(any(c.meaning.kind for c in one) for one in found):
@@ -563,19 +533,20 @@ def _groups(
     rest: Sequence[DataColumn], *, is_asked: bool, guesses: list[str]
 ) -> list[tuple[str, dict[str, DataColumn]]]:
     """Return label and columns by kind of every response."""
-    labels = list(dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind))
-    found = [
-        (label, group) for label in labels for group in _pairs([c for c in rest if c.meaning.label == label])
-    ]
-    if not found:
-        found = [("", group) for group in _pairs(rest)]
+    labels = dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind)
+    alike = {label: [c for c in rest if c.meaning.label == label] for label in labels}
+    found = [(label, group) for label in labels for group in _pairs(alike[label])]
+    found = found or [("", group) for group in _pairs(rest)]
     coherences = [c for c in rest if c.meaning.kind == "coherence"]
     if len(coherences) in (1, len(found)):
         for i, (_, group) in enumerate(found):
             group.setdefault("coherence", coherences[i % len(coherences)])
     powers = [c for c in rest if c.meaning.kind == "power"]
     if not found and powers:
-        best = max((c for c in powers if c.meaning.label != "xyz"), key=_power, default=powers[0])
+        own = [c for c in powers if c.meaning.label != "xyz"] or powers[:1]
+        with np.errstate(all="ignore"):
+            totals = [float(np.nan_to_num(np.nansum(np.abs(c.numbers)))) for c in own]
+        best = own[totals.index(max(totals))]
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
         flat = "" if best.meaning.word == _RATIO else ", the excitation taken as flat"
         guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
@@ -584,11 +555,6 @@ def _groups(
     if not found and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO):
         found = [("", {"magnitude": sizes[0]})]
     return found
-
-
-def _power(column: DataColumn) -> float:
-    with np.errstate(all="ignore"):
-        return float(np.nan_to_num(np.nansum(np.abs(column.numbers))))
 
 
 def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
@@ -609,14 +575,13 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
                 c.meaning.word.startswith("amp"),
             ),
         )[:1]
-    first, second = ("real", "imaginary"), ("magnitude", "phase")
-    for (a, b), one, two in (
-        (first, by_kind.get("real", []), by_kind.get("imaginary", [])),
-        (second, sizes, phases[: len(sizes)] if len(sizes) == 1 else phases),
-    ):
-        if one and len(one) == len(two):
-            return [{a: c, b: d} for c, d in zip(one, two, strict=True)]
-    return []
+    one, two = by_kind.get("real", []), by_kind.get("imaginary", [])
+    if one and len(one) == len(two):
+        return [{"real": c, "imaginary": d} for c, d in zip(one, two, strict=True)]
+    phases = phases[:1] if len(sizes) == 1 else phases
+    if len(sizes) != len(phases):
+        return []
+    return [{"magnitude": c, "phase": d} for c, d in zip(sizes, phases, strict=True)]
 
 
 def _shares(column: DataColumn, guesses: list[str]) -> Real:
@@ -658,13 +623,12 @@ def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Co
         if "phase" in group:
             size, phase = _decided(group["magnitude"], group["phase"], lines, guesses)
         else:
+            said = "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
+            guesses.append(said)
             if "power" in group:
                 size = np.sqrt(group["power"].numbers.real)
             else:
                 size = _size(group["magnitude"], group["magnitude"].meaning.scale)
-            guesses.append(
-                "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
-            )
             phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
@@ -718,10 +682,8 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         if re.search(r"\blags?\b", phase.name, re.I):
             guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
             return size, -turned
-        guesses.append(
-            f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as positive "
-            "numbers, say -phase_deg or -phase_rad in --columns"
-        )
+        said = f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as "
+        guesses.append(f"{said}positive numbers, say -phase_deg or -phase_rad in --columns")
     return size, turned
 
 
@@ -735,22 +697,17 @@ def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
     used = (expected != 0) & np.isfinite(phase)
     if not np.any(used):
         return False
-    as_written, mirrored = (
-        float(np.mean(1 - np.cos(sign * phase[used] - expected[used]))) for sign in (1, -1)
-    )
-    return mirrored < min(UNLIKE, as_written / CLEARLY)
+    as_written, mirrored = (np.mean(1 - np.cos(sign * phase[used] - expected[used])) for sign in (1, -1))
+    return bool(mirrored < min(UNLIKE, as_written / CLEARLY))
 
 
 def _possible_units(turn: Real) -> list[float]:
     """Return the units [rad] that phases may be in; wrapped ones that fill a turn say it themselves."""
     known = turn[np.isfinite(turn)]
-    span, jump = (
-        (float(np.ptp(known)), float(np.max(np.abs(np.diff(known))))) if known.size > 1 else (0.0, 0.0)
-    )
-    for factor in (np.pi / 180, 1.0):
-        if FILLED * WRAPPED < span * factor <= WRAPPED and jump * factor > np.pi:
-            return [factor]
-    return [np.pi / 180, 1.0]
+    span, jump = np.ptp(known) if known.size else 0.0, np.max(np.abs(np.diff(known)), initial=0.0)
+    units = [np.pi / 180, 1.0]
+    said = [u for u in units if FILLED * WRAPPED < span * u <= WRAPPED and jump * u > np.pi]
+    return said[:1] or units
 
 
 def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
@@ -827,22 +784,18 @@ def _wrong(column: DataColumn, lines: Real) -> list[Diagnostic]:
     return problems
 
 
-def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> list[Diagnostic]:
+def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> Diagnostic:
     """Return why columns make no response, and which option says what they are."""
     kinds = {c.meaning.kind for c in columns}
     place = "" if header else f"'{file}': "
-    unknown = [c for c in columns if not c.meaning.kind and c.name]
+    unknown = next((c for c in columns if not c.meaning.kind and c.name), None)
     pairs = [("real", "imaginary"), ("magnitude", "phase")]
     missing = next((b if a in kinds else a for a, b in pairs if (a in kinds) != (b in kinds)), None)
     message = f"{place}a column of {missing} is missing" if missing else f"{place}no columns hold the values"
-    hint = ask(columns)
-    if unknown and missing and header:
-        close = nearest(unknown[0].name.lower(), KINDS)
-        hint = f"{close} {hint}" if close else hint
-        return [
-            Diagnostic("SF602", f"{message}: unknown column '{unknown[0].name[:40]}'", unknown[0].span, hint)
-        ]
-    return [Diagnostic("SF602", message, header, hint)]
+    if not (unknown and missing and header):
+        return Diagnostic("SF602", message, header, ask(columns))
+    hint = " ".join(filter(None, (nearest(unknown.name.lower(), KINDS), ask(columns))))
+    return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
 
 
 def ask(columns: Sequence[DataColumn]) -> str:

@@ -7,8 +7,9 @@ What stands above the numbers names the columns, and comment lines may hold what
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Final
@@ -48,7 +49,7 @@ from symflex.data.measurement.text_table import (
     cut,
     number,
 )
-from symflex.errors import DataError, Diagnostic, Source, Span
+from symflex.errors import DataError, Diagnostic, Span
 
 _COMMENT_FIELD = re.compile(r"\W*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
 _AXIS_UNIT = re.compile(r"(?:axis|freq|x)[\w .]*unit\w*\W+(hz|khz|mhz|rad/s)\b", re.I)
@@ -84,7 +85,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
         except DataError as error:
             raise DataError(*(replace(d, span=origin(d.span)) for d in error.diagnostics)) from None
         return tuple(replace(one, guesses=said + one.guesses) for one in made_of_lines)
-    fields = _comment_fields(table.source)
+    fields = _comment_fields(table)
     blocks = table.blocks()
     if not blocks:
         raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
@@ -93,33 +94,27 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     guesses = list(table.guesses)
     made, found = _responses(name, table, blocks, asked, guesses)
     guesses += found + _skipped(table, blocks)
-    unit_span = fields.get("averages")
-    averages = None if unit_span is None else averages_of(unit_span.text, name, unit_span)
-
-    def told(key: str) -> str:
-        return fields[key].text.strip() if key in fields else ""
-
-    comments = tuple(_comments(table.source))
-    unit = unit_of(told("unit"), name, fields.get("unit"))
-    is_synthetic = (
-        told("synthetic").lower() in ("yes", "true", "1") or "synthetic" in " ".join(comments).lower()
-    )
+    told = {key: span.text.strip() for key, span in fields.items()}
+    averages = averages_of(told["averages"], name, fields["averages"]) if "averages" in told else None
+    signs = (line.strip() for line in table.lines)
+    comments = tuple(line.lstrip("#%!/*; ") for line in signs if line.startswith(COMMENTS))
+    unit = unit_of(told.get("unit", ""), name, fields.get("unit"))
+    is_said = told.get("synthetic", "").lower() in ("yes", "true", "1")
+    is_synthetic = is_said or "synthetic" in " ".join(comments).lower()
     responses = []
-    for one, called in zip(made, names_of(made, (len(made) == 1 and told("tf")) or stem), strict=True):
+    for one, called in zip(made, names_of(made, (len(made) == 1 and told.get("tf")) or stem), strict=True):
         response = MeasuredResponse(
-            called, one.frequency_hz, one.values, one.coherence, averages, window_of(told("window")),
+            called, one.frequency_hz, one.values, one.coherence, averages, window_of(told.get("window", "")),
             unit or one.unit, is_synthetic, comments, tuple(dict.fromkeys(guesses)),
         )  # fmt: skip
         frequency, value, *_ = one.columns
-        by_kind = {"frequency": frequency, "coherence": one.columns[-1]}
-
-        def span_of(
-            index: int, kind: str, by_kind: dict[str, DataColumn] = by_kind, value: DataColumn = value
-        ) -> Span | None:
-            return by_kind.get(kind, value).place(index)
-
-        responses.append(checked_response(response, name, span_of))
+        places = {"frequency": frequency.place, "value": value.place, "coherence": one.columns[-1].place}
+        responses.append(checked_response(response, name, partial(_place, places)))
     return tuple(responses)
+
+
+def _place(places: Mapping[str, Callable[[int], Span | None]], index: int, kind: str) -> Span | None:
+    return places[kind](index)
 
 
 def _listed(table: TextTable) -> _Rewritten | None:
@@ -190,11 +185,7 @@ def _turned(table: TextTable) -> _Rewritten | None:
     """
     places = [i for i, line in enumerate(table.lines) if line.strip()][: MOST_TURNED + 1]
     rows = [cut(table.lines[i], table.delimiter) for i in places]
-    if (
-        not 1 < len(rows) <= MOST_TURNED
-        or len({len(row) for row in rows}) > 1
-        or len(rows[0]) < 2 * len(rows)
-    ):
+    if not 1 < len(rows) <= MOST_TURNED or len({*map(len, rows)}) > 1 or len(rows[0]) < 2 * len(rows):
         return None
     are_texts = [[number(c, table.decimal) is None for c in row] for row in rows]
     are_named = all(row[0] for row in are_texts)
@@ -224,13 +215,13 @@ def _responses(
         guesses.append(f"lines {lines} hold a table without a frequency and are skipped")
         blocks, parts = blocks[named:], parts[named:]
     for i in range(1, len(parts)):  # a table below another one of the same shape has its names
-        if parts[i][1] is None and len(parts[i][0]) == len(parts[0][0]) and parts[0][1] is not None:
-            above = parts[0][0]
-            parts[i] = (
-                [replace(c, meaning=c.meaning if c.meaning.kind else a.meaning, name=a.name)
-                 for c, a in zip(parts[i][0], above, strict=True)],
-                parts[0][1],
-            )  # fmt: skip
+        (above, line), (own, own_line) = parts[0], parts[i]
+        if own_line is None and len(own) == len(above) and line is not None:
+            pairs = zip(own, above, strict=True)
+            own = [
+                replace(c, meaning=c.meaning if c.meaning.kind else a.meaning, name=a.name) for c, a in pairs
+            ]
+            parts[i] = own, line
     columns, header = parts[0]
     for others, _ in parts[1:]:
         first, other = columns[0].numbers.real, others[0].numbers.real
@@ -238,12 +229,8 @@ def _responses(
             columns = columns + others[1:]
     if asked:
         meanings = columns_asked(asked, len(columns), [c.name for c in columns])
-        return assembled(
-            [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)],
-            name,
-            header,
-            is_asked=True,
-        )
+        columns = [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)]
+        return assembled(columns, name, header, is_asked=True)
     implied = _IMPLIED.get(Path(name).suffix.lower())
     if implied and header is None and len(columns) == 3:  # noqa: PLR2004
         said = f"no line names the columns: {implied[1]}, as in {Path(name).suffix} files"
@@ -253,8 +240,9 @@ def _responses(
         return made, [said, *more]
     if not any(c.meaning.kind for c in columns):
         span = table.line(blocks[0].lines[0])
-        message = "no line above the numbers names the columns"
-        raise DataError(Diagnostic("SF602", message, span, ask(columns)))
+        raise DataError(
+            Diagnostic("SF602", "no line above the numbers names the columns", span, ask(columns))
+        )
     if len(parts) > 1 and len(columns) == len(parts[0][0]):
         each = [assembled(one, name, line) for one, line in parts]
         return [m for made, _ in each for m in made], [s for _, said in each for s in said]
@@ -271,9 +259,8 @@ def _skipped(table: TextTable, blocks: Sequence[NumberBlock]) -> list[str]:
     if not within:
         return []
     first = f"line {within[0] + 1} ('{' '.join(table.lines[within[0]].split())[:30]}')"
-    if len(within) == 1:
-        return [f"{first} is not a row of numbers and is skipped"]
-    return [f"{len(within)} lines among the numbers or below them are not rows and are skipped: {first}, ..."]
+    many = f"{len(within)} lines among the numbers or below them are not rows and are skipped: {first}, ..."
+    return [many if len(within) > 1 else f"{first} is not a row of numbers and is skipped"]
 
 
 def _columns(
@@ -310,13 +297,10 @@ def _columns(
     header = None if line is None else table.line(line)
     above = [i for i in block.above if table.lines[i].strip()]
     is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i not in (line, under))
-    if line is not None and not is_comment:
-        guesses.append(
-            f"line {line + 1} names the columns, and the numbers begin in line {block.lines[0] + 1}"
-            ": the other lines above are skipped"
-        )
-    elif not is_comment:
-        guesses.append(f"the numbers begin in line {block.lines[0] + 1}")
+    if not is_comment:
+        begin = f"the numbers begin in line {block.lines[0] + 1}"
+        named = f"line {(line or 0) + 1} names the columns, and {begin}: the other lines above are skipped"
+        guesses.append(begin if line is None else named)
     title = _title(table, [i for i in above if i != line])
     # Analysers write two parts of all that they trace, the second one empty where there is only one.
     beside = numbers[2:]
@@ -414,22 +398,11 @@ def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool =
     return found
 
 
-def _comments(source: Source) -> list[str]:
-    found = []
-    for line in source.text.split("\n"):
-        stripped = line.strip()
-        if stripped.startswith(COMMENTS):
-            found.append(stripped.lstrip("#%!/*; "))
-    return found
-
-
-def _comment_fields(source: Source) -> dict[str, Span]:
+def _comment_fields(table: TextTable) -> dict[str, Span]:
     found: dict[str, Span] = {}
-    start = 0
-    for line in source.text.split("\n"):
-        match = _COMMENT_FIELD.fullmatch(line) if line.strip().startswith(COMMENTS) else None
-        if match and match["key"].lower() not in found:
-            end = start + match.start("value") + len(match["value"].rstrip())
-            found[match["key"].lower()] = Span(source, start + match.start("value"), end)
-        start += len(line) + 1
+    for start, line in zip(table.starts, table.lines, strict=False):
+        if line.strip().startswith(COMMENTS) and (match := _COMMENT_FIELD.fullmatch(line)):
+            begin = start + match.start("value")
+            place = Span(table.source, begin, begin + len(match["value"].rstrip()))
+            found.setdefault(match["key"].lower(), place)
     return found

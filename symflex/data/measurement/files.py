@@ -151,9 +151,6 @@ def prepared(
     return tuple(found)
 
 
-CSV_DIGITS, COHERENCE_DIGITS = 6, 6
-
-
 def csv_bytes(response: MeasuredResponse) -> bytes:
     """Return a response as text in columns, with what else is known in comment lines."""
     lines = [f"# {note}" for note in response.notes]
@@ -165,12 +162,12 @@ def csv_bytes(response: MeasuredResponse) -> bytes:
         ("synthetic", "yes" if response.is_synthetic else ""),
     )
     lines += [f"# {key}: {value}" for key, value in known if value]
-    has_coherence = response.coherence is not None
-    lines.append("frequency_hz,re,im" + ",coherence" * has_coherence)
-    coherence = response.coherence if response.coherence is not None else np.ones(response.values.size)
-    for f, h, c in zip(response.frequency_hz, response.values, coherence, strict=True):
-        cells = [f"{f:.9g}", f"{h.real:.{CSV_DIGITS}g}", f"{h.imag:.{CSV_DIGITS}g}"]
-        lines.append(",".join(cells + [f"{c:.{COHERENCE_DIGITS}f}"] * has_coherence))
+    lines.append("frequency_hz,re,im" + ",coherence" * (response.coherence is not None))
+    shares = [""] * len(response.values)
+    if response.coherence is not None:
+        shares = [f",{share:.6f}" for share in response.coherence]
+    for f, h, share in zip(response.frequency_hz, response.values, shares, strict=True):
+        lines.append(f"{f:.9g},{h.real:.6g},{h.imag:.6g}{share}")
     return ("\n".join(lines) + "\n").encode()
 
 
@@ -199,34 +196,24 @@ def universal_bytes(response: MeasuredResponse) -> bytes:
     lines = response.frequency_hz
     told = [f"averages={response.averages:g}"] if response.averages else []
     told += [f"window={response.window}"] if response.window else []
+    header: dict[str, object] = {
+        **dict.fromkeys(("id3", "id5", "rsp_ent_name", "ref_ent_name"), "NONE"),
+        **dict.fromkeys(("binary", "abscissa_spacing"), 0),
+        **dict.fromkeys(("ordinate_spec_data_type", "orddenom_spec_data_type"), 0),
+        **{"rsp_node": 1, "rsp_dir": 1, "ref_node": 2, "ref_dir": 1},
+        "abscissa_spec_data_type": FREQUENCY_AXIS,
+        "id1": response.name[:80],
+        "id2": "SYNTHETIC data" if response.is_synthetic else "NONE",
+        "id4": " ".join(told) or "NONE",
+    }
     sets = [(RESPONSE, response.values)]
     if response.coherence is not None:
         sets.append((COHERENCE, response.coherence.astype(np.float64)))
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "data.uff")
         for kind, data in sets:
-            entry = pyuff.prepare_58(
-                binary=0,
-                func_type=kind,
-                rsp_node=1,
-                rsp_dir=1,
-                ref_node=2,
-                ref_dir=1,
-                data=np.array(data),
-                x=np.array(lines),
-                id1=response.name[:80],
-                id2="SYNTHETIC data" if response.is_synthetic else "NONE",
-                id3="NONE",
-                id4=" ".join(told) or "NONE",
-                id5="NONE",
-                rsp_ent_name="NONE",
-                ref_ent_name="NONE",
-                abscissa_spacing=0,
-                abscissa_spec_data_type=FREQUENCY_AXIS,
-                ordinate_spec_data_type=0,
-                orddenom_spec_data_type=0,
-            )
-            pyuff.UFF(path).write_sets([entry], mode="add")
+            values = {"func_type": kind, "data": np.array(data), "x": np.array(lines)}
+            pyuff.UFF(path).write_sets([pyuff.prepare_58(**header, **values)], mode="add")
         with open(path, "rb") as file:
             return file.read()
 

@@ -73,10 +73,12 @@ class MeasuredResponse:
         return f"<MeasuredResponse {self.name}: {kind}{self.frequency_hz.size} lines, {ends}>"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "frequency_hz", _frozen(np.array(self.frequency_hz, np.float64)))
-        object.__setattr__(self, "values", _frozen(np.array(self.values, np.complex128)))
-        if self.coherence is not None:
-            object.__setattr__(self, "coherence", _frozen(np.array(self.coherence, np.float64)))
+        kinds = {"frequency_hz": np.float64, "values": np.complex128, "coherence": np.float64}
+        for name, kind in kinds.items():
+            if (given := getattr(self, name)) is not None:
+                array: npt.NDArray[np.generic] = np.array(given, kind)
+                array.setflags(write=False)
+                object.__setattr__(self, name, array)
         shapes = {a.shape for a in (self.frequency_hz, self.values, self.coherence) if a is not None}
         if self.frequency_hz.ndim != 1 or len(shapes) != 1:
             message = f"a measured response needs one-dimensional arrays of one length, not {sorted(shapes)}"
@@ -130,11 +132,6 @@ class MeasuredResponse:
         )
 
 
-def _frozen(array: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-    array.setflags(write=False)
-    return array
-
-
 MAX_BYTES: Final = 50_000_000
 MAX_LINES: Final = 1_000_000
 MAX_RESPONSES: Final = 100
@@ -180,44 +177,29 @@ def checked_response(
             more = f"; so in {others} more line{'s' * (others > 1)}" if others else ""
             problems.append(Diagnostic(code, place + say(i) + more, span, hint))
 
-    def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
-        note("SF603", wrong, "value", say, hint)
-
     wrong = ~((frequency >= SLOWEST) & (frequency <= FASTEST))
     hint = f"frequencies lie between {SLOWEST:g} and {FASTEST:g} Hz"
     note("SF603", wrong, "frequency", lambda i: f"frequency {frequency[i]:g} Hz", hint)
-    is_finite = np.isfinite(values)
-    note_value(~is_finite, lambda i: "the value is not a finite number", "leave the line out")
+    is_finite, hint = np.isfinite(values), "leave the line out"
+    note("SF603", ~is_finite, "value", lambda i: "the value is not a finite number", hint)
     wrong = is_finite & (values == 0)
-    note_value(wrong, lambda i: "the value is zero, which a measured value never is", "leave the line out")
+    note("SF603", wrong, "value", lambda i: "the value is zero, which a measured value never is", hint)
     with np.errstate(over="ignore"):
         size = np.abs(values)
-    note_value(
-        is_finite & (values != 0) & ~((size >= SMALLEST) & (size <= LARGEST)),
-        lambda i: f"the value {values[i]:.3g} has a magnitude beyond {SMALLEST:g} to {LARGEST:g}",
-        "check the unit of the values",
-    )
-    if coherence is not None:
-        shares, hint = coherence, "coherence lies between 0 and 1"
+    wrong = is_finite & (values != 0) & ~((size >= SMALLEST) & (size <= LARGEST))
+    limits = f"has a magnitude beyond {SMALLEST:g} to {LARGEST:g}"
+    hint = "check the unit of the values"
+    note("SF603", wrong, "value", lambda i: f"the value {values[i]:.3g} {limits}", hint)
+    if (shares := coherence) is not None:
         wrong = ~((shares >= 0) & (shares <= 1))
+        hint = "coherence lies between 0 and 1"
         note("SF603", wrong, "coherence", lambda i: f"coherence {shares[i]:g}", hint)
     if not problems and frequency.size:
         steps = np.diff(frequency, prepend=-1.0)
+        hz = [f"frequency {f:.9g} Hz" for f in frequency] if np.any(steps <= 0) else []
         hint = "one line per frequency, and one sweep or response per table"
-        note(
-            "SF604",
-            steps == 0,
-            "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz repeats with other values",
-            hint,
-        )
-        note(
-            "SF604",
-            steps < 0,
-            "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz",
-            hint,
-        )
+        note("SF604", steps == 0, "frequency", lambda i: f"{hz[i]} repeats with other values", hint)
+        note("SF604", steps < 0, "frequency", lambda i: f"{hz[i]} follows {hz[i - 1][10:]}", hint)
     if problems:
         raise DataError(*problems)
     if values.size < FEWEST_LINES:
@@ -294,12 +276,6 @@ def _goes_through_again(frequency: npt.NDArray[np.float64]) -> bool:
     return bool(8 * (runs[-1] + 1) <= frequency.size < 4 * switches)
 
 
-def nowhere(index: int, column: str) -> Span | None:
-    """Return no place: arrays have none."""
-    del index, column
-    return None
-
-
 def averages_of(text: str, file: str, span: Span | None = None) -> float:
     """Return a number of averages; SF603 when it is not one."""
     try:
@@ -324,11 +300,8 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         (reason, *_) = error.diagnostics
         place = "" if span else f"'{file}': "
         message = f"{place}the unit of the values: {reason.message}"
-        hint = (
-            reason.hint
-            or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
-        )
-        raise DataError(Diagnostic("SF602", message, span, hint)) from None
+        usual = "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
+        raise DataError(Diagnostic("SF602", message, span, reason.hint or usual)) from None
     return unit
 
 

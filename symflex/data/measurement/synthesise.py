@@ -7,8 +7,10 @@ abs(S_xy)^2/(S_xx S_yy) (Bendat & Piersol, Random Data, 4th ed. 2010, sections 6
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from fractions import Fraction
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +18,7 @@ import numpy.typing as npt
 from symflex.budget import spend
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import band_ends
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from fractions import Fraction
-
-    from symflex.options import MeasureOptions
+from symflex.options import MeasureOptions, band_ends
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -166,17 +162,8 @@ def synthesise(
         f"SYNTHETIC data, computed by symflex: noise excitation, H1 estimate, {plan.averages} records, half "
         f"overlapping, Hann; sensor noise {plan.noise:g}; {sensor}; seed {plan.seed}"
     )
-    return MeasuredResponse(
-        name,
-        lines[shown],
-        cross[shown] / power_in[shown],
-        np.minimum(coherence, 1.0),
-        independent,
-        "hann",
-        unit,
-        is_synthetic=True,
-        notes=(note,),
-    )
+    values, shares = cross[shown] / power_in[shown], np.minimum(coherence, 1.0)
+    return MeasuredResponse(name, lines[shown], values, shares, independent, "hann", unit, True, (note,))
 
 
 def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: MeasurementPlan) -> Complex:

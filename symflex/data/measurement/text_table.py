@@ -84,13 +84,9 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         guesses = (f"the file is not UTF-8 and is read as {encoding}",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
     if match := _CONTROL.search(text):
-        raise _no_text(name, f"it holds the control character 0x{ord(match[0]):02x}")
+        message = f"'{name}' is not text: it holds the control character 0x{ord(match[0]):02x}"
+        raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .npy, .mat, .uff"))
     return text + "\n", guesses
-
-
-def _no_text(name: str, why: str) -> DataError:
-    hint = "binary formats end in .npz, .npy, .mat, .uff"
-    return DataError(Diagnostic("SF601", f"'{name}' is not text: {why}", None, hint))
 
 
 def number(cell: str, decimal: str = ".") -> float | complex | None:
@@ -107,10 +103,9 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
     if WHOLE[decimal].fullmatch(text):
         return float(re.sub("[.,]", "", text))
     if decimal == ",":
-        if "." in text:
-            if not _GROUPED.fullmatch(text):
-                return None
-            text = text.replace(".", "")
+        if "." in text and not _GROUPED.fullmatch(text):
+            return None
+        text = text.replace(".", "")
         text = text.replace(",", ".") if re.search(r"\d,\d", text) else text
     if "_" in text or not 0 < len(text) <= LONGEST_NUMBER:
         return None
@@ -206,11 +201,6 @@ class NumberBlock:
         """Return the function that says where a column's cell of a row stands."""
         return lambda row: self.table.cell(self.lines[row], self.rows[row], index)
 
-    def first(self, row: int) -> float:
-        """Return the first number of a row."""
-        value = number(self.rows[row][0], self.table.decimal)
-        return float("nan") if value is None else value.real
-
 
 @dataclass(frozen=True, eq=False)
 class TextTable:
@@ -231,9 +221,8 @@ class TextTable:
         longest = max(range(len(lines)), key=lambda i: len(lines[i]))
         if len(lines[longest]) > LONGEST_LINE:
             message = f"{name}:{longest + 1}:1: a line of {len(lines[longest])} characters"
-            raise DataError(
-                Diagnostic("SF601", message, None, f"a line may have at most {LONGEST_LINE} characters")
-            )
+            hint = f"a line may have at most {LONGEST_LINE} characters"
+            raise DataError(Diagnostic("SF601", message, None, hint))
         lengths = np.cumsum([0, *(len(line) + 1 for line in lines)])
         delimiter, decimal = _format(lines)
         if decimal == ",":
@@ -267,9 +256,9 @@ class TextTable:
 
     def blocks(self) -> list[NumberBlock]:
         """Return the blocks of numbers; where no line begins with a number, of those with text in front."""
-        return self._blocks() or self._blocks(has_text_in_front=True)
+        return self._blocks(has_text_in_front=False) or self._blocks(has_text_in_front=True)
 
-    def _blocks(self, *, has_text_in_front: bool = False) -> list[NumberBlock]:
+    def _blocks(self, *, has_text_in_front: bool) -> list[NumberBlock]:
         """Return the blocks of numbers, without those that are small beside the largest."""
         found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
@@ -324,11 +313,11 @@ def _format(lines: Sequence[str]) -> tuple[str, str]:
 
     def score(candidate: tuple[str, str]) -> float:
         found = 0.0
+        delimiter, decimal = candidate
         for line in sample:
-            cells = cut(line, candidate[0])
-            numbers = sum(
-                number(c, candidate[1]) is not None and not WHOLE[candidate[1]].fullmatch(c) for c in cells
-            )
+            cells = cut(line, delimiter)
+            are_numbers = (number(c, decimal) is not None and not WHOLE[decimal].fullmatch(c) for c in cells)
+            numbers = sum(are_numbers)
             if numbers >= 2 and 2 * numbers > len(cells):  # noqa: PLR2004
                 found += numbers / len(cells)
         return round(found, 6)

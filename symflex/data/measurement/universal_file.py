@@ -10,7 +10,7 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import ModuleType
 from typing import Any, Final
 
@@ -21,13 +21,13 @@ from symflex.data.measurement.measured_response import (
     MAX_RESPONSES,
     MeasuredResponse,
     checked_response,
-    nowhere,
     unit_of,
 )
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.errors.optional import installed
 
 MARK: Final = b"    -1"
+_MARKS: Final = re.compile(rb"    -1[^\S\n]*(?:\n|\Z)")
 HEADER_LINES: Final = 11
 """Records of a dataset 58 before its data."""
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
@@ -54,12 +54,8 @@ ORDINATE_TYPES: Final = (2, 4, 5, 6)
 """Real in single and double precision, complex in single and double precision."""
 
 
-@dataclass(frozen=True, slots=True)
-class DatasetPlace:
-    """Where a dataset 58 begins, and which of all datasets it is."""
-
-    line: int
-    number: int
+_Place = tuple[int, int]
+"""The line where a dataset 58 begins, and which of all datasets it is."""
 
 
 def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
@@ -72,19 +68,15 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     or lines.
     """
     if asked:
-        raise UsageError(
-            Diagnostic("SF902", f"'{name}' describes its own contents: --columns does not apply")
-        )
+        message = f"'{name}' describes its own contents: --columns does not apply"
+        raise UsageError(Diagnostic("SF902", message))
     places, kinds = _datasets(name, data)
     if not places:
         held = ", ".join(f"{k} ({DATASETS.get(k, 'not read')})" for k in sorted(set(kinds))[:8])
         message = f"'{name}' holds no dataset 58 (function at nodal degree of freedom)"
         message += f"; it holds datasets {held}" if held else ""
-        raise DataError(
-            Diagnostic(
-                "SF601", message, None, "a line with -1 in columns 5 and 6 begins and ends each dataset"
-            )
-        )
+        hint = "a line with -1 in columns 5 and 6 begins and ends each dataset"
+        raise DataError(Diagnostic("SF601", message, None, hint))
     if len(places) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} datasets 58"))
     pyuff = installed("pyuff")
@@ -92,14 +84,14 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     coherences = {_ends(s): s for s in sets if s.get("func_type") in (COHERENCE, MULTIPLE_COHERENCE)}
     system = kinds.get(164, SI)
     found: list[MeasuredResponse] = []
-    for place, entry in zip(places, sets, strict=True):
+    for (line, _), entry in zip(places, sets, strict=True):
         is_general = entry.get("func_type") == 0 and np.iscomplexobj(entry["data"])
         if entry.get("func_type") not in (RESPONSE, TRANSMISSIBILITY) and not is_general:
             continue
         if entry.get("abscissa_spec_data_type") not in (FREQUENCY_AXIS, 0, 1):
-            message = f"{name}:{place.line}:1: the abscissa of this dataset is not a frequency"
+            message = f"{name}:{line}:1: the abscissa of this dataset is not a frequency"
             raise DataError(Diagnostic("SF602", message))
-        one = _response(name, stem, place, entry, coherences.get(_ends(entry)), system)
+        one = _response(f"{name}:{line}", stem, entry, coherences.get(_ends(entry)), system)
         same = sum(one.name == other.name.partition(" ")[0] for other in found)
         found.append(replace(one, name=f"{one.name} {same + 1}") if same else one)
     if not found:
@@ -110,46 +102,32 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     return tuple(found)
 
 
-def _datasets(name: str, data: bytes) -> tuple[list[DatasetPlace], dict[int, int]]:
+def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
     """Return the datasets 58, each with a header that can be read and counts within limits, and all kinds.
 
     With each kind goes the first number of its first line, which of units says the system.
     """
-    found: list[DatasetPlace] = []
+    found: list[_Place] = []
     kinds: dict[int, int] = {}
-    number, place, lines = -1, 0, 0
-    while True:
-        start = _next_mark(data, place)
-        if start < 0:
-            return found, kinds
-        number += 1
-        end = _next_mark(data, start + len(MARK))
-        line = lines + data.count(b"\n", place, start) + 2
-        if end < 0:
+    place, lines = 0, 0
+    marks = _MARKS.finditer(data)
+    for number, begin in enumerate(marks):
+        line = lines + data.count(b"\n", place, begin.start()) + 2
+        end = next(marks, None)
+        if end is None:
             message = f"{name}:{line - 1}:1: this dataset has no end"
             raise DataError(Diagnostic("SF601", message, None, "a line with -1 in columns 5 and 6 ends it"))
-        block = data[start:end].split(b"\n", HEADER_LINES + 2)
+        block = data[begin.start() : end.start()].split(b"\n", HEADER_LINES + 2)
         kind = block[1].strip() if len(block) > 1 else b""
         if kind[:6].isdigit():
             first = block[2][:10].strip() if len(block) > 2 else b""  # noqa: PLR2004
             kinds.setdefault(int(kind[:6]), int(first) if first.isdigit() else 0)
         if kind[:2] == b"58" and kind[2:3] in (b"", b"b", b" ", b"B"):
             _check_header(name, line, block[1:])
-            found.append(DatasetPlace(line, number))
-        lines += data.count(b"\n", place, end)
-        place = end + len(MARK)
-
-
-def _next_mark(data: bytes, place: int) -> int:
-    """Return where the next line of a lone -1 begins, -1 when there is none."""
-    while True:
-        at = data.find(MARK, place)
-        if at < 0:
-            return -1
-        rest = data[at + len(MARK) : at + 80].split(b"\n", 1)[0].strip()
-        if not rest:
-            return at
-        place = at + 1
+            found.append((line, number))
+        lines += data.count(b"\n", place, end.start())
+        place = end.start()
+    return found, kinds
 
 
 def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
@@ -168,7 +146,7 @@ def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
         raise DataError(Diagnostic(code, message, None, "types 2, 4, 5 and 6 exist"))
 
 
-def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPlace]) -> list[dict[str, Any]]:
+def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[_Place]) -> list[dict[str, Any]]:
     found = []
     if not re.search(rb"^ *58[bB]", data, re.M):  # it knows marks with 74 blanks behind them, or none
         data = re.sub(rb"^    -1[ \t]+(?=\r?$)", MARK, data, flags=re.M)
@@ -177,17 +155,16 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPla
         path = os.path.join(folder, "data.uff")
         with open(path, "wb") as file:
             file.write(data)
-        for place in places:
+        for line, number in places:
             try:
-                entry = pyuff.UFF(path).read_sets(place.number)
+                entry = pyuff.UFF(path).read_sets(number)
             except Exception as error:
                 # Whatever goes wrong in it, pyuff raises Exception itself, never a class derived from it.
                 if type(error) is not Exception:
                     raise
                 entry = None
             if not isinstance(entry, dict) or "data" not in entry or "x" not in entry:
-                message = f"{name}:{place.line}:1: this dataset 58 cannot be read"
-                raise DataError(Diagnostic("SF601", message))
+                raise DataError(Diagnostic("SF601", f"{name}:{line}:1: this dataset 58 cannot be read"))
             found.append(entry)
     return found
 
@@ -197,22 +174,12 @@ def _ends(entry: Mapping[str, Any]) -> tuple[object, ...]:
 
 
 def _response(
-    name: str,
-    stem: str,
-    place: DatasetPlace,
-    entry: Mapping[str, Any],
-    coherence: Mapping[str, Any] | None,
-    system: int,
+    place: str, stem: str, entry: Mapping[str, Any], coherence: Mapping[str, Any] | None, system: int
 ) -> MeasuredResponse:
     lines, values = np.asarray(entry["x"]), np.asarray(entry["data"])
-    if (
-        lines.ndim != 1
-        or lines.shape != values.shape
-        or lines.dtype.kind not in "fiu"
-        or values.dtype.kind not in "fciu"
-    ):
-        message = f"{name}:{place.line}:1: {values.size} values at {lines.size} frequencies"
-        raise DataError(Diagnostic("SF601", message))
+    are_numbers = lines.dtype.kind in "fiu" and values.dtype.kind in "fciu"
+    if lines.ndim != 1 or lines.shape != values.shape or not are_numbers:
+        raise DataError(Diagnostic("SF601", f"{place}:1: {values.size} values at {lines.size} frequencies"))
     weights = None
     if coherence is not None and np.asarray(coherence["data"]).shape == lines.shape:
         weights = np.clip(np.real(np.asarray(coherence["data"])), 0, 1)
@@ -222,19 +189,13 @@ def _response(
     unit, guesses = _unit(entry, system)
     fields = dict(part.split("=", 1) for part in str(entry.get("id4", "")).split() if "=" in part)
     count = fields.get("averages", "")
+    averages = float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None
+    window, is_synthetic = "hann" if fields.get("window") == "hann" else "", "synthetic" in note.lower()
+    notes = (note,) if note else ()
     response = MeasuredResponse(
-        tf,
-        lines,
-        values,
-        weights,
-        float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None,
-        "hann" if fields.get("window") == "hann" else "",
-        unit,
-        guesses=guesses,
-        is_synthetic="synthetic" in note.lower(),
-        notes=(note,) if note else (),
+        tf, lines, values, weights, averages, window, unit, is_synthetic, notes, guesses
     )
-    return checked_response(response, f"{name}:{place.line}", nowhere)
+    return checked_response(response, place, lambda *_: None)
 
 
 def _ends_name(entry: Mapping[str, Any]) -> str:

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final
 
 from symflex.errors import counted
-from symflex.report.document import Aside, Badge, Section, Table, columns, text
+from symflex.report.document import Aside, Badge, Cell, Run, Section, Table, Tone, Verdict, columns, text
 from symflex.report.facts import ModelFacts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from symflex.report.document import Run, Verdict
-    from symflex.report.facts import ModelFacts
-
 
 Models = Mapping[str, ModelFacts]
 """Facts by the name of the model's file, without suffix."""
@@ -51,9 +44,8 @@ class Check:
         condition = self.condition and f"Condition: {self.condition}"
         added = [f" {text}" for text in (self.note, condition) if text]
         is_conditional = self.condition and found.verdict == "holds"
-        return Finding(
-            "holds with a condition" if is_conditional else found.verdict, (*found.evidence, *added)
-        )
+        verdict: Verdict = "holds with a condition" if is_conditional else found.verdict
+        return Finding(verdict, (*found.evidence, *added))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,24 +91,18 @@ def model_of(name: str) -> str:
 
 def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:
     """Return a finding: does not hold unless true, and holds with a condition when the evidence names one."""
-    if not is_true:
-        return Finding("does not hold", evidence)
-    return Finding("holds with a condition" if condition else "holds", evidence)
+    holds: Verdict = "holds with a condition" if condition else "holds"
+    return Finding(holds if is_true else "does not hold", evidence)
 
 
 ANCHOR: Final = "claims"
-TONES: Final[dict[str, Literal["good", "fair", "bad", "quiet"]]] = {
-    "holds": "good",
-    "holds with a condition": "fair",
-    "does not hold": "bad",
-    "not examined": "quiet",
+VERDICTS: Final[dict[str, tuple[Tone, str]]] = {
+    "holds": ("good", "hold"),
+    "holds with a condition": ("fair", "hold with a condition"),
+    "does not hold": ("bad", "do not hold"),
+    "not examined": ("quiet", "are not examined"),
 }
-PLURALS: Final = {
-    "holds": "hold",
-    "holds with a condition": "hold with a condition",
-    "does not hold": "do not hold",
-    "not examined": "are not examined",
-}
+"""Their tones, and what is said of several claims."""
 SCHEMA: Final = "symflex.report-claims/1"
 
 
@@ -145,40 +131,28 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:
     """Return the claims with their verdicts and the evidence."""
     counts: Counter[str] = Counter(finding.verdict for finding in findings)
-    summary = ", ".join(f"{counts[v]} {PLURALS[v]}" for v in TONES if counts[v])
-    rows = tuple(
-        (
-            (f"“{claim.quote}”" if claim.is_quotation else claim.quote, "\n", Aside(claim.place)),
-            (Badge(finding.verdict, TONES[finding.verdict]),),
-            finding.evidence,
-        )
-        for claim, finding in zip(publication.claims, findings, strict=True)
-    )
+    summary = ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
+    rows: list[tuple[Cell, ...]] = []
+    for claim, finding in zip(publication.claims, findings, strict=True):
+        quote = f"“{claim.quote}”" if claim.is_quotation else claim.quote
+        mark = Badge(finding.verdict, VERDICTS[finding.verdict][0])
+        rows.append(((quote, "\n", Aside(claim.place)), (mark,), finding.evidence))
     lead = text(
         f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which {summary}. "
         "Each verdict is computed from the models below, with their values of the parameters. If a claim "
         "depends on a condition, the verdict names it."
     )
-    table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), rows)
+    table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), tuple(rows))
     return Section("Claims of the publication", (lead, table), ANCHOR)
 
 
 def claims_json(publication: Publication, findings: Sequence[Finding]) -> dict[str, object]:
     """Return the claims as JSON data."""
-    return {
-        "schema": SCHEMA,
-        "publication": publication.name,
-        "claims": [
-            {
-                "key": claim.key,
-                "place": claim.place,
-                "quote": claim.quote,
-                "verdict": finding.verdict,
-                "evidence": "".join(_plain(run) for run in finding.evidence),
-            }
-            for claim, finding in zip(publication.claims, findings, strict=True)
-        ],
-    }
+    claims = []
+    for claim, finding in zip(publication.claims, findings, strict=True):
+        said = {"verdict": finding.verdict, "evidence": "".join(map(_plain, finding.evidence))}
+        claims.append({"key": claim.key, "place": claim.place, "quote": claim.quote} | said)
+    return {"schema": SCHEMA, "publication": publication.name, "claims": claims}
 
 
 def _plain(run: object) -> str:

@@ -12,17 +12,13 @@ Finding(verdict='holds', evidence=('X/F has no zeros and 2 poles.',))
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import Final
 
 from symflex.errors import counted
-from symflex.report.claims.claim import Finding, judged, model_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.report.claims.claim import Models, Predicate
-    from symflex.report.document import Run
-    from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
+from symflex.report.claims.claim import Finding, Models, Predicate, judged, model_of
+from symflex.report.document import Run
+from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFacts
 
 
 def modes_at(
@@ -193,11 +189,10 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
 
 def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether no zero lies in the right half plane, for all values of the parameters."""
-    lines = []
     found = functions(models, of)
-    for stem, function in found:
-        word = "minimum phase" if function.is_minimum_phase else "nonminimum phase"
-        lines.append(f"In {stem}, {function.tf} is {word}, {function.condition}: {function.reason}.")
+    words = {True: "minimum phase", False: "nonminimum phase"}
+    said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in found]
+    lines = [f"{start}, {f.condition}: {f.reason}." for start, f in said]
     is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
     return judged(is_true, "\n".join(lines))
 
@@ -231,11 +226,11 @@ def _of_one(models: Models, name: str) -> Finding:
     if tf not in found:
         raise KeyError(f"printed formula of {tf}")
     verdict, changes = found[tf]
+    right = "The formula is proved equal to the derived function."
+    wrong = f"The formula is proved not to be the derived function. {changes}."
     if verdict not in ("equal", "differs"):
         return _unexamined("The comparison was not decided.")
-    if verdict == "equal":
-        return judged(True, "The formula is proved equal to the derived function.")
-    return judged(False, f"The formula is proved not to be the derived function. {changes}.")
+    return judged(verdict == "equal", right if verdict == "equal" else wrong)
 
 
 def best_fit(
@@ -308,28 +303,13 @@ def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
     return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
 
 
-PREDICATES: Final[Mapping[str, Predicate]] = {
-    "modes-at": modes_at,
-    "counts": counts,
-    "arrangement": arrangement,
-    "added-per-mode": added_per_mode,
-    "fewer-zeros-added": fewer_zeros_added,
-    "colocated": colocated,
-    "infinitely-many": infinitely_many,
-    "modes-suffice": modes_suffice,
-    "interlacing": interlacing,
-    "same-poles": same_poles,
-    "mirrored-real-zeros": mirrored_real_zeros,
-    "minimum-phase": minimum_phase,
-    "nonminimum-phase": nonminimum_phase,
-    "printed-formula": printed_formula,
-    "best-fit": best_fit,
-    "unstable-at-high-gain": unstable_at_high_gain,
-    "always-stable": always_stable,
-    "together": together,
-    "together-farthest": together_farthest,
-}
-"""What ``is`` of a check may be."""
+_EVERY: Final[tuple[Predicate, ...]] = (
+    modes_at, counts, arrangement, added_per_mode, fewer_zeros_added, colocated, infinitely_many,
+    modes_suffice, interlacing, same_poles, mirrored_real_zeros, minimum_phase, nonminimum_phase,
+    printed_formula, best_fit, unstable_at_high_gain, always_stable, together, together_farthest,
+)  # fmt: skip
+PREDICATES: Final[Mapping[str, Predicate]] = {p.__name__.replace("_", "-"): p for p in _EVERY}
+"""What ``is`` of a check may be: names of functions, with hyphens."""
 
 
 def functions(models: Models, of: tuple[str, ...]) -> list[tuple[str, TransferFacts]]:
@@ -358,17 +338,14 @@ def _off(told: list[tuple[str, DataFact]]) -> str:
 
 
 def _loop(models: Models, stem: str) -> LoopFacts:
-    for found in models[stem].loops:
-        return found
-    raise KeyError(f"stable gains of {stem}")
+    if not models[stem].loops:
+        raise KeyError(f"stable gains of {stem}")
+    return models[stem].loops[0]
 
 
 def _colocation(models: Models, name: str) -> ColocationFact:
     stem, _, tf = name.partition(": ")
-    for found in models[stem].colocations:
-        if found.tf == tf:
-            return found
-    raise KeyError(tf)
+    return {found.tf: found for found in reversed(models[stem].colocations)}[tf]
 
 
 def _first_mode(function: TransferFacts) -> float:
@@ -377,9 +354,8 @@ def _first_mode(function: TransferFacts) -> float:
 
 def _up_to(found: ColocationFact) -> str:
     within = f"within {found.phase_degrees:g} degrees and {found.magnitude_db:g} dB"
-    if found.bandwidth_hz is None:
-        return f"{within} up to {found.examined_hz:.4g} Hz, the end of the band"
-    return f"{within} up to {found.bandwidth_hz:.4g} Hz"
+    end = "" if found.bandwidth_hz else ", the end of the band"
+    return f"{within} up to {found.bandwidth_hz or found.examined_hz:.4g} Hz{end}"
 
 
 def _counts(function: TransferFacts) -> str:

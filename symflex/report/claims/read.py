@@ -20,18 +20,14 @@ import re
 from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from symflex.errors import SpecError, SymflexError
+from symflex.errors import Span, SpecError, SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.model.reading import Reader
-from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue, parse, read
+from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, NumberValue, TableValue, parse, read
 from symflex.report.claims.claim import Check, Claim, Publication
 from symflex.report.claims.predicates import PREDICATES
-
-if TYPE_CHECKING:
-    from symflex.errors import Span
-    from symflex.model.spec import KeyValue
 
 CLAIMS: Final = "claims.toml"
 VERSION: Final = "symflex-claims"
@@ -76,9 +72,8 @@ def read_claims(path: Path) -> Publication:
             reader.note("SF208", f"several claims are called '{key}'", table.span)
     if reader.problems:
         raise SpecError(*reader.problems)
-    return Publication(
-        texts["publication"], texts["title"], tuple(text.value for text in names or ()), claims
-    )
+    chosen = tuple(text.value for text in names or ())
+    return Publication(texts["publication"], texts["title"], chosen, claims)
 
 
 def _claim(reader: Reader, table: TableValue) -> Claim:
@@ -90,11 +85,8 @@ def _claim(reader: Reader, table: TableValue) -> Claim:
         reader.note("SF213", f"'{key[:80]}' is not a key", entry.value.span if entry else table.span, hint)
     is_quotation = table.get("statement") is None
     quote = _text(reader, table, "quote" if is_quotation else "statement", "a claim")
-    checks = tuple(
-        check
-        for one in _tables(reader, table.get("checks"), "checks", table.span)
-        if (check := _check(reader, one)) is not None
-    )
+    found = [_check(reader, one) for one in _tables(reader, table.get("checks"), "checks", table.span)]
+    checks = tuple(check for check in found if check is not None)
     return Claim(key, _text(reader, table, "place", "a claim"), quote, checks, is_quotation)
 
 

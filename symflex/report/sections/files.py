@@ -6,10 +6,11 @@ import csv
 import io
 import re
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from symflex.analysis.response import SampledResponse
 from symflex.codegen.exporters import EXPORTERS
 from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
@@ -18,9 +19,12 @@ from symflex.figures.axes import FREE
 from symflex.files.write import free_name
 from symflex.model import Figure
 from symflex.report.document import (
+    Block,
+    Cell,
     ChapterPart,
     Code,
     Notice,
+    PageFigure,
     PageLink,
     Table,
     code_of,
@@ -28,14 +32,8 @@ from symflex.report.document import (
     picture,
     text,
 )
-from symflex.report.study import attempt, said
-
-if TYPE_CHECKING:
-    from symflex.analysis.response import SampledResponse
-    from symflex.report.document import Block, Cell, PageFigure
-    from symflex.report.study import Study
-    from symflex.transfer import AnyBoundFunction
-
+from symflex.report.study import Study, attempt, said
+from symflex.transfer import AnyBoundFunction
 
 MOST_CURVES: Final = 4
 WORDS: Final = {
@@ -104,12 +102,9 @@ def _steps(study: Study, drawable: dict[tuple[str, str], AnyBoundFunction]) -> t
     stable = {found.tf for found in study.maps if found.verdict.word == "stable"}
     pairs = [pair for pair in drawable if pair[1] in references and "/".join(pair) in stable]
     # Curves of one input and one quantity share an axis.
-    first = [pair for pair in pairs if _ends(drawable[pair]) == _ends(drawable[pairs[0]])]
+    ends = {pair: (drawable[pair].source.input.name, drawable[pair].source.output.unit) for pair in pairs}
+    first = [pair for pair in pairs if ends[pair] == ends[pairs[0]]]
     return (Figure("step", "step", tuple(first[:MOST_CURVES])),) if first else ()
-
-
-def _ends(bound: AnyBoundFunction) -> tuple[str, str]:
-    return bound.source.input.name, bound.source.output.unit
 
 
 def _picture(
@@ -150,15 +145,8 @@ def data_section(study: Study) -> ChapterPart | None:
         band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
         whose = "the synthetic" if measured.is_synthetic else "the measured"
         misfit = f"{found.decibels:.3g} dB and {found.degrees:.3g} degrees rms"
-        blocks.append(
-            text(
-                "From ",
-                band,
-                ", ",
-                Code(measured.name),
-                f" differs from {whose} data by {misfit}, with equal weight for every line.",
-            )
-        )
+        rest = f" differs from {whose} data by {misfit}, with equal weight for every line."
+        blocks.append(text("From ", band, ", ", Code(measured.name), rest))
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
 
 
@@ -198,21 +186,15 @@ def export_section(study: Study) -> ChapterPart:
     else:
         for response, name in zip(responses, _names(study, responses), strict=True):
             files[name] = _csv(response)
-            rows.append(
-                (
-                    (PageLink(name, name),),
-                    (f"frequency response of {response.tf}, {len(response.omega)} lines",),
-                )
-            )
-    data = (
+            what = f"frequency response of {response.tf}, {len(response.omega)} lines"
+            rows.append(((PageLink(name, name),), (what,)))
+    for key, what in (
         ("derive", "closed forms, as symflex derive --json prints them"),
         ("roots", "poles and zeros with all certified digits"),
         ("facts", "facts that the comparison uses"),
-    )
-    rows += [
-        ((PageLink(f"data/{study.stem}_{k}.json", f"data/{study.stem}_{k}.json"),), (what,))
-        for k, what in data
-    ]
+    ):
+        name = f"data/{study.stem}_{key}.json"
+        rows.append(((PageLink(name, name),), (what,)))
     head = text(
         "The code is verified against ball arithmetic; its documentation states the worst error. ",
         Code("symflex export --help"),
@@ -235,12 +217,7 @@ def _csv(response: SampledResponse) -> bytes:
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(HEAD)
-    columns_ = (
-        response.frequency_hz,
-        response.values.real,
-        response.values.imag,
-        response.magnitude_db,
-        np.degrees(response.phase),
-    )
-    writer.writerows([f"{v:.12g}" for v in line] for line in zip(*columns_, strict=True))
+    values, degrees = response.values, np.degrees(response.phase)
+    lines = zip(response.frequency_hz, values.real, values.imag, response.magnitude_db, degrees, strict=True)
+    writer.writerows([f"{v:.12g}" for v in line] for line in lines)
     return buffer.getvalue().encode()

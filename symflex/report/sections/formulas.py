@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
+from symflex.audit import Audit
 from symflex.audit.text import VERDICTS, audit_document
 from symflex.errors import counted
-from symflex.print.forms import counts_of, with_hidden
+from symflex.expressions import Expression
+from symflex.print.forms import PrintedForm, counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
 from symflex.print.latex import (
@@ -31,6 +34,8 @@ from symflex.print.mathml import (
 )
 from symflex.report.document import (
     Badge,
+    Block,
+    Cell,
     ChapterPart,
     Code,
     DisplayedFormula,
@@ -39,6 +44,7 @@ from symflex.report.document import (
     Notice,
     Section,
     Table,
+    Tone,
     columns,
     exponents,
     filled,
@@ -49,18 +55,8 @@ from symflex.report.document import (
     text,
     unit_text,
 )
-from symflex.report.study import MOST_FUNCTIONS
-from symflex.transfer import TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.audit import Audit
-    from symflex.expressions import Expression
-    from symflex.print.forms import PrintedForm
-    from symflex.report.document import Block, Cell, Run, Tone
-    from symflex.report.study import Study
-    from symflex.transfer import AnyTransferFunction
+from symflex.report.study import MOST_FUNCTIONS, Study
+from symflex.transfer import AnyTransferFunction, TransferFunction
 
 
 def specification_section(study: Study) -> ChapterPart:
@@ -68,11 +64,8 @@ def specification_section(study: Study) -> ChapterPart:
     content = study.text.encode()
     checksum = hashlib.sha256(content).hexdigest()
     name = f"data/{study.stem}.toml"
-    return ChapterPart(
-        "",
-        (Listing(f"Specification {study.stem}.toml", study.text), text("SHA-256: ", Code(checksum))),
-        {name: content},
-    )
+    listing = Listing(f"Specification {study.stem}.toml", study.text)
+    return ChapterPart("", (listing, text("SHA-256: ", Code(checksum))), {name: content})
 
 
 def parameter_section(study: Study) -> ChapterPart | None:
@@ -99,12 +92,8 @@ def equation_section(study: Study) -> ChapterPart:
     blocks: list[Block] = []
     left_out = len(study.model.transfer_functions) - len(study.pairs)
     if left_out:
-        blocks.append(
-            Notice(
-                f"{left_out} of {left_out + len(study.pairs)} transfer functions are left out: "
-                f"a report shows the first {MOST_FUNCTIONS}."
-            )
-        )
+        many = f"{left_out} of {left_out + len(study.pairs)} transfer functions"
+        blocks.append(Notice(f"{many} are left out: a report shows the first {MOST_FUNCTIONS}."))
     if study.why_nested:
         blocks.append(text(f"Shown {study.why_nested}."))
     sections = [
@@ -137,11 +126,8 @@ def _of(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, 
     labels = form_labels(tf, form)
     for expression, multiplicity in hidden:
         times = "" if multiplicity == 1 else f" ({multiplicity} times)"
-        runs: list[Run] = ["Hidden: the factor ", labelled(expression, labels)]
-        runs.append(
-            f" cancels{times}; its modes are uncontrollable from this input or unobservable at this output."
-        )
-        blocks.append(text(*runs))
+        why = "its modes are uncontrollable from this input or unobservable at this output."
+        blocks.append(text("Hidden: the factor ", labelled(expression, labels), f" cancels{times}; {why}"))
     return tuple(blocks)
 
 
@@ -149,11 +135,8 @@ def _introduction(tf: AnyTransferFunction) -> str:
     unit = f" in {unit_text(tf.unit)}" if unit_text(tf.unit) else ""
     if not isinstance(tf, TransferFunction):
         return f"{tf.quantity.capitalize()}{unit}."
-    zeros, poles = counts_of(tf)
-    counts = ", ".join(
-        f"infinitely many {noun}s" if n is None else counted(n, noun)
-        for n, noun in ((zeros, "zero"), (poles, "pole"))
-    )
+    pairs = zip(counts_of(tf), ("zero", "pole"), strict=True)
+    counts = ", ".join(f"infinitely many {noun}s" if n is None else counted(n, noun) for n, noun in pairs)
     return f"{tf.quantity.capitalize()}{unit}; {counts}."
 
 
@@ -200,31 +183,19 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
         blocks.append(_formula(audit, audit.correction.expression, lines, f"{audit.tf.name}, corrected"))
     if audit.changes:
         labels = _labels(audit)
-        rows = tuple(
-            ((c.place,), (labelled(c.printed, labels),), (labelled(c.derived, labels),))
-            for c in audit.changes
-        )
+        parts = [(c.place, labelled(c.printed, labels), labelled(c.derived, labels)) for c in audit.changes]
+        rows = tuple(((place,), (printed,), (derived,)) for place, printed, derived in parts)
         blocks.append(Table(columns("Where", "Printed", "Right"), rows, "What differs"))
     deviation = audit.deviation
     if deviation is not None:
         low, high = (f"{float(f):g}" for f in deviation.band)
         size = "grows without bound" if deviation.unbounded else f"is {deviation.magnitude_db:+.4g} dB"
-        blocks.append(
-            text(
-                f"The largest deviation of the magnitude from {low} to {high} Hz {size} at "
-                f"{deviation.magnitude_hz:.4g} Hz; that of the phase is {deviation.phase_deg:+.4g}° at "
-                f"{deviation.phase_hz:.4g} Hz (measured)."
-            )
-        )
+        magnitude = f"of the magnitude from {low} to {high} Hz {size} at {deviation.magnitude_hz:.4g} Hz"
+        phase = f"of the phase is {deviation.phase_deg:+.4g}° at {deviation.phase_hz:.4g} Hz"
+        blocks.append(text(f"The largest deviation {magnitude}; that {phase} (measured)."))
     if audit.laws:
-        laws = tuple(
-            (
-                (law.law,),
-                (Badge("kept", "good") if law.kept else Badge("violated", "bad"),),
-                (f"{law.detail} ({law.how})",),
-            )
-            for law in audit.laws
-        )
+        marks = {True: Badge("kept", "good"), False: Badge("violated", "bad")}
+        laws = tuple(((x.law,), (marks[x.kept],), (f"{x.detail} ({x.how})",)) for x in audit.laws)
         blocks.append(Table(columns(("Law", "plain"), ("", "plain"), "Why"), laws, "Structural laws"))
     return tuple(blocks)
 

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import json
 from math import tau
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from symflex.analysis.explanation import explanation_paragraphs
+from flint import arb
+
+from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
-from symflex.loops import degrees
+from symflex.loops import DynamicColocation, StabilityMap, degrees
 from symflex.loops.stability_map import bandwidth_text
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
     Badge,
+    Block,
+    Cell,
     ChapterPart,
     Code,
     Notice,
     Section,
     Table,
+    Tone,
     code_of,
     columns,
     exponents,
@@ -28,18 +33,9 @@ from symflex.report.document import (
     text,
 )
 from symflex.report.sections.formulas import ratio
-from symflex.report.study import attempt, said
-
-if TYPE_CHECKING:
-    from flint import arb
-
-    from symflex.analysis.explanation import ZeroExplanation
-    from symflex.loops import DynamicColocation, StabilityMap
-    from symflex.report.document import Block, Cell, Tone
-    from symflex.report.study import Study
-    from symflex.roots import PoleZeroMap
-    from symflex.roots.pole_zero_map import StabilityVerdict
-
+from symflex.report.study import Study, attempt, said
+from symflex.roots import PoleZeroMap
+from symflex.roots.pole_zero_map import StabilityVerdict
 
 DIGITS: Final = 10
 LONGEST: Final = 80
@@ -83,22 +79,16 @@ def root_section(study: Study) -> ChapterPart:
 
 def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     certificate = found.certificate
-    blocks: list[Block] = []
     if certificate.certified:
         mark = Badge("certified", "good")
         said = f"{certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
     else:
         mark, said = Badge("not certified", "bad"), f"{certificate.reason or 'no reason given'}."
     shown = f" Listed: {region_text(found.region)}" if region_text(found.region) else ""
-    blocks.append(_stability(found.verdict))
-    blocks.append(marked(mark, said + shown))
+    blocks: list[Block] = [_stability(found.verdict), marked(mark, said + shown)]
     for part in found.excluded:
-        blocks.append(
-            text(
-                f"Left out: {part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j, where roots "
-                f"accumulate."
-            )
-        )
+        place = f"{part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j"
+        blocks.append(text(f"Left out: {place}, where roots accumulate."))
     for kind, title in KINDS.items():
         roots = roots_of(found, kind)
         entries = one_of_each_pair(roots)
@@ -138,12 +128,9 @@ def stability_mark(word: str) -> Badge:
 
 def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
     """Return what the zeros mean, a paragraph as its lines; what concerns the command line is left out."""
-    found = []
-    for paragraph in explanation_paragraphs(told):
-        if not paragraph[0].startswith("To see that system"):
-            lines = (line.replace("+-", "±").replace("*", "·") for line in paragraph)
-            found.append(tuple(x for line in lines for x in (line, "\n"))[:-1])
-    return found
+    kept = (p for p in explanation_paragraphs(told) if not p[0].startswith("To see that system"))
+    shown = ([line.replace("+-", "±").replace("*", "·") for line in paragraph] for paragraph in kept)
+    return [tuple(x for line in lines for x in (line, "\n"))[:-1] for lines in shown]
 
 
 LOOP_HEADS: Final = columns(
@@ -183,10 +170,9 @@ def loop_section(study: Study) -> ChapterPart | None:
 
 
 def _gains(found: StabilityMap) -> tuple[Block, ...]:
+    opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
     if found.certified:
         opening = marked(Badge("certified", "good"), "All poles right of the imaginary axis are counted.")
-    else:
-        opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
     blocks: list[Block] = []
     if found.nominal is not None:
         blocks.append(_stability(found.verdict, f", with {found.gain} = {float(found.nominal):g}"))
@@ -199,11 +185,8 @@ def _gains(found: StabilityMap) -> tuple[Block, ...]:
     unit = f" [{found.unit}]" if found.unit else ""
     title = f"Closed-loop poles by the gain {found.gain}{unit}"
     blocks.append(Table(LOOP_HEADS, tuple(rows), title))
-    places = [
-        f"{found.gain} = {decimal(b.gain)} at {', '.join(f'{decimal(w / tau)} Hz' for w in b.frequencies)}"
-        for b in found.boundaries
-        if b.frequencies
-    ]
+    ends = [(b.gain, [f"{decimal(w / tau)} Hz" for w in b.frequencies]) for b in found.boundaries]
+    places = [f"{found.gain} = {decimal(gain)} at {', '.join(hertz)}" for gain, hertz in ends if hertz]
     if places:
         blocks.append(text(f"Poles are on the axis for {'; '.join(places)}."))
     margins = [f"gain margin {decimal(m.factor)}" for m in found.gain_margins]
