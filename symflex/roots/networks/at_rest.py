@@ -130,17 +130,14 @@ def _order(rows: list[dict[int, nmod_poly]], field: TaylorField) -> int | None:
     columns = columns_of(rows)
     left, total, terms = set(range(len(rows))), 0, field.terms
     while left:
-        ranked = [
-            (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
-            for j in sorted(left, key=lambda j: len(columns[j]))[:FEWEST]
-            for i in columns[j]
-        ]
-        if not ranked or min(ranked)[0]:
+        for looked_at in (sorted(left, key=lambda j: len(columns[j]))[:FEWEST], left):
             ranked = [
                 (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
-                for j in left
+                for j in looked_at
                 for i in columns[j]
             ]
+            if ranked and not min(ranked)[0]:
+                break
         if not ranked:
             return None
         order, _, i, j = min(ranked)
