@@ -131,9 +131,7 @@ class LevelPolynomial:
         if not pivot > 0:
             return None
         radius = (arb(2) ** -current_bits() * centre.abs_upper()).upper()
-        for i in range(count):
-            scale = (sizes[i] / pivot).root(count - i).upper()
-            radius = scale if scale > radius else radius
+        radius = max([radius, *((sizes[i] / pivot).root(count - i).upper() for i in range(count))])
         others = arb_poly([0 if i == count else size for i, size in enumerate(sizes)])
         for _ in range(PELLET_DOUBLINGS):
             if pivot * radius**count > others(radius):
