@@ -490,10 +490,10 @@ def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
 
     On the axis ``(EI y'')' = V + N y'`` and ``V' = rho A omega^2 y``, with V minus the force across.
     """
-    if not isinstance(use.element, Beam) or dict(use.choices).get("theory") != "euler-bernoulli":
-        return False
     return (
-        all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l"))
+        isinstance(use.element, Beam)
+        and dict(use.choices).get("theory") == "euler-bernoulli"
+        and all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l"))
         and all(signs[n] == 0 for n in ("eta", "c_f", "k_f"))
         and signs["N"] in (0, 1)
     )

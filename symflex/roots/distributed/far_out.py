@@ -240,6 +240,7 @@ def _least(start: float, is_known: Callable[[float], bool]) -> float | None:
     """Return a radius from which on something is known, if it is so from the largest one on."""
     if is_known(start):
         return start
+    # Where the largest radius is none, there is none at all.
     low, high = start, start * LARGEST
     if not is_known(high):
         return None

@@ -216,15 +216,11 @@ class Side:
             return
         self._scans = False
         found = self._search.ring(low, high, right, left)
-        self.missing = found.missing
-        self._domain = found.cell
-        if (
-            found.cell is not None
-            and low <= smallest
-            and is_whole_ring(found.cell, self._search.left, self.holes)
-        ):
+        self.missing, cell = found.missing, found.cell
+        if cell is not None and low <= smallest and is_whole_ring(cell, self._search.left, self.holes):
             # A whole disc is easier to count than a ring whose inner circle is very small.
-            self._domain = replace(found.cell, low=-inf)
+            cell = replace(cell, low=-inf)
+        self._domain = cell
         self._set(found.roots)
 
     def numbered(self, number: int) -> Root | None:

@@ -75,8 +75,7 @@ def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
 
 def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly] | None:
     """Return every generator as a power series in s, constants at random."""
-    equations = cramer.equations
-    point = random_point(equations.ring.names)
+    equations, point = cramer.equations, random_point(cramer.equations.ring.names)
     if not _place_constants(equations, point):
         return None
     values = {name: field.constant(x) for name, x in point.items()} | {LAPLACE: field.power(1)}

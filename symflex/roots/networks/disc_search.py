@@ -80,17 +80,13 @@ class DiscSide:
                 if max(box.real.rad(), box.imag.rad()) <= abs(box).mid() * wanted:
                     return box
                 middle = box.mid()
-                value = self.value(middle, bits)
-                step = value / slope
-                closer = middle - step
+                closer = middle - self.value(middle, bits) / slope
                 if self.is_even and box.real.mid() == 0:
                     closer = acb(arb(0, closer.real.abs_upper()), closer.imag)
                 elif box.imag == 0:
                     closer = acb(closer.real)
-                if (
-                    not closer.is_finite()
-                    or closer.real.rad() + closer.imag.rad() > (box.real.rad() + box.imag.rad()) / 4
-                ):
+                before, behind = (b.real.rad() + b.imag.rad() for b in (box, closer))
+                if not closer.is_finite() or behind > before / 4:
                     bits = next(finer)
                 if closer.is_finite() and closer.rad() < box.rad():
                     box = closer
