@@ -171,14 +171,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     where, is_default = _region_of(bound, region)
     proof, rests = _passivity(bound, bound.values)
     found = locate_in_network(
-        equations_of(bound),
-        bound.name,
-        pair,
-        where,
-        digits,
-        is_default=is_default,
-        proof=proof,
-        rests=rests,
+        equations_of(bound), bound.name, pair, where, digits, is_default=is_default, proof=proof, rests=rests
     )
     is_open = not found.certificate.certified and found.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
@@ -249,8 +242,8 @@ def locate_distributed(
         with Budget().entered():  # what is known is told also when the time is over
             searched.settle()
     chosen = searched.chosen()
-    found = sum(root.multiplicity for roots in chosen for root in roots)
-    every = [root for roots in chosen for root in roots]
+    every = list(chain(*chosen))
+    found = count_roots(every)
     if reason is None and not all(root.certified for root in every):
         reason = TOUCHING
     missing = sum(side.missing for side in searched.sides)
@@ -314,7 +307,9 @@ class _Searched:
                 side.numbered(where.number)
             return
         shared = _find(self.sides, where)
-        if not self._with_zeros and self._may_be_removable():
+        # Where a pole lies where wavenumbers vanish or meet, a zero may lie, too.
+        degenerate = [] if self._with_zeros else [point for point in self._degenerate if not point.is_zero]
+        if any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate):
             self.sides[1] = Side(bound, bound.num, digits)
             shared = _find(self.sides, where)
         # A little more, so that what lies at the highest pole itself is in.
@@ -326,11 +321,6 @@ class _Searched:
         self.sides.append(hidden)
         _find((hidden,), within)
         self._hide(shared)
-
-    def _may_be_removable(self) -> bool:
-        """Tell whether a pole lies where wavenumbers vanish or meet: a zero may lie there, too."""
-        degenerate = [point for point in self._degenerate if not point.is_zero]
-        return any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate)
 
     @cached_property
     def _degenerate(self) -> list[Root]:
@@ -362,21 +352,17 @@ class _Searched:
 
     def prove(self) -> str | None:
         """Count the roots of all sides with proof; return what could not be proved."""
-        reasons = []
+        reasons: list[str] = []
         if isinstance(self.region, Mode):
             # Its number was counted, or all below it were found.
-            for side in self.sides:
-                if (
-                    side.engine != LOSSLESS
-                    and not (proof := side.prove(Modes(self.region.number))).is_complete
-                ):
-                    reasons.append(proof.reason or "roots were counted but not found")
+            below = Modes(self.region.number)
+            proofs = [side.prove(below) for side in self.sides if side.engine != LOSSLESS]
+            reasons = [p.reason or "roots were counted but not found" for p in proofs if not p.is_complete]
             return "; ".join(dict.fromkeys(reasons)) or None
         engines = [side.engine for side in self.sides]
         for i, side in enumerate(self.sides):
             entered_budget().progress.report(i / len(self.sides), "proving that no root is missing")
-            is_last = i == len(self.sides) - 1
-            proof = side.prove(self._within if is_last else self.region)
+            proof = side.prove(self._within if side is self.sides[-1] else self.region)
             if not proof.is_complete:
                 missing = proof.counted - proof.found
                 reasons.append(proof.reason or f"{abs(missing)} roots were counted but not found")
@@ -441,12 +427,10 @@ class _Searched:
         gaps: list[RightHalfPlane] = []
         has_more = False  # poles than those that are known
         for place, part in (*poles, (2 * len(poles), product)):
-            is_hidden, known = part is product, list[Root]()
+            is_hidden, is_searched, known = part is product, place < len(self.sides), list[Root]()
             try:
                 side = (
-                    self.sides[place]
-                    if place < len(self.sides)
-                    else Side(bound, part, self.digits, is_hidden=is_hidden)
+                    self.sides[place] if is_searched else Side(bound, part, self.digits, is_hidden=is_hidden)
                 )
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 is_plain = rests or is_over or side.is_finite
@@ -483,7 +467,7 @@ class _Searched:
             rests = growth is not None and growth[1]
         if proof:
             unsure = "" if rests or not has_more else NONE_ON_AXIS
-        seen = [root for each in found[:-1] for root in each]
+        seen = list(chain(*found[:-1]))
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
         unseen = [r for r in found[-1] if not r.is_zero] + root_at_zero(at_rest)
@@ -501,8 +485,8 @@ class _Searched:
 
     def chosen(self) -> tuple[list[Root], list[Root], list[Root]]:
         """Return the poles, zeros and hidden modes of the region."""
-        pair = [_chosen(side.roots, self.region) for side in self.sides[:2]] if len(self.sides) > 1 else []
-        poles, zeros = pair if pair else ([], [])
+        pair = [_chosen(side.roots, self.region) for side in self._pair]
+        poles, zeros = pair or ([], [])
         return poles, zeros, [h.root for h in self.hidden]
 
     def extent(self) -> str:
@@ -580,12 +564,9 @@ def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
     """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
     roots: list[Root] = []
     for law in bound.kernels.dispersions:
-        values = [*law.characteristic[:1], *law.meets]
-        if law.kind == "pair":
-            values += [law.characteristic[2], law.discriminant]
-        for value in values:
-            if not value.is_zero:
-                roots += polynomial_roots(bound, value, ACCUMULATION_DIGITS)
+        pair = (law.characteristic[2], law.discriminant) if law.kind == "pair" else ()
+        for value in (*law.characteristic[:1], *law.meets, *pair):
+            roots += [] if value.is_zero else polynomial_roots(bound, value, ACCUMULATION_DIGITS)
     return roots
 
 

@@ -37,7 +37,7 @@ from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, St
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
-from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, overlap
+from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, count_roots, overlap
 from symflex.transfer import bind
 from symflex.transfer.enclose import summed
 from symflex.transfer.of_model import derive_all
@@ -110,7 +110,7 @@ def locate_lossy(
     cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
     poles, zeros = (_inside(region, roots) for roots in found[:2])
     concealed = _inside(_among(poles, region) if bound.is_distributed else region, found[2])
-    total = sum(root.multiplicity for roots in (poles, zeros, concealed) for root in roots)
+    total = count_roots((*poles, *zeros, *concealed))
     return PoleZeroMap(
         bound.name,
         region,
@@ -171,7 +171,6 @@ def _vanishes(bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, root: 
     ring = bound.ratio.ring
     with precision(root.working_bits()):
         values = {name: acb(evaluate()) for name, evaluate in bound.constants} | {"s": root.enclosure()}
-
         real, imaginary = (summed(terms_of(f), ring.names, values.__getitem__, acb(1)) for f in (g, h))
         ours, theirs = (bool((real + acb(0, sign) * imaginary).contains(0)) for sign in (1, -1))
         return None if ours == theirs else ours
@@ -342,8 +341,8 @@ def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[flo
     counted, rest = divmod(within(high) - (order if low == -inf else within(low)), function.power)
     with precision(FLOAT_BITS):
         inner, outer = (arb(z).exp() if z > -inf else arb(0) for z in circles)
-        found = sum(r.multiplicity for r in roots if not r.is_zero and inner < r.size() < outer)
-    at_zero = sum(r.multiplicity for r in roots if r.is_zero)
+        found = count_roots(r for r in roots if not r.is_zero and inner < r.size() < outer)
+    at_zero = count_roots(r for r in roots if r.is_zero)
     if rest or (low == -inf and order != at_zero * function.power):
         raise RootOnPathError
     return counted - found

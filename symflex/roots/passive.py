@@ -43,14 +43,7 @@ from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
 from symflex.model.along import COORDINATE
 from symflex.model.network import variable_of
-from symflex.model.signs import (
-    Line,
-    follows_inputs,
-    is_passive,
-    line_of,
-    parameter_signs,
-    value_along,
-)
+from symflex.model.signs import Line, follows_inputs, is_passive, line_of, parameter_signs, value_along
 from symflex.roots.root import ROUNDING
 from symflex.transfer.of_model import assemble
 
@@ -128,8 +121,11 @@ def passive_loop(
     equations = assemble(
         replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
-    ends = [_Acting.of(source, equations.model) for source in sources]
-    return _Structure(equations, rest, gain, line, known, pressed).closed_at(ends)
+    places = [
+        _Acting(_ends(source, equations.model), int(any(d in CIRCUITS for _, d in source.domains)))
+        for source in sources
+    ]
+    return _Structure(equations, rest, gain, line, known, pressed).closed_at(places)
 
 
 def _dynamic(model: Model) -> dict[str, Expression]:
@@ -209,10 +205,6 @@ class _Acting:
     ends: Ends
     rate: int  # 1 of voltages, whose product with a current is power as that of a velocity with a force is
 
-    @staticmethod
-    def of(source: PlacedElement, model: Model) -> _Acting:
-        return _Acting(_ends(source, model), int(any(d in CIRCUITS for _, d in source.domains)))
-
 
 def _ends(use: PlacedElement, model: Model) -> Ends:
     """Return what moves at the nodes of an element of one port."""
@@ -278,12 +270,10 @@ class _Structure:
             return None
         if len(found) == 1:
             return _Feedback(is_moved=False, loses=False, powers={})  # it follows inputs, through signals
-        shares = [
-            found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
-        ]
-        if len(shares) != sum(v is not None for v in ends) or any(
-            not (x - shares[0]).is_zero for x in shares
-        ):
+        signs = zip(ends, (1, -1), strict=False)
+        shares = [found[v] / found[effort] * sign for v, sign in signs if v in found]
+        is_between = len(shares) == sum(v is not None for v in ends)
+        if not is_between or not all((x - shares[0]).is_zero for x in shares):
             return None
         law, below = self._powers(shares[0].numerator()), self._powers(shares[0].denominator())
         if law is None or below is None or any(j for _, j in below) or any(j > 1 for _, j in law):
@@ -410,9 +400,8 @@ class _Structure:
                 if name != self.gain
             }
             for name, value in self.equations.definitions:
-                above, below = (
-                    self._powers(part, found) for part in (value.numerator(), value.denominator())
-                )
+                parts = value.numerator(), value.denominator()
+                above, below = (self._powers(part, found) for part in parts)
                 if above is not None and below is not None and above.keys() == below.keys() == {(0, 0)}:
                     found[name] = above[0, 0] / below[0, 0]
         return found
@@ -450,14 +439,11 @@ class _Structure:
 
         It is there for every K > 0 and every s = j omega with omega > 0.
         """
-        signs: dict[bool, set[int]] = {False: set(), True: set()}
+        even, odd = set[int](), set[int]()
         for (of_s, _), c in (self._powers(coefficient) or {}).items():
             sign = 1 if c > 0 else -1 if c < 0 else 0
-            signs[bool(of_s % 2)].add(sign * (1, 1, -1, -1)[of_s % 4])
-        sides = [
-            unit * signs[odd].pop() for odd, unit in ((False, 1), (True, 1j)) if signs[odd] in ({1}, {-1})
-        ]
-        return sides[0] if sides else 0
+            (odd if of_s % 2 else even).add(sign * (1, 1, -1, -1)[of_s % 4])
+        return even.pop() if even in ({1}, {-1}) else 1j * odd.pop() if odd in ({1}, {-1}) else 0
 
     def _is_real(self, coefficient: Factored) -> bool:
         """Tell whether a coefficient is real on the axis, and has one sign there."""
@@ -494,12 +480,8 @@ def _is_stable(coefficients: Mapping[int, arb]) -> bool:
         for _ in range(degree):
             if not first[0] > 0 or not second[0] > 0:
                 return False
-            following = [*first[1:], arb(0)]
-            beside = [*second[1:], arb(0), arb(0)]
-            first, second = (
-                second,
-                [x - first[0] / second[0] * y for x, y in zip(following, beside, strict=False)],
-            )
+            following = zip([*first[1:], arb(0)], [*second[1:], arb(0), arb(0)], strict=False)
+            first, second = second, [x - first[0] / second[0] * y for x, y in following]
     return bool(first[0] > 0)
 
 
@@ -508,10 +490,10 @@ def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
 
     On the axis ``(EI y'')' = V + N y'`` and ``V' = rho A omega^2 y``, with V minus the force across.
     """
-    if not isinstance(use.element, Beam) or dict(use.choices).get("theory") != "euler-bernoulli":
-        return False
     return (
-        all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l"))
+        isinstance(use.element, Beam)
+        and dict(use.choices).get("theory") == "euler-bernoulli"
+        and all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l"))
         and all(signs[n] == 0 for n in ("eta", "c_f", "k_f"))
         and signs["N"] in (0, 1)
     )

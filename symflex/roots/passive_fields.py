@@ -279,13 +279,14 @@ class _Fields:
 
     def _number(self, value: Factored, x: arb | None = None) -> arb:
         """Return a value on a ball of x; not a number where a parameter has none."""
-        found: arb = evaluated(value, lambda name: self._generator(name, x), arb(1))
-        return found
+        at = arb("nan") if x is None else x
 
-    def _generator(self, name: str, x: arb | None) -> arb:
-        expression = self._functions.get(name, Name(name))
-        found = value_along(expression, arb("nan") if x is None else x, self._line)
-        return arb("nan") if found is None else found
+        def generator(name: str) -> arb:
+            found = value_along(self._functions.get(name, Name(name)), at, self._line)
+            return arb("nan") if found is None else found
+
+        found: arb = evaluated(value, generator, arb(1))
+        return found
 
 
 def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]] | None]]:
@@ -435,14 +436,14 @@ def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
             row, column = (j, i) if is_turned else (i, j)
             b[row][column] = -scale[row] * moved[row][column]
         # u' = (p - B u)/K and p' = B^T u' + D u.
-        rows, forces = [], []
-        for i in range(m):
-            rows.append(
-                [*(-x / scale[i] for x in b[i]), *(1 / scale[i] if j == i else zero for j in range(m))]
-            )
-            forces.append(
-                list(chain(*zip(b[i], (scale[i] if j == i else zero for j in range(m)), strict=True)))
-            )
+        rows = [
+            [*(-x / k for x in b[i]), *(1 / k if j == i else zero for j in range(m))]
+            for i, k in enumerate(scale)
+        ]
+        forces = [
+            list(chain(*((x, k if j == i else zero) for j, x in enumerate(b[i]))))
+            for i, k in enumerate(scale)
+        ]
         for i in range(m):
             taken = [sum((b[k][i] * b[k][j] / scale[k] for k in range(m)), zero) for j in range(m)]
             own = [held[i][j] * scale[i] - x for j, x in enumerate(taken)]

@@ -174,7 +174,10 @@ def judge(
     >>> judge([pole], hidden=[rest]).headline
     'stable, with a hidden pole at s = 0'
     """
-    return replace(_judged(roots, hidden, unproved, proof), hidden=_named_hidden(hidden))
+    on_axis = [root for root in hidden if root.on_imaginary_axis]
+    at_rest = count_roots(root for root in on_axis if root.is_zero)
+    named = hidden_poles(at_rest, count_roots(on_axis) - at_rest, count_right(hidden))
+    return replace(_judged(roots, hidden, unproved, proof), hidden=named)
 
 
 def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof: str) -> StabilityVerdict:
@@ -204,13 +207,6 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
     if unproved or unclear:
         return StabilityVerdict("unknown", None, False, unproved or ON_AXIS)
     return StabilityVerdict("stable", 0, True)
-
-
-def _named_hidden(hidden: Sequence[Root]) -> str:
-    """Return which hidden roots are proved not to lie in the open left half plane."""
-    on_axis = [root for root in hidden if root.on_imaginary_axis]
-    at_rest = count_roots([root for root in on_axis if root.is_zero])
-    return hidden_poles(at_rest, count_roots(on_axis) - at_rest, count_right(hidden))
 
 
 def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
@@ -429,17 +425,15 @@ def find_pole_zero_map(
     counted = sum(problem.degree for problem, _ in sought)
     located: list[tuple[Root, ...]] = []
     every: list[tuple[Root, ...]] = []
-    found, apart = 0, True
     exceeded: Diagnostic | None = None
     for i, (problem, within) in enumerate(sought):
         entered_budget().progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
         roots, everywhere, exceeded = _locate(problem, within, digits)
         located.append(roots)
         every.append(everywhere)
-        found += count_roots(everywhere)
-        apart = apart and all(root.certified for root in everywhere)
         if exceeded is not None:
             break
+    found = sum(map(count_roots, every))
     located += [()] * (len(sought) - len(located))
     pole_roots, zero_roots, *others = located
     concealed = [
@@ -448,7 +442,7 @@ def find_pole_zero_map(
     reason = None if exceeded is None else exceeded.message
     if reason is None and counted != found:
         reason = f"{counted} roots exist, {found} were found"
-    elif reason is None and not apart:
+    elif reason is None and not all(root.certified for roots in every for root in roots):
         reason = "some roots could not be told apart; each such group is enclosed as one"
     code = None if exceeded is None else exceeded.code
     concealed += [

@@ -52,8 +52,7 @@ def find_polynomial_roots(
         raise ValueError(message)
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
-    search = _PolynomialSearch(problem, digits, proposers)
-    return search.run()
+    return _PolynomialSearch(problem, digits, proposers).run()
 
 
 class _PolynomialSearch:
@@ -176,10 +175,7 @@ def _merge(cluster: Sequence[Root]) -> Root:
 
 def _hull(balls: Sequence[arb]) -> arb:
     """Return a ball around real balls; arb.union loses half the digits."""
-    low, high = balls[0].lower(), balls[0].upper()
-    for ball in balls[1:]:
-        low = ball.lower() if ball.lower() < low else low
-        high = ball.upper() if ball.upper() > high else high
+    low, high = min(ball.lower() for ball in balls), max(ball.upper() for ball in balls)
     middle = ((low + high) / 2).mid()
     return arb(middle, (high - middle).upper().max((middle - low).upper())) if high > low else low
 

@@ -56,9 +56,7 @@ class PolynomialInS:
         if len(self.constants) != self.context.nvars():
             message = f"{self.context.nvars()} generators but {len(self.constants)} constants"
             raise ValueError(message)
-        length = len(self.coefficients)
-        while length and self.coefficients[length - 1].is_zero():
-            length -= 1
+        length = max((i for i, c in enumerate(self.coefficients, 1) if not c.is_zero()), default=0)
         if length == 0:
             raise ModelError(Diagnostic("SF403", "the polynomial is zero: every s is a root of it"))
         object.__setattr__(self, "coefficients", tuple(self.coefficients[:length]))
@@ -209,11 +207,9 @@ def split(problem: RootProblem) -> Splitting:
     for element, multiplicity in base:
         spend()
         even = element.gcd(ring.reflect(element))
-        odd = element // even
-        if _degree(even) > 0:
-            parts.append(SquareFreePart(ring.lower(even, 2), multiplicity, in_square=True))
-        if _degree(odd) > 0:
-            parts.append(SquareFreePart(ring.lower(odd, 1), multiplicity, in_square=False))
+        for part, step in ((even, 2), (element // even, 1)):
+            if _degree(part) > 0:
+                parts.append(SquareFreePart(ring.lower(part, step), multiplicity, in_square=part is even))
     return Splitting(zeros, tuple(parts))
 
 
@@ -261,10 +257,8 @@ class _Ring:
         for coefficient in polynomial.coefficients[low:]:
             terms: dict[tuple[int, ...], int] = {}
             for exponents, integer in coefficient.to_dict().items():
-                monomial = [0] * (len(self.constants) + 1)
-                for place, exponent in zip(places, exponents, strict=True):
-                    monomial[place + 1] = int(exponent)
-                terms[tuple(monomial)] = int(integer)
+                powers = dict(zip(places, map(int, exponents), strict=True))
+                terms[0, *(powers.get(i, 0) for i in range(len(self.constants)))] = int(integer)
             coefficients.append(self.context.from_dict(terms))
         content = reduce(lambda a, b: a.gcd(b), coefficients)
         terms = {

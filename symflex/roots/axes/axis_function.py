@@ -173,8 +173,9 @@ class AxisValues:
     """Evaluates a function of t, and its derivative, at one precision, which has to be the current one."""
 
     def __init__(self, numbers: _Numbers, bits: int) -> None:
-        self._growths = _rounded_rates(numbers.growths)
-        self._phases = _rounded_rates(numbers.phases)
+        self._growths, self._phases = (
+            [(+p, +q) for p, q in rates] for rates in (numbers.growths, numbers.phases)
+        )
         self._values, self._slopes = _rounded(numbers.values), _rounded(numbers.slopes)
         self._products = numbers.products
         self._negligible = -arb(DECAYED * bits)
@@ -294,10 +295,6 @@ def _sum(*polynomials: dict[int, arb]) -> dict[int, arb]:
 
 def _powers(polynomial: dict[int, arb]) -> Powers:
     return tuple(sorted(polynomial.items()))
-
-
-def _rounded_rates(rates: Sequence[Rate]) -> list[Rate]:
-    return [(+p, +q) for p, q in rates]
 
 
 def _rounded(terms: Sequence[Term]) -> list[Term]:

@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from symflex.algebra.exponential_sum import (
         Amplitude,
         Argument,
-        AxisWave,
         Exponent,
         ExponentialSum,
         Gaussian,
@@ -314,7 +313,10 @@ class LosslessFunction:
         if waves is None:
             return None
         fastest = max((wave.growth for wave in waves), key=self._growth)
-        return AxisFunction(tuple(_divided(wave, fastest) for wave in waves), axis, self.enclosures)
+        # Without an exponential that all have in common.
+        growths = [tuple(a - b for a, b in zip(wave.growth, fastest, strict=True)) for wave in waves]
+        divided = (replace(wave, growth=own) for wave, own in zip(waves, growths, strict=True))
+        return AxisFunction(tuple(divided), axis, self.enclosures)
 
     def _growth(self, multiples: Multiples) -> tuple[float, float]:
         """Return how fast an exponential grows for large t."""
@@ -346,10 +348,7 @@ class LosslessFunction:
         """The factors and their exponents, as sums over exponentials in balls."""
         with precision(FLOAT_BITS):
             return tuple(
-                (
-                    ArcSum(tuple(_arc_term(*item, self.enclosures) for item in terms.terms.items())),
-                    exponent,
-                )
+                (ArcSum(tuple(_arc_term(*item, self.enclosures) for item in terms.terms.items())), exponent)
                 for terms, exponent in self.factors
             )
 
@@ -367,12 +366,6 @@ def _arc_term(exponent: Exponent, amplitude: Amplitude, numbers: Enclosures) -> 
         factor = numbers.product(tuple((i - 1, e) for i, e in monomial if i))
         powers[n] = powers.get(n, acb(0)) + acb(*number) * factor
     return ArcTerm(linear, square, tuple(sorted(powers.items())))
-
-
-def _divided(wave: AxisWave, growth: Multiples) -> AxisWave:
-    """Return a wave without an exponential that all have in common."""
-    rest = tuple(own - taken for own, taken in zip(wave.growth, growth, strict=True))
-    return replace(wave, growth=rest)
 
 
 def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction | None:
@@ -446,8 +439,7 @@ def _enclosures(
         places: dict[str, Value] = {"s": acb(1), **{name: acb(c) for name, c in values.constants.items()}}
 
         def number(value: Factored) -> arb:
-            found = values.value(value, places)
-            return at_centre(found).real
+            return at_centre(values.value(value, places)).real
 
         wavenumbers = {}
         for name, law in laws.items():

@@ -322,13 +322,7 @@ class LosslessSearch:
         return there
 
 
-def _polished(
-    source: AxisFunction,
-    low: Doubles,
-    high: Doubles,
-    below: Doubles,
-    above: Doubles,
-) -> Doubles:
+def _polished(source: AxisFunction, low: Doubles, high: Doubles, below: Doubles, above: Doubles) -> Doubles:
     """Return roots of a function between pairs of points of opposite sign, by safeguarded Newton steps."""
     t: Doubles = low + (high - low) * np.abs(below) / (np.abs(below) + np.abs(above))
     negative = np.signbit(below)

@@ -214,7 +214,8 @@ class SeriesSteps:
         with precision(bits):
             centre, radius = middle.mid(), reach + (middle - middle.mid()).abs_upper()
             last = self._last
-            if last is not None and bits <= self._bits and _covers(last, centre, radius):
+            reached = inf if last is None else (centre - last.centre).abs_upper() + radius
+            if last is not None and bits <= self._bits and reached < last.reach * COVERED:
                 bound, turn = _followed(last, centre, radius, start, end)
                 if bound <= ROOM or last.reach < radius * (2 * WIDER):
                     return bound, turn
@@ -234,10 +235,6 @@ class SeriesSteps:
         return sampled_series(self.function, centre, reach, bound, bits, terms, terms, STEP_SHRUNK)
 
 
-def _covers(series: LocalSeries, centre: acb, radius: arb) -> bool:
-    return bool((centre - series.centre).abs_upper() + radius < series.reach * COVERED)
-
-
 def _followed(series: LocalSeries, centre: acb, radius: arb, start: acb, end: acb) -> tuple[float, arb]:
     """Return what a series tells of a step in a disc."""
     here = series.around(centre, radius)
@@ -247,14 +244,12 @@ def _followed(series: LocalSeries, centre: acb, radius: arb, start: acb, end: ac
     growth = (coefficients[1] / coefficients[0]).mid()
     if not growth.is_finite():
         return NOTHING
-    size = abs(growth)
-    count = len(coefficients)
-    terms = acb_poly(list(coefficients))
+    size, count = abs(growth), len(coefficients)
     decay = [acb(1)]
     for n in range(1, count):
         decay.append(decay[-1] * -growth / n)
     # Times exp(-growth x), the term of first order is gone.
-    flat = (terms * acb_poly(decay)).truncate(count).coeffs()
+    flat = (acb_poly(list(coefficients)) * acb_poly(decay)).truncate(count).coeffs()
     wide = radius * BEYOND
     largest = acb_poly([abs(c) for c in coefficients])(acb(wide)).real * (size * wide).exp()
     cut = largest * arb(BEYOND) ** -count * BEYOND / (BEYOND - 1)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from cmath import pi
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, exp, inf, log
 from typing import TYPE_CHECKING
 
@@ -98,12 +98,9 @@ class Cell:
         """Return the two parts on both sides of a cut across the longer side."""
         if self.high - self.low >= self.left - self.right:
             middle = self.low + share * (self.high - self.low)
-            return (
-                Cell(self.low, middle, self.right, self.left),
-                Cell(middle, self.high, self.right, self.left),
-            )
+            return replace(self, high=middle), replace(self, low=middle)
         middle = self.right + share * (self.left - self.right)
-        return Cell(self.low, self.high, self.right, middle), Cell(self.low, self.high, middle, self.left)
+        return replace(self, left=middle), replace(self, right=middle)
 
     def without(self, hole: Cell) -> tuple[Cell, ...]:
         """Return cells that fill this one but for a hole."""
@@ -112,8 +109,8 @@ class Cell:
         if low >= high or right >= left:
             return (self,)
         around = (
-            Cell(self.low, low, self.right, self.left),
-            Cell(high, self.high, self.right, self.left),
+            replace(self, high=low),
+            replace(self, low=high),
             Cell(low, high, self.right, right),
             Cell(low, high, left, self.left),
         )
@@ -161,9 +158,7 @@ class Winding:
         stayed away from.
         """
         order = self.function.order_at_zero()
-        z = self._scale()
-        for hole in holes:
-            z = min(z, hole.low - RING)
+        z = min([self._scale(), *(hole.low - RING for hole in holes)])
         for _ in range(LARGEST_RING):
             try:
                 turns = self.turn(complex(z, 0), complex(z, left)) / left
@@ -189,8 +184,7 @@ class Winding:
                     break
                 reach = lower
             else:
-                higher = self.reach(z + step)
-                if higher > 1:
+                if self.reach(z + step) > 1:
                     break
                 z += step
         return z

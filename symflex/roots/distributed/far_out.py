@@ -23,6 +23,7 @@ from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, expone
 from symflex.balls import ball, precision
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues, Valued
+from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 from symflex.transfer.enclose import summed
@@ -43,7 +44,6 @@ LARGEST = 1e36
 NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 LINEAR, QUADRATIC = 1, 2
-ROOTS = {"wave": 2, "bending": 4}
 NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
 TOO_MANY = "no bound on the poles is known for so many exponentials"
 TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
@@ -53,7 +53,6 @@ DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, s
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
 NO_LOSS = "waves without enough loss have poles all along the axis"
 
-TURNED = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
 PHASES = 128
 """Parts of a turn in which two sums are shown not to vanish together."""
 
@@ -74,10 +73,7 @@ class _Power:
 
 
 def right_tail(
-    bound: BoundTransferFunction,
-    polynomials: Sequence[fmpz_mpoly],
-    scales: Sequence[acb],
-    start: float,
+    bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly], scales: Sequence[acb], start: float
 ) -> float | str:
     """Return a radius beyond which a sum of polynomials in kernels has no root with ``Re(s) >= 0``.
 
@@ -263,7 +259,7 @@ def _sum_far_out(
     arguments = arguments_of(table)
     if arguments is None:
         return NO_FORMULA
-    if any(law.kind not in (*ROOTS, "exponential") for law in table.dispersions):
+    if any(law.kind not in (*SINGLE, "exponential") for law in table.dispersions):
         return TWO_WAVENUMBERS
     sums = [exponential_sum(bound.ratio.ring, table, arguments, f) for f in polynomials]
     known = [terms for terms in sums if terms is not None]
@@ -284,8 +280,8 @@ class _SumFarOut:
     laws: tuple[Dispersion, ...]
     sectors: int  # from the real axis on, in which one term has to outweigh the others
 
-    def dominant_terms(self, radius: float) -> _DominantTerms | None:
-        """Return the arguments, and the term that outweighs all others from a radius on in every sector.
+    def dominant_terms(self, radius: float) -> tuple[list[_Power], list[_Dominant]] | None:
+        """Return the arguments, and per sector the term that outweighs all others from a radius on.
 
         None where there is no such term in one of them; where there are, there is no root.
         """
@@ -332,7 +328,7 @@ class _SumFarOut:
         for law in self.laws:
             if not law.wavenumbers:
                 continue
-            order, name = ROOTS[law.kind], law.wavenumbers[0]
+            order, name = SINGLE[law.kind], law.wavenumbers[0]
             if (wave := _wave(self.kernels, law, radius)) is not None:
                 named[name], to_and_fro[name] = wave[0], wave[1:]
                 continue
@@ -352,13 +348,13 @@ class _SumFarOut:
         arguments = []
         decays: dict[int, acb] = {}  # of delayed terms, such as what a belt loses on the way
         for i, (argument, length) in enumerate(zip(self.sums.arguments, self.sums.lengths, strict=True)):
+            if argument.wavenumber in to_and_fro and length.real > 0:
+                unit, rest = to_and_fro[argument.wavenumber]
+                decays[i] = rest * length
+                arguments.append(_Power(Fraction(1), unit * length, is_delay=True))
+                continue
             if argument.wavenumber:
                 known = named[argument.wavenumber]
-                if argument.wavenumber in to_and_fro and length.real > 0:
-                    unit, rest = to_and_fro[argument.wavenumber]
-                    decays[i] = rest * length
-                    arguments.append(_Power(Fraction(1), unit * length, is_delay=True))
-                    continue
                 arguments.append(_Power(known.power, known.unit * length))
                 continue
             found = _at_infinity(self.kernels, argument.rate, radius)
@@ -377,12 +373,8 @@ class _SumFarOut:
             for powers, amplitude in zip(each.terms, coefficients, strict=True):
                 own = terms.setdefault(powers, {})
                 decay = sum((decays[i] * acb(a, b) for i, a, b in powers if i in decays), acb(0)).exp()
-                for number, factors in amplitude:
-                    exponent, unit = Fraction(0), number * scale * decay
-                    for name, e in factors:
-                        exponent += named[name].power * e
-                        unit = unit * named[name].unit ** e
-                    own[exponent] = own.get(exponent, acb(0)) + unit
+                for p, c in _summed(amplitude, named).items():
+                    own[p] = own.get(p, acb(0)) + c * scale * decay
         return terms, arguments
 
 
@@ -493,7 +485,7 @@ def _is_mirrored(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
         odd = {index[name], *(i for (function, _), i in own.items() if function.startswith("sin"))}
         images = dict[int, int]()
         if any(function == "cos" for function, _ in own):
-            images = {i: own.get((TURNED[function], length), -1) for (function, length), i in own.items()}
+            images = {i: own.get((TWINS[function], length), -1) for (function, length), i in own.items()}
         units = set()
         for monomial, c in terms.items():
             image = terms.get(tuple(sorted((images.get(i, i), e) for i, e in monomial)), 0)
@@ -542,7 +534,7 @@ class _SumsOnAxis:
             sizes.append(_Power(power, unit * length / arb(2 if turn == 1 else 1).sqrt()))
             turns.append(turn)
         numbers = {
-            name: (power, acb(0, turn * arb.pi() / 4).exp() * unit)
+            name: _Power(power, acb(0, turn * arb.pi() / 4).exp() * unit)
             for name, (turn, power, unit) in named.items()
         }
         sums, base = [], Exponent()
@@ -580,10 +572,10 @@ class _SumsOnAxis:
         named = {LAPLACE: (2, Fraction(1), arb(1))}
         kernels = self.values.evaluator
         for law in (law for law in kernels.table.dispersions if law.wavenumbers):
-            found = _on_axis(kernels, law.characteristic[0], radius) if law.kind in ROOTS else None
+            found = _on_axis(kernels, law.characteristic[0], radius) if law.kind in SINGLE else None
             if found is None:
                 return None
-            order, power, value = ROOTS[law.kind], found[0], found[1] / (4 if law.kind == "bending" else -1)
+            order, power, value = SINGLE[law.kind], found[0], found[1] / (4 if law.kind == "bending" else -1)
             if not (abs(value) > 0 and power > 0):
                 return None
             turn = 0 if value > 0 else 4 // order
@@ -591,13 +583,13 @@ class _SumsOnAxis:
         return named
 
 
-def _summed(amplitude: Valued, numbers: Mapping[str, tuple[Fraction, acb]]) -> dict[Fraction, acb]:
-    """Return an amplitude as a sum of powers of omega."""
+def _summed(amplitude: Valued, named: Mapping[str, _Power]) -> dict[Fraction, acb]:
+    """Return an amplitude as a sum of powers of s or omega."""
     found: dict[Fraction, acb] = {}
     for number, powers in amplitude:
         power, total = Fraction(0), number
         for name, e in powers:
-            power, total = power + numbers[name][0] * e, total * numbers[name][1] ** e
+            power, total = power + named[name].power * e, total * named[name].unit ** e
         found[power] = found.get(power, acb(0)) + total
     return found
 
@@ -655,19 +647,13 @@ class _Dominant:
     least: arb
 
 
-_DominantTerms = tuple[list[_Power], list[_Dominant]]
-"""The arguments of exponentials, and what outweighs all else sector by sector."""
-
-
 def _dominant(terms: Terms, arguments: Sequence[_Power], radius: arb) -> _Dominant | None:
     """Return the term that is larger than all others from a radius on; None without one."""
 
     def growth(powers: Exponent) -> arb:
-        total = arb(0)
-        for i, a, b in powers:
-            own = arguments[i]
-            total += (own.unit * acb(a, b)).real.mid() * radius ** ball(own.power)
-        return total.mid()
+        parts = ((arguments[i], acb(a, b)) for i, a, b in powers)
+        each = ((own.unit * times).real.mid() * radius ** ball(own.power) for own, times in parts)
+        return sum(each, arb(0)).mid()
 
     def size(powers: Exponent) -> float:
         weight = sum((abs(c).mid() * radius ** ball(p) for p, c in terms[powers].items()), arb(0)).mid()

@@ -72,10 +72,8 @@ class Count:
 
     def is_empty_within(self, z: float | None) -> bool:
         """Tell whether it is proved that no roots but those at 0 lie within exp(z), a disc not searched."""
-        if z is None:
-            return True
         try:
-            return self.winding.count_within(z, self.left) == self.order
+            return z is None or self.winding.count_within(z, self.left) == self.order
         except RootOnPathError:
             return False
 
@@ -109,20 +107,15 @@ class Count:
                 found += root.multiplicity
         if unsure:
             return Proof(found, found, "a root lies on the boundary of what was searched")
+        is_disc = domain.low == -inf
         try:
-            turns = self.turns(domain)
+            turns = self.turns(domain) - (self.order if is_disc else 0)
         except RootOnPathError:
             return Proof(found, found, UNPROVED)
-        if domain.low == -inf:
-            turns -= self.order
-        elif not self.is_empty_within(innermost):
-            return Proof(found, found, UNPROVED)
         counted, rest = divmod(turns, self.winding.function.power)
-        if rest:
+        if rest or not (is_disc or self.is_empty_within(innermost)):
             return Proof(found, found, UNPROVED)
-        if domain.low == -inf:
-            counted += count_roots(at_zero)
-        return Proof(counted, found)
+        return Proof(counted + (count_roots(at_zero) if is_disc else 0), found)
 
     def right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
@@ -156,8 +149,9 @@ def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
     (-0.05, 0.05995)
     """
     found: list[Cell] = []
-    for hole in map(_hole_about, points):
-        joined = hole
+    for point in points:
+        z, e = complex(log(abs(point)), phase(point)), NEIGHBOURHOOD
+        joined = Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
         while meeting := next((h for h in found if _meet(h, joined)), None):
             found.remove(meeting)
             joined = Cell(
@@ -173,12 +167,6 @@ def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
 def _meet(a: Cell, b: Cell) -> bool:
     along = a.low <= b.high and b.low <= a.high
     return along and a.right <= b.left and b.right <= a.left
-
-
-def _hole_about(point: complex) -> Cell:
-    z = complex(log(abs(point)), phase(point))
-    e = NEIGHBOURHOOD
-    return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
 
 
 def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
@@ -259,25 +247,17 @@ def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float
         case Band(low, high):
             return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi
         case Rectangle(re_low, re_high, im_low, im_high):
-            sides = (float(re_low), float(re_high), float(im_low), float(im_high))
-            return _limits_of_rectangle(*sides, is_even=is_even)
+            across = abs(float(re_low)), abs(float(re_high))
+            along = abs(float(im_low)), abs(float(im_high))
+            bottom = 0.0 if im_low <= 0 <= im_high else min(along)
+            corners = [complex(float(re), im) for re in (re_low, re_high) for im in (bottom, max(along))]
+            nearest = complex(0.0 if re_low <= 0 <= re_high else min(across), bottom)
+            inner, outer = _log(abs(nearest)) - WIDER, _log(max(map(abs, corners))) + WIDER
+            if is_even or not nearest:
+                return inner, outer, 0.0, pi
+            return inner, outer, min(map(phase, corners)), max(map(phase, corners))
     message = f"no search for {type(region).__name__}"
     raise TypeError(message)
-
-
-def _limits_of_rectangle(
-    re_low: float, re_high: float, im_low: float, im_high: float, *, is_even: bool
-) -> tuple[float, float, float, float]:
-    across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
-    bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
-    top = max(abs(im_low), abs(im_high))
-    corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
-    nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
-    low, high = _log(abs(nearest)) - WIDER, _log(max(abs(corner) for corner in corners)) + WIDER
-    right, left = min(map(phase, corners)), max(map(phase, corners))
-    if is_even or not nearest:
-        right, left = 0.0, pi
-    return low, high, right, left
 
 
 def _log(size: float) -> float:

@@ -6,6 +6,7 @@ shows that none is missing. Where that fails, the subdivision is repeated with e
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from math import exp, inf, pi
 from typing import TYPE_CHECKING
@@ -215,15 +216,11 @@ class Side:
             return
         self._scans = False
         found = self._search.ring(low, high, right, left)
-        self.missing = found.missing
-        self._domain = found.cell
-        if (
-            found.cell is not None
-            and low <= smallest
-            and is_whole_ring(found.cell, self._search.left, self.holes)
-        ):
+        self.missing, cell = found.missing, found.cell
+        if cell is not None and low <= smallest and is_whole_ring(cell, self._search.left, self.holes):
             # A whole disc is easier to count than a ring whose inner circle is very small.
-            self._domain = replace(found.cell, low=-inf)
+            cell = replace(cell, low=-inf)
+        self._domain = cell
         self._set(found.roots)
 
     def numbered(self, number: int) -> Root | None:
@@ -236,10 +233,9 @@ class Side:
             ordered = [root for root in in_order(self._exact) if not root.is_zero]
         else:
             if isinstance(self._search, LosslessSearch):
-                try:
+                root = None
+                with suppress(RootOnPathError):
                     root = self._search.numbered(number)
-                except RootOnPathError:
-                    root = None
                 if root is not None:
                     self._set((root,))
                     self.roots = [image for image in self.roots if not image.is_zero]
@@ -261,10 +257,9 @@ class Side:
         Close to 0, where functions with kernels are differences of large terms, paths are hard to follow.
         """
         try:
-            turns = self._count.within(high + WIDER)
+            return self._count.within(high + WIDER) <= FEW * self.function.power
         except RootOnPathError:
             return False
-        return turns <= FEW * self.function.power
 
     def prove(self, region: Region) -> Proof:
         """Count the roots of the domain that was searched; subdivide it with proof if one is missing."""
@@ -290,9 +285,7 @@ class Side:
     def _subdivided(self) -> Proof:
         """Return what was found in cells that were all counted with proof."""
         found = count_roots(self._located)
-        if not isinstance(self._search, RootSearch):
-            return Proof(found, found, UNPROVED)
-        if not self._count.is_empty_within(self._innermost):
+        if not (isinstance(self._search, RootSearch) and self._count.is_empty_within(self._innermost)):
             return Proof(found, found, UNPROVED)
         if not are_apart(self._located):
             return Proof(found, found, TOUCHING)
@@ -311,9 +304,9 @@ class Side:
             s = acb(root.re.mid(), root.im.mid())
             within = (2 * (root.re.rad() + root.im.rad())).upper()
         digits, even = 2 * self._digits + MORE_DIGITS, self.function.is_even
-        closer = prove_simple(self.function, s, digits)
-        if closer is None:
-            closer = prove_together(self.function, s, within, digits, self.function.power, even=even)
+        closer = prove_simple(self.function, s, digits) or prove_together(
+            self.function, s, within, digits, self.function.power, even=even
+        )
         return closer if closer is not None and closer.certified and overlap(closer, root) else root
 
     def excluded(self) -> tuple[Cell, ...]:

@@ -104,18 +104,18 @@ class KernelFunction:
         if any(kernel.function == "exp" for kernel in kernels):
             return False
         # Another part's dispersion relation may be lopsided.
-        dispersions = [
+        laws = [
             law
             for law in self.bound.kernels.dispersions
             if any(kernel.dispersion is law for kernel in kernels)
             or any(self.part.depends_on(name) for name in law.wavenumbers)
         ]
-        laws = [value for law in dispersions for value in law.coefficients if value is not law.shift]
-        shifted = any(not law.shift.is_zero for law in dispersions)
-        even = all(_parity(f) is not None for value in laws for f, _ in value.factors) and all(
-            sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
+        values = [value for law in laws for value in law.coefficients if value is not law.shift]
+        return (
+            all(law.shift.is_zero for law in laws)
+            and all(_parity(f) is not None for value in (*values, self.part) for f, _ in value.factors)
+            and all(sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in values)
         )
-        return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
 
     def order(self) -> int | None:
         """Return how often s = 0 is a root of F to the :attr:`power` that makes it one function, or None."""
@@ -410,35 +410,25 @@ def other_branches(
 ) -> list[dict[str, Value]]:
     """Return the values of wavenumbers and kernels with another root of the dispersion relation chosen."""
     kernels = table.kernels_of(law)
+    named = [k for k in kernels if k.wavenumber]
+    known: dict[tuple[str, str, int], Value] = {
+        (k.wavenumber, k.function, id(k.length)): values[k.generator] for k in named
+    }
     turn = acb(0, 1) if law.kind == "bending" else acb(-1)
     found: list[dict[str, Value]] = []
     for wavenumber in law.wavenumbers:
         branch: dict[str, Value] = {wavenumber: turn * values[wavenumber]}
-        for kernel in (k for k in kernels if k.wavenumber == wavenumber):
-            source = values[kernel.generator]
-            if law.kind == "bending":
-                twin = TWINS[kernel.function]
-                source = next(
-                    (
-                        values[k.generator]
-                        for k in kernels
-                        if k.function == twin and k.length is kernel.length
-                    ),
-                    source,
-                )
-            branch[kernel.generator] = turn * source if kernel.function in ("sinh", "sin") else source
+        for k in (k for k in kernels if k.wavenumber == wavenumber):
+            twin = TWINS[k.function] if law.kind == "bending" else k.function
+            source = known.get((wavenumber, twin, id(k.length)), values[k.generator])
+            branch[k.generator] = turn * source if k.function in ("sinh", "sin") else source
         found.append(branch)
     if len(law.wavenumbers) > 1:
         first, second = law.wavenumbers
         branch = {first: values[second], second: values[first]}
-        for kernel in kernels:
-            other = second if kernel.wavenumber == first else first
-            twin_of = (
-                k.generator
-                for k in kernels
-                if (k.wavenumber, k.function) == (other, kernel.function) and k.length is kernel.length
-            )
-            branch[kernel.generator] = values[next(twin_of, kernel.generator)]
+        for k in kernels:
+            other = second if k.wavenumber == first else first
+            branch[k.generator] = known.get((other, k.function, id(k.length)), values[k.generator])
         found.append(branch)
     return found
 
@@ -461,11 +451,8 @@ def divisors_in_s(law: Dispersion) -> list[Factored]:
 
 def _spectral_size(coefficients: Sequence[acb]) -> acb:
     """Return about the size of the largest root of a characteristic polynomial."""
-    order = len(coefficients)
-    sizes = [abs(c).mid() for c in coefficients]
-    return acb(
-        max((size.root(order - i) for i, size in enumerate(sizes) if size > 0), key=float, default=arb(0))
-    )
+    sizes = zip(range(len(coefficients), 0, -1), (abs(c).mid() for c in coefficients), strict=True)
+    return acb(max((size.root(n) for n, size in sizes if size > 0), key=float, default=arb(0)))
 
 
 def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
@@ -484,11 +471,10 @@ def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Fa
     bare = {str(ring.generator(k.generator)) for k in table.kernels if k.function == "exp"}
     plain, mixed = [], []
     for factor, exponent in value.factors:
-        if any(degree_in(factor, i) for i in generators):
-            if str(factor) not in bare and any(degree_in(factor, i) for i in varying):
-                mixed.append((factor, exponent))
-        else:
+        if not any(degree_in(factor, i) for i in generators):
             plain.append((factor, exponent))
+        elif str(factor) not in bare and any(degree_in(factor, i) for i in varying):
+            mixed.append((factor, exponent))
     return Factored(ring, Fraction(1), tuple(plain)), Factored(ring, Fraction(1), tuple(mixed))
 
 

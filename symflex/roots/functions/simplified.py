@@ -248,11 +248,8 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
     for polynomial, times in coordinates.transform(factor).factors:
         if len(polynomial) > MOST_TERMS:
             return None
-        if len(polynomial) == 1:
-            # A coordinate.
-            found.append((polynomial, times))
-            continue
-        _, pieces = square_free_factors(polynomial)
+        is_coordinate = len(polynomial) == 1
+        pieces = [(polynomial, 1)] if is_coordinate else square_free_factors(polynomial)[1]
         found += [(piece, e * times) for piece, e in pieces]
     return found
 

@@ -75,8 +75,7 @@ def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
 
 def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly] | None:
     """Return every generator as a power series in s, constants at random."""
-    equations = cramer.equations
-    point = random_point(equations.ring.names)
+    equations, point = cramer.equations, random_point(cramer.equations.ring.names)
     if not _place_constants(equations, point):
         return None
     values = {name: field.constant(x) for name, x in point.items()} | {LAPLACE: field.power(1)}
@@ -130,17 +129,14 @@ def _order(rows: list[dict[int, nmod_poly]], field: TaylorField) -> int | None:
     columns = columns_of(rows)
     left, total, terms = set(range(len(rows))), 0, field.terms
     while left:
-        ranked = [
-            (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
-            for j in sorted(left, key=lambda j: len(columns[j]))[:FEWEST]
-            for i in columns[j]
-        ]
-        if not ranked or min(ranked)[0]:
+        for looked_at in (sorted(left, key=lambda j: len(columns[j]))[:FEWEST], left):
             ranked = [
                 (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
-                for j in left
+                for j in looked_at
                 for i in columns[j]
             ]
+            if ranked and not min(ranked)[0]:
+                break
         if not ranked:
             return None
         order, _, i, j = min(ranked)

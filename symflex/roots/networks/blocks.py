@@ -11,6 +11,7 @@ the state from one end of a member to the other.
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,15 +63,13 @@ def _degree_of_block(cramer: CramerEquations, rows: Sequence[int], columns: Sequ
     from scipy.optimize import linear_sum_assignment  # takes as long again, and few networks need it
 
     degrees = np.full((len(rows), len(columns)), NONE)
-    for k, i in enumerate(rows):
-        for m, j in enumerate(columns):
-            if j in cramer.entries[i]:
-                degree = _degree(cramer, cramer.entries[i][j], is_alone=False)
-                if degree is None:
-                    return None
-                degrees[k, m] = degree
-    best = linear_sum_assignment(degrees, maximize=True)
-    return int(degrees[best].sum())
+    for (k, i), (m, j) in product(enumerate(rows), enumerate(columns)):
+        if j in cramer.entries[i]:
+            degree = _degree(cramer, cramer.entries[i][j], is_alone=False)
+            if degree is None:
+                return None
+            degrees[k, m] = degree
+    return int(degrees[linear_sum_assignment(degrees, maximize=True)].sum())
 
 
 def _is_of_member(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> bool:
@@ -93,19 +92,11 @@ def _degree(cramer: CramerEquations, value: Factored, *, is_alone: bool) -> int 
     delays = {name for group in cramer.waves.values() for name, order in group if order == EXPONENTIAL}
     total = 0
     for factor, exponent in value.factors:
-        terms = list(terms_of(factor))
-        powers = []
-        for monomial, _ in terms:
-            degree = 0
-            for i, power in monomial:
-                if names[i] == LAPLACE:
-                    degree += power
-                elif names[i] in cramer.moving_names and not (
-                    is_alone and len(terms) == 1 and names[i] in delays
-                ):
-                    return None
-            powers.append(degree)
-        if exponent < 0 and max(powers):
+        terms = [{names[i]: power for i, power in monomial} for monomial, _ in terms_of(factor)]
+        left_out = {LAPLACE, *delays} if is_alone and len(terms) == 1 else {LAPLACE}
+        degree = max(term.get(LAPLACE, 0) for term in terms)
+        waves = cramer.moving_names - left_out
+        if any(name in waves for term in terms for name in term) or (exponent < 0 and degree):
             return None
-        total += exponent * max(powers)
+        total += exponent * degree
     return total

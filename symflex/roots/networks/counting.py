@@ -120,20 +120,15 @@ class Level:
             held = 0
             known: dict[int, Stiffness] = {}
             for member, balls, turn in self.members:
-                stiffness = known.get(id(balls))
-                if stiffness is None:
-                    stiffness = known[id(balls)] = balls.stiffness(value)
-                held += stiffness.held
-                seen = stiffness if turn is None else stiffness.turned(turn)
+                if id(balls) not in known:
+                    known[id(balls)] = balls.stiffness(value)
+                seen = known[id(balls)] if turn is None else known[id(balls)].turned(turn)
+                held += seen.held
                 add_member(rows, member.ends, seen.blocks)
             found = pivots(rows, self.counter.order, range(size, size + len(self.borders)))
             receptances = tuple(arb(0) if x is None else -x for x in found.borders)
-            return NetworkSample(
-                value,
-                held + found.negative,
-                arb(1) if found.determinant is None else found.determinant,
-                receptances,
-            )
+            determinant = arb(1) if found.determinant is None else found.determinant
+            return NetworkSample(value, held + found.negative, determinant, receptances)
 
 
 def _turn(direction: Sequence[arb]) -> arb_mat | None:
@@ -159,8 +154,7 @@ def add_member(rows: Rows, ends: Sequence[int | None], blocks: Sequence[Sequence
                 j = ends[second + b]
                 if j is None:
                     continue
-                x = block[a][b]
-                if i == j and first != second:
-                    x = 2 * x  # both ends at one node
+                # Both ends may be at one node.
+                x = 2 * block[a][b] if i == j and first != second else block[a][b]
                 known = rows[i].get(j)
                 rows[i][j] = rows[j][i] = x if known is None else known + x

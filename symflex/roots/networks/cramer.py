@@ -21,15 +21,7 @@ from flint import acb, arb, fmpq
 from symflex.algebra import LAPLACE, terms_of
 from symflex.algebra.factored import least_common_multiple
 from symflex.algebra.propagators import EXPONENTIAL
-from symflex.balls import (
-    UndecidedError,
-    Value,
-    at_centre,
-    current_bits,
-    eliminate,
-    precision,
-    settled,
-)
+from symflex.balls import UndecidedError, Value, at_centre, current_bits, eliminate, precision, settled
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
 from symflex.transfer.enclose import later
@@ -90,10 +82,8 @@ class CramerEquations:
         known = equations.memo.get((output, source))
         if isinstance(known, CramerEquations):
             return known
-        columns = {v: i for i, v in enumerate(equations.unknowns)}
-        size = len(columns)
         given = next(v for v in equations.inputs if v.owner == source)
-        places: dict[Variable, int] = {**columns, given: size}
+        places = {v: i for i, v in enumerate((*equations.unknowns, given))}
         lines = {c.name for c in equations.continua}
         rows = []
         for row in equations.rows:
@@ -299,13 +289,10 @@ class CramerEquations:
             name: (abs(value.real), True) for name, value in self._values(acb(0)).items() if name != LAPLACE
         }
         values: dict[str, tuple[arb, bool]] = {LAPLACE: (arb(radius), False)}
-        for name in ("pi", *(c.generator for c in equations.constants)):
-            values[name] = constants[name]
+        values |= {name: constants[name] for name in ("pi", *(c.generator for c in equations.constants))}
         for name, value in equations.definitions:
-            if value.depends_on(LAPLACE):
-                values[name] = (_bound(value, values), False)
-            else:
-                values[name] = constants[name]
+            is_moving = value.depends_on(LAPLACE)
+            values[name] = (_bound(value, values), False) if is_moving else constants[name]
         for name, x in self._along_members(lambda x: acb(_bound(x, values)), is_growing=True):
             values[name] = (x.real.abs_upper(), False)
         return values
@@ -344,10 +331,10 @@ def is_zero(equations: Equations, output: str, source: str) -> bool:
 
 def _denominator(form: LinearForm) -> Factored:
     """Return the least common denominator in s of a form's coefficients."""
-    one = form.coefficients[0] ** 0 if form.terms else None
-    if one is None:
+    if not form.terms:
         message = "an empty form"
         raise ValueError(message)
+    one = form.coefficients[0] ** 0
     s = one.ring.index[LAPLACE]
     parts = (
         c.denominator().filter(lambda f: any(i == s for m, _ in terms_of(f) for i, _ in m))
@@ -395,8 +382,7 @@ def _hadamard(rows: Sequence[Mapping[int, arb]], size: int) -> float:
     places = [
         (i, j, _log(x)) for i, row in enumerate(rows) for j, x in row.items() if j < size and not x == 0
     ]
-    i = np.array([p[0] for p in places], dtype=int)
-    j = np.array([p[1] for p in places], dtype=int)
+    i, j = (np.array([p[k] for p in places], dtype=int) for k in (0, 1))
     logs = np.array([p[2] for p in places])
     scale = np.zeros(size)
     for _ in range(BALANCING):

@@ -18,12 +18,7 @@ from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
 from symflex.budget import spend
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue, EssentialSingularityError
-from symflex.roots.networks.disc_series import (
-    GUARD_BITS,
-    DiscSeries,
-    RootNearCircleError,
-    points_needed,
-)
+from symflex.roots.networks.disc_series import GUARD_BITS, DiscSeries, RootNearCircleError, points_needed
 from symflex.roots.root import Root, mirror_images
 
 if TYPE_CHECKING:
@@ -47,7 +42,6 @@ SMALLEST, LARGEST = 1e-6, 1e12
 """Radius [rad/s] below which nothing is sought."""
 TOO_WIDE = 0.3
 """Part by which a disc may be larger than it need be."""
-ROUNDS = 24
 SHORT = 0.2
 """By which the mean growth may stay below the number of all zeros."""
 UNLIKE = 12
@@ -86,17 +80,13 @@ class DiscSide:
                 if max(box.real.rad(), box.imag.rad()) <= abs(box).mid() * wanted:
                     return box
                 middle = box.mid()
-                value = self.value(middle, bits)
-                step = value / slope
-                closer = middle - step
+                closer = middle - self.value(middle, bits) / slope
                 if self.is_even and box.real.mid() == 0:
                     closer = acb(arb(0, closer.real.abs_upper()), closer.imag)
                 elif box.imag == 0:
                     closer = acb(closer.real)
-                if (
-                    not closer.is_finite()
-                    or closer.real.rad() + closer.imag.rad() > (box.real.rad() + box.imag.rad()) / 4
-                ):
+                before, behind = (b.real.rad() + b.imag.rad() for b in (box, closer))
+                if not closer.is_finite() or behind > before / 4:
                     bits = next(finer)
                 if closer.is_finite() and closer.rad() < box.rad():
                     box = closer
@@ -237,10 +227,8 @@ class DiscSearch:
         return next(self._sampled(radius))
 
     def _sides(self, radius: float) -> tuple[DiscSide, DiscSide]:
-        for pair in self._sampled(radius):
-            den = self._side(pair[0], "den")
-            num = None if den is None else self._side(pair[1], "num")
-            if den is not None and num is not None:
+        for below, above in self._sampled(radius):
+            if (den := self._side(below, "den")) and (num := self._side(above, "num")):
                 return den, num
         raise UndecidedError
 
@@ -258,20 +246,17 @@ class DiscSearch:
             bounds.append((ratio, bound))
         if not bounds:
             raise EssentialSingularityError
-        least = [
-            min(size[i] for size in map(self._least, (radius * c for c in LEAST_CIRCLES))) for i in (0, 1)
-        ]
+        least = [min(size) for size in zip(*(self._least(radius * c) for c in LEAST_CIRCLES), strict=True)]
         extra = self.series_bits
-        for _ in range(ROUNDS):
+        while extra <= 16 * self.series_bits:
             plans = [
                 (max(points_needed(b[i], least[i], ratio, extra) for i in (0, 1)), ratio, b)
                 for ratio, b in bounds
             ]
             count, ratio, bound = min(plans)
             largest = self._least(radius, largest=True)
-            bits = (
-                GUARD_BITS + extra + max(ceil((a - b) / log(2)) for a, b in zip(largest, least, strict=True))
-            )
+            falls = [ceil((a - b) / log(2)) for a, b in zip(largest, least, strict=True)]
+            bits = GUARD_BITS + extra + max(falls)
             # Points so narrow that values do not gain from more bits of theirs.
             with precision(8 * bits):
                 values = circle_values(
@@ -282,8 +267,6 @@ class DiscSearch:
                 DiscSeries.of([v.num for v in values], middle, bound[1], ratio, bits),
             )
             extra *= 2
-            if extra > 16 * self.series_bits:
-                break
 
     def _least(self, radius: float, *, largest: bool = False) -> tuple[float, float]:
         points = [(acb(0, pi * (k + 0.3) / SAMPLES).exp() * radius).mid() for k in range(SAMPLES)]

@@ -97,11 +97,7 @@ class MemberBalls:
             held = 2 * held + _negative(joint)
             inner = _inverse(joint)
             left, right = across * inner, across.transpose() * inner
-            start, end, across = (
-                start - left * across.transpose(),
-                end - right * across,
-                -(left * across),
-            )
+            start, end, across = (start - left * across.transpose(), end - right * across, -(left * across))
         return Stiffness(start, across, end, held)
 
     def cut(self, size: float) -> tuple[int, tuple[int, ...]]:
@@ -114,8 +110,7 @@ class MemberBalls:
 
     def _halvings(self, values: arb) -> tuple[int, tuple[int, ...]]:
         """Return the same for all lambdas of a ball."""
-        n = len(self.constant)
-        k = n // 2
+        k = len(self.constant) // 2
         entries = [
             [c + values * d for c, d in zip(*rows, strict=True)]
             for rows in zip(self.constant, self.linear, strict=True)
@@ -150,7 +145,7 @@ def _exponential(matrix: Sequence[Sequence[float]], h: float) -> list[list[float
         term = [
             [sum(term[i][m] * matrix[m][j] for m in range(k)) * h / n for j in range(k)] for i in range(k)
         ]
-        if not any(any(row) for row in term):
+        if not any(map(any, term)):
             break
         total = [[x + y for x, y in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
     return total

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, NoReturn
 
 from flint import arb, arb_poly
@@ -79,8 +80,7 @@ class Network:
         """Whether the output reads what the input drives, but for a factor."""
         if not self.driven or set(self.driven) != set(self.read):
             return False
-        ratios = {str(self.read[i] / self.driven[i]) for i in self.driven}
-        return len(ratios) == 1
+        return len({str(self.read[i] / self.driven[i]) for i in self.driven}) == 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,30 +141,28 @@ class _NetworkReading:
     def __init__(self, equations: Equations) -> None:
         self.equations = equations
         self.numbers = PlacedNumbers(equations)
-        self.delivered: set[Variable] = set()  # forces and torques of members
+        self.delivered: dict[Variable, Variable | None] = {}  # motions by forces and torques of members
         for continuum in equations.continua:
             if not continuum.final:
                 _refuse(f"'{continuum.name}' is no element between two nodes")
             half = len(continuum.initial) // 2
-            for i in range(half):
-                for flow in (continuum.initial[half + i], continuum.final[half + i][0]):
-                    if flow is None:
+            for state in (continuum.initial, [v for v, _ in continuum.final]):
+                for motion, force in zip(state[:half], state[half:], strict=True):
+                    if force is None:
                         _refuse(f"an end of '{continuum.name}' is not joined")
-                    self.delivered.add(flow)
+                    self.delivered[force] = motion
 
     def network(self, output: str, source: str) -> Network:
         equations = self.equations
-        rows: dict[Variable, Terms] = {}
-        for each in equations.rows:
-            if each.about not in self.delivered:
-                rows[each.about] = dict(LinearForm.total([each.form]).terms)
+        rows: dict[Variable, Terms] = {
+            each.about: dict(LinearForm.total([each.form]).terms)
+            for each in equations.rows
+            if each.about not in self.delivered
+        }
         if equations.model.has_equations:
             _refuse("the model also has [equations]")
-        signals = {v: row for v, row in rows.items() if v.kind in ("signal", "value")}
-        replaced = self._signals(signals)
-        for variable in replaced:
-            del rows[variable]
-        rows = {v: put_in(row, replaced) for v, row in rows.items()}
+        replaced = self._signals({v: row for v, row in rows.items() if v.kind in ("signal", "value")})
+        rows = {v: put_in(row, replaced) for v, row in rows.items() if v not in replaced}
         read = next(o for o in equations.outputs if o.name == output)
         form = put_in(dict(LinearForm.total([read.form]).terms), replaced)
         self._take_members(rows)
@@ -185,12 +183,12 @@ class _NetworkReading:
         position = {v: i for i, v in enumerate(order)}
         members = self._members(position)
         scale = self._scale(rows, members, position)
-        entries: dict[tuple[int, int], Factored] = {}
-        for variable, row in rows.items():
-            i = position[variable]
-            for v, c in row.items():
-                if i <= position[v]:
-                    entries[i, position[v]] = c * scale[i]
+        entries = {
+            (i, position[v]): c * scale[i]
+            for i, row in enumerate(rows.values())
+            for v, c in row.items()
+            if i <= position[v]
+        }
         self._check(entries, members, is_passive=is_passive(equations.model))
         symmetric = (
             self._is_symmetric([read.divisor]),
@@ -240,17 +238,10 @@ class _NetworkReading:
 
     def _take_members(self, rows: Mapping[Variable, Terms]) -> None:
         """Check that members deliver into the balances of their ends and nowhere else, and take them out."""
-        expected: dict[Variable, Variable | None] = {}
-        for continuum in self.equations.continua:
-            half = len(continuum.initial) // 2
-            for state in (continuum.initial, [v for v, *_ in continuum.final]):
-                for motion, force in zip(state[:half], state[half:], strict=True):
-                    if force is not None:
-                        expected[force] = motion
         for about, row in rows.items():
             for variable in [v for v in row if v in self.delivered]:
                 flow = row.pop(variable)
-                if expected[variable] != about or not (flow + 1).is_zero:
+                if self.delivered[variable] != about or not (flow + 1).is_zero:
                     _refuse(f"the force '{variable}' of a member is fed back")
 
     def _members(self, position: Mapping[Variable, int]) -> tuple[NetworkMember, ...]:
@@ -277,8 +268,8 @@ class _NetworkReading:
         if len(powers) > 1:
             _refuse("the output mixes motions and their rates")
         power = powers.pop() if powers else 0
-        shift = None if not power else Factored.generator(self.equations.ring, LAPLACE) ** -power
-        rest = {v: c if shift is None else c * shift for v, c in terms.items()}
+        shift = Factored.generator(self.equations.ring, LAPLACE) ** -power
+        rest = {v: c * shift if power else c for v, c in terms.items()}
         known = self._known
         if any(self.numbers.polynomial(c, known).degree() > 0 for c in rest.values()):
             _refuse("the output mixes motions and their rates")
@@ -317,35 +308,27 @@ class _NetworkReading:
             for i in places[1:]:
                 beside[places[0]].append(i)
                 beside[i].append(places[0])
-        scale: list[Factored | None] = [None] * len(order)
-        seeds = sorted(range(len(order)), key=lambda i: order[i].kind != "node")
-        for seed in seeds:
-            if scale[seed] is not None:
-                continue
-            scale[seed] = one
-            pending = [seed]
+        scale: dict[int, Factored] = {}
+        for seed in sorted(range(len(order)), key=lambda i: order[i].kind != "node"):
+            pending = [] if seed in scale else [seed]
+            scale.setdefault(seed, one)
             while pending:
                 i = pending.pop()
-                mine = scale[i]
-                if mine is None:
-                    continue
-                steps = [(j, mine) for j in beside[i]]
+                steps = [(j, scale[i]) for j in beside[i]]
                 for v, c in rows[order[i]].items():
                     back = rows[v].get(order[i])
                     if back is None:
                         _refuse(ONE_WAY)
-                    steps.append((position[v], mine * c / back))
+                    steps.append((position[v], scale[i] * c / back))
                 for j, factor in steps:
-                    known = scale[j]
-                    if known is not None:
-                        if not (known - factor).is_zero:
-                            _refuse(ONE_WAY)
-                        continue
-                    if factor.depends_on(LAPLACE):
-                        _refuse(LOSES)
-                    scale[j] = factor
-                    pending.append(j)
-        return [one if d is None else d for d in scale]
+                    if j not in scale:
+                        if factor.depends_on(LAPLACE):
+                            _refuse(LOSES)
+                        scale[j] = factor
+                        pending.append(j)
+                    elif not (scale[j] - factor).is_zero:
+                        _refuse(ONE_WAY)
+        return [scale[i] for i in range(len(order))]
 
     def _check(
         self,
@@ -370,27 +353,21 @@ class _NetworkReading:
 
     def _check_member(self, member: NetworkMember, known: Mapping[str, arb_poly]) -> None:
         system = member.system
-        n = len(system)
-        half = n // 2
-        mixed = f"member '{member.name}' is not written in forces and motions"
+        half = len(system) // 2
+        pairs = list(product(range(half), repeat=2))
+        values = [[self.numbers.even(x, known) for x in row] for row in system]
+        if not all(
+            (system[i][j] + system[half + j][half + i]).is_zero
+            and (i == j or (system[i][half + j].is_zero and system[half + i][j].is_zero))
+            and values[i][j][1].is_zero()
+            for i, j in pairs
+        ):
+            _refuse(f"member '{member.name}' is not written in forces and motions")
         for i in range(half):
-            for j in range(half):
-                if not (system[i][j] + system[half + j][half + i]).is_zero:
-                    _refuse(mixed)
-                if i != j and not (system[i][half + j].is_zero and system[half + i][j].is_zero):
-                    _refuse(mixed)
-        for row in system:
-            for x in row:
-                self.numbers.even(x, known)
-        for i in range(half):
-            for j in range(half):
-                if not self.numbers.even(system[i][j], known)[1].is_zero():
-                    _refuse(mixed)
-            compliance, slope = self.numbers.even(system[i][half + i], known)
+            compliance, slope = values[i][half + i]
             if not (compliance >= 0 and slope.is_zero()):
                 _refuse(f"a compliance of member '{member.name}' is negative")
-            _, slope = self.numbers.even(system[half + i][i], known)
-            if not slope <= 0:
+            if not values[half + i][i][1] <= 0:
                 _refuse(f"an inertia of member '{member.name}' is negative")
         if not self.numbers.polynomial(member.length, known)[0] > 0:
             _refuse(f"the length of member '{member.name}' is not positive")

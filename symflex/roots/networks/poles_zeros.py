@@ -7,6 +7,7 @@ receptance at the input are the eigenvalues of the network held there.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import pi
@@ -78,11 +79,9 @@ def locate_in_network(
     """
     if is_zero(equations, *pair):
         return _Sought(name, region, digits, is_default).nothing(ZERO)
-    network: Network | None
-    try:
+    network: Network | None = None
+    with suppress(OtherNetworkError):
         network = network_of(equations, *pair)
-    except OtherNetworkError:
-        network = None
     symmetric = (False, False) if network is None else network.symmetric
     sought = _Sought(name, region, digits, is_default, proof, symmetric, "" if rests else NONE_ON_AXIS)
     cramer = CramerEquations.of(equations, *pair)
@@ -274,12 +273,11 @@ class _NetworkSearch:
     ) -> EigenvalueSearch:
         """Return a search that has found eigenvalues by number, or between two omega [rad/s]."""
         search = self.searched.get(border)
-        if search is None:
-            search = EigenvalueSearch(self.counter, border, self.digits)
-            self.searched[border] = search
-            start = search.start(partial(self._nullity, border))
-        else:
+        if search is not None:
             start = search.ordered()[-1].high
+        else:
+            search = self.searched[border] = EigenvalueSearch(self.counter, border, self.digits)
+            start = search.start(partial(self._nullity, border))
         if limits is None:
             search.isolate(start, search.reach(last or first, start), first, last)
             return search
@@ -298,10 +296,8 @@ class _NetworkSearch:
     def _unseen(self, each: Eigenvalue) -> int:
         """Return how many of the modes of an eigenvalue input or output do not see."""
         if each.number not in self.unseen:
-            unseen = self._most_held(each)
-            self.unseen[each.number] = min(
-                each.multiplicity, unseen and self._most_held(self._closer(each, None))
-            )
+            held = self._most_held(each) and self._most_held(self._closer(each, None))
+            self.unseen[each.number] = min(each.multiplicity, held)
         return self.unseen[each.number]
 
     def _most_held(self, each: Eigenvalue) -> int:
@@ -321,16 +317,11 @@ class _NetworkSearch:
 
     def _apart(self, zero: Eigenvalue) -> list[Root]:
         """Return a zero but for what is hidden in it: poles at the same place that are not seen."""
-        within = self._poles_within(zero)
-        if within is not None:
-            within = self._poles_within(self._closer(zero, 0))
-        unseen = 0 if within is None else min(within.multiplicity, self._most_held(within))
+        unseen = 0
+        if self._held_within(zero, None):
+            closer = self._closer(zero, 0)
+            unseen = min(self._held_within(closer, None), self._most_held(closer))
         return _pair(zero, zero.multiplicity - unseen)
-
-    def _poles_within(self, zero: Eigenvalue) -> Eigenvalue | None:
-        """Return the poles in the interval of a zero as one; ``None`` where there are none."""
-        found = self._held_within(zero, None)
-        return Eigenvalue(zero.low, zero.high, 0, found) if found else None
 
     def roots(self) -> tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]]:
         """Return poles, zeros and hidden modes in the region."""

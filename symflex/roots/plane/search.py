@@ -18,12 +18,8 @@ from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
-from symflex.roots.plane.local_roots import (
-    is_branched,
-    prove_simple,
-    prove_together,
-)
-from symflex.roots.root import Root, groups, overlap
+from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
+from symflex.roots.root import Root, count_modes, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -110,7 +106,7 @@ class RootSearch:
         """
         if self.reached == -inf:
             self.reached = self.smallest()
-        while self.reached < radius or (known := self._modes()) < modes:
+        while self.reached < radius or (known := count_modes(self.roots)) < modes:
             if self.reached > HIGHEST:
                 # Kernels that do not depend on s: there are no more roots.
                 self.reached = inf
@@ -134,11 +130,11 @@ class RootSearch:
             self.reached = self.smallest()
         checked = fruitful = self.reached
         reach = self._winding.reach
-        while self.reached < radius or self._modes() < modes:
+        while self.reached < radius or count_modes(self.roots) < modes:
             if self.reached > HIGHEST:
                 self.reached = inf
                 break
-            known = self._modes()
+            known = count_modes(self.roots)
             if self.reached >= radius:
                 entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             high = self.reached + (RING if known < FEW else RING / 4)
@@ -169,9 +165,6 @@ class RootSearch:
                     found.append(root)
                     last = root
         return found
-
-    def _modes(self) -> int:
-        return sum(group[0].multiplicity for group in groups(self.roots))
 
     def passing(self, radius: float) -> float:
         """Return ln of a radius, at least the one given, whose circle passes all holes."""

@@ -131,9 +131,7 @@ class LevelPolynomial:
         if not pivot > 0:
             return None
         radius = (arb(2) ** -current_bits() * centre.abs_upper()).upper()
-        for i in range(count):
-            scale = (sizes[i] / pivot).root(count - i).upper()
-            radius = scale if scale > radius else radius
+        radius = max([radius, *((sizes[i] / pivot).root(count - i).upper() for i in range(count))])
         others = arb_poly([0 if i == count else size for i, size in enumerate(sizes)])
         for _ in range(PELLET_DOUBLINGS):
             if pivot * radius**count > others(radius):
@@ -272,8 +270,7 @@ def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
     moduli = _polygon_moduli(scaled, degree)
     found = np.empty(degree, dtype=np.complex128)
     scale = arb(2) ** shift
-    known = 0
-    start = 0j
+    known, start = 0, 0j
     while known < degree:
         # A start next to a cluster drowns in rounding; the Newton polygon tells where the next root may lie.
         starts = (start, *(cmath.rect(moduli[known], angle) for angle in FRESH_ANGLES))
@@ -281,14 +278,10 @@ def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
         root = next((each for each in attempts if each is not None), None)
         if root is None:
             return
-        if known == degree - 1:
-            root = complex(root.real, 0.0)
-        found[known] = root
-        known += 1
-        if root.imag:
-            root = complex(root.real, abs(root.imag))
-            found[known - 1 : known + 1] = root, root.conjugate()
-            known += 1
+        root = complex(root.real, 0.0 if known == degree - 1 else abs(root.imag))
+        pair = (root, root.conjugate()) if root.imag else (root,)
+        found[known : known + len(pair)] = pair
+        known += len(pair)
         yield acb(arb(root.real) * scale, arb(root.imag) * scale)
         start = root * (1 + RESTART) or complex(RESTART)
 

@@ -92,12 +92,8 @@ def goal_of(digits: int, *, in_square: bool) -> Goal:
     """
 
     def goal(z: acb) -> arb:
-        if z.imag == 0:
-            size = z.abs_lower()
-        elif in_square:
-            size = abs(z.imag)
-        else:
-            size = abs(z.real).min(abs(z.imag))
+        component = abs(z.imag) if in_square else abs(z.real).min(abs(z.imag))
+        size = z.abs_lower() if z.imag == 0 else component
         return size / arb(10) ** (digits + GUARD_DIGITS)
 
     return goal
