@@ -195,7 +195,7 @@ def roots_html(found: PoleZeroMap) -> str:
     for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden")):
         for entry in one_of_each_pair(roots_of(found, kind)):
             mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
-            shown = entry.cells(columns, DIGITS, "&pm;")
-            rows.append((f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in shown)))
+            cells = entry.cells(columns, DIGITS, "&pm;")
+            rows.append((f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in cells)))
     head = ("", *(column.head for column in columns))
     return html_table(head, (TEXT, *[NUMBER] * len(columns)), rows, caption)

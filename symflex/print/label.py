@@ -173,9 +173,10 @@ def _verbatim(name: str) -> Label:
 
 def _stacked_width(latex: str) -> float:
     # An underscore is a rule that hardly shrinks.
+    lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex) or [""]
     return max(
         _TINY_SIZE * TYPEWRITER * len(line.replace(r"\_", "")) + _UNDERSCORE * line.count(r"\_")
-        for line in re.findall(r"\\mathtt\{([^}]*)\}", latex) or [""]
+        for line in lines
     )
 
 
