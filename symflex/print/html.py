@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.model import ExactValue, Model
-    from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.print.text import Passage
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
@@ -37,8 +36,8 @@ def escape_html(text: str) -> str:
     >>> print(escape_html("<b>5 & 6</b>"), escape_html(r"\(x\)"))
     &lt;b&gt;5 &amp; 6&lt;/b&gt; <span>\</span>(x<span>\</span>)
     """
-    plain = "".join(c for c in " ".join(text.split()) if c.isprintable())
-    return _alone(plain)
+    plain = " ".join(text.split())
+    return "".join(_ALONE.get(c, html.escape(c)) for c in plain if c.isprintable())
 
 
 TEXT: Final = "left"
@@ -111,10 +110,6 @@ def _indent(line: str) -> int:
 def _typeset(cell: str) -> str:
     signs = cell.replace("+-", "\u00b1").replace("-+", "\u2213")
     return escape_html(MINUS.sub("\u2212", signs))
-
-
-def _alone(plain: str) -> str:
-    return "".join(_ALONE.get(c, html.escape(c)) for c in plain)
 
 
 LONGEST_TEXT: Final = 400
@@ -196,16 +191,11 @@ def roots_html(found: PoleZeroMap) -> str:
     if found.excluded:
         caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
     columns = columns_for(PAGE_COLUMNS, found.all_poles + found.zeros)
-    rows = [
-        _root_cells(word, entry, columns)
-        for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden"))
-        for entry in one_of_each_pair(roots_of(found, kind))
-    ]
+    rows = []
+    for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden")):
+        for entry in one_of_each_pair(roots_of(found, kind)):
+            mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
+            cells = entry.cells(columns, DIGITS, "&pm;")
+            rows.append((f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in cells)))
     head = ("", *(column.head for column in columns))
     return html_table(head, (TEXT, *[NUMBER] * len(columns)), rows, caption)
-
-
-def _root_cells(word: str, entry: PrintedRoot, columns: Sequence[RootColumn]) -> tuple[str, ...]:
-    mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
-    shown = entry.cells(columns, DIGITS, "&pm;")
-    return (f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in shown))

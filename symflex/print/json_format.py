@@ -13,7 +13,6 @@ from symflex.transfer import NestedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.expressions import Expression
     from symflex.print.forms import PrintedForm
     from symflex.transfer import AnyTransferFunction
 
@@ -24,6 +23,10 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
     """Return one entry of ``transfer_functions``; ``hidden`` is None where that was not examined."""
     hidden = [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)]
     closed = [[format_expression(left), format_expression(e)] for left, e in form.closed]
+    lines = dict(form.where)
+    needs = {
+        n: [x.name for x in names(e) if isinstance(x, Name) and x.name in lines] for n, e in lines.items()
+    }
     return {
         "tf": tf.name,
         "quantity": tf.quantity,
@@ -31,22 +34,14 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
         "form": form.name,
         "num": format_expression(form.num),
         "den": format_expression(form.den),
-        "where": [[name, format_expression(e)] for name, e in _in_order_of_definition(form)],
+        # Each line uses only those before it.
+        "where": [[n, format_expression(lines[n])] for n in TopologicalSorter(needs).static_order()],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
         "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
         "stability": form.stability.to_json_dict() if form.stability else None,
         **({"closed": closed} if closed else {}),
     }
-
-
-def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
-    """Return the ``where`` lines so that each uses only those before it."""
-    lines = dict(form.where)
-    graph = {
-        name: [n.name for n in names(e) if isinstance(n, Name) and n.name in lines] for name, e in form.where
-    }
-    return [(name, lines[name]) for name in TopologicalSorter(graph).static_order()]
 
 
 def derive_document(entries: Sequence[tuple[AnyTransferFunction, PrintedForm]]) -> dict[str, object]:

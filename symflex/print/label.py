@@ -95,17 +95,6 @@ def label_of(name: str) -> str:
     return _made(name).latex
 
 
-def read_label(latex: str) -> Label | None:
-    r"""Read a declared label; ``None`` when it would break a formula.
-
-    Examples
-    --------
-    >>> read_label(r"\omega_{p1}").latex, read_label(r"\hat"), read_label(r"\text{a_b}"), read_label("x^2'")
-    ('\\omega_{p1}', None, None, None)
-    """
-    return _read(latex)
-
-
 def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> dict[str, str]:
     r"""Return a label for every name, no two alike.
 
@@ -135,10 +124,8 @@ def symbol(name: str, labels: Mapping[str, str]) -> Label:
 
 @functools.lru_cache(maxsize=4096)
 def _symbol(name: str, latex: str) -> Label:
-    label = _read(latex) if latex else None
-    if label is None or label.width > WIDEST_LABEL:
-        label = _made(name)
-    return label
+    label = read_label(latex) if latex else None
+    return _made(name) if label is None or label.width > WIDEST_LABEL else label
 
 
 def _plain(latex: str) -> str:
@@ -147,17 +134,12 @@ def _plain(latex: str) -> str:
 
 
 def _made(name: str) -> Label:
-    parts = name.split("_")
-    if not _NAME.fullmatch(name) or not all(parts):
+    stem, *parts = name.split("_")
+    match = _STEM.fullmatch(stem)
+    if match is None or not _NAME.fullmatch(name) or not all(parts):
         return _verbatim(name)
-    match = _STEM.fullmatch(parts[0])
-    if match is None:
-        return _verbatim(name)
-    subscripts = [_subscript(p) for p in (*((match[2],) if match[2] else ()), *parts[1:])]
-    latex = _stem(match[1])
-    if subscripts:
-        latex += f"_{{{','.join(subscripts)}}}"
-    label = _read(latex)
+    subscripts = ",".join(map(_subscript, [*filter(None, (match[2],)), *parts]))
+    label = read_label(_stem(match[1]) + (f"_{{{subscripts}}}" if subscripts else ""))
     return label if label is not None and label.width <= WIDEST_LABEL else _verbatim(name)
 
 
@@ -180,22 +162,21 @@ def _subscript(part: str) -> str:
 
 def _verbatim(name: str) -> Label:
     """Return a name in typewriter, stacked and small when it is long: this label always works."""
-    if _NAME.fullmatch(name) and _typewriter_width(name.replace("_", r"\_")) <= WIDEST_LABEL:
-        text = name.replace("_", r"\_")
+    text = name.replace("_", r"\_")
+    if _NAME.fullmatch(name) and _typewriter_width(text) <= WIDEST_LABEL:
         return Label(rf"\mathtt{{{text}}}", always(_typewriter_width(text)), is_wordy=True)
     plain = re.sub(r"[^A-Za-z0-9_]", ".", name)
     pieces = [plain[i : i + _STACKED].replace("_", r"\_") for i in range(0, len(plain), _STACKED)]
-    lines = [rf"\scriptscriptstyle\mathtt{{{piece}}}" for piece in pieces]
-    stacked = r"\\".join(lines)
+    stacked = r"\\".join(rf"\scriptscriptstyle\mathtt{{{piece}}}" for piece in pieces)
     return Label(rf"\substack{{{stacked}}}", always(_stacked_width(stacked)), is_wordy=True)
 
 
 def _stacked_width(latex: str) -> float:
     # An underscore is a rule that hardly shrinks.
-    lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex)
+    lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex) or [""]
     return max(
         _TINY_SIZE * TYPEWRITER * len(line.replace(r"\_", "")) + _UNDERSCORE * line.count(r"\_")
-        for line in lines or [""]
+        for line in lines
     )
 
 
@@ -205,7 +186,14 @@ def _typewriter_width(text: str) -> float:
 
 
 @functools.lru_cache(maxsize=4096)
-def _read(latex: str) -> Label | None:
+def read_label(latex: str) -> Label | None:
+    r"""Read a declared label; ``None`` when it would break a formula.
+
+    Examples
+    --------
+    >>> read_label(r"\omega_{p1}").latex, read_label(r"\hat"), read_label(r"\text{a_b}"), read_label("x^2'")
+    ('\\omega_{p1}', None, None, None)
+    """
     if _TYPEWRITER.fullmatch(latex):
         text = latex.removeprefix(r"\mathtt{").removesuffix("}")
         return Label(latex, always(_typewriter_width(text)), is_wordy=True)
@@ -277,31 +265,25 @@ class _Found:
         self.subscript = NOTHING
         self.last = ""
 
-    def add_script(self, sign: str, size: Width) -> None:
-        """Add a script of the last atom, above or below the one that it bears already."""
-        self.size += size.beyond(self.subscript)
-        self.subscript = size if sign == "_" else NOTHING
-
     def add_sign(self, sign: str, letters: Alphabet) -> None:
         """Add the width of a letter, digit or other sign."""
         if sign.isalnum():
             self.letters += sign.isalpha()
-            width = letters.after(self.last, sign)
-            self.add(width)
+            self.add(letters.after(self.last, sign))
             self.last = sign
         else:
-            self.is_sum = self.is_sum or sign in "+-=,|"
-            self.is_product = self.is_product or sign in "/*"
+            self.is_sum |= sign in "+-=,|"
+            self.is_product |= sign in "/*"
             self.add(_SIGN_SIZES[sign])
 
     def merge(self, inner: _Found) -> None:
         """Add a group as one atom of the list around it."""
         self.add(inner.size)
         self.letters += inner.letters
-        self.is_wordy = self.is_wordy or inner.is_wordy
-        self.has_superscript = self.has_superscript or inner.has_superscript
-        self.is_sum = self.is_sum or inner.is_sum
-        self.is_product = self.is_product or inner.is_product
+        self.is_wordy |= inner.is_wordy
+        self.has_superscript |= inner.has_superscript
+        self.is_sum |= inner.is_sum
+        self.is_product |= inner.is_product
         self.mark(inner.mathml())
 
     def mark(self, element: str) -> None:
@@ -361,12 +343,11 @@ def _read_list(latex: str, start: int, font: _Font, depth: int) -> tuple[_Found,
             found.subscript, found.last = NOTHING, ""
             found.mark('<mspace width="0.2em"></mspace>')
             scripts = None
-        elif command:
-            inner, position = _read_command(latex, command, position, font, depth)
-            found.merge(inner)
-            scripts = set()
-        elif sign == "{":
-            inner, position = _read_list(latex, position, font, depth + 1)
+        elif command or sign == "{":
+            if command:
+                inner, position = _read_command(latex, command, position, font, depth)
+            else:
+                inner, position = _read_list(latex, position, font, depth + 1)
             found.merge(inner)
             scripts = set()
         elif sign == "}":
@@ -392,7 +373,7 @@ def _read_script(
     if scripts is None or (sign in scripts and sign != "'") or {sign, *scripts} >= {"^", "'"}:
         raise _UnsoundError
     scripts.add(sign)
-    found.has_superscript = found.has_superscript or sign != "_"
+    found.has_superscript |= sign != "_"
     if sign == "'":
         # More primes stand beside the first, wherever a subscript ends.
         found.size += PRIME_SIZES + SCRIPT_SPACE
@@ -400,8 +381,11 @@ def _read_script(
         found.parts[-1][2] += "′"
         return position
     inner, position = _read_argument(latex, position, font, depth)
-    found.add_script(sign, inner.size.raised + SCRIPT_SPACE)
-    found.is_wordy = found.is_wordy or inner.is_wordy or inner.letters > 1
+    size = inner.size.raised + SCRIPT_SPACE
+    # Above or below the script that the atom bears already.
+    found.size += size.beyond(found.subscript)
+    found.subscript = size if sign == "_" else NOTHING
+    found.is_wordy |= inner.is_wordy or inner.letters > 1
     found.parts[-1][1 if sign == "_" else 2] = inner.mathml()
     return position
 
@@ -451,8 +435,11 @@ def _read_command(latex: str, command: str, position: int, font: _Font, depth: i
         match = _TEXT.match(latex, position + 1)
         if match is None or latex[match.end() : match.end() + 1] != "}" or not match[0].strip():
             raise _UnsoundError
-        # Text shrinks in scripts as letters do, at least.
-        found.add(_text_size(match[0]))
+        # The wider of two fonts; text shrinks in scripts as letters do, at least.
+        italic = TEXT_ITALIC.widths
+        em = sum(max(ROMAN[c], italic[c].text if c in italic else 0.0) for c in match[0])
+        em += TEXT_ITALIC.kern.text
+        found.add(Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em))
         found.is_wordy = True
         found.mark(words(match[0], _TEXT_FONTS[command]))
         return found, match.end() + 1
@@ -482,13 +469,6 @@ _SIGN_SIZES: Final = (
     | {"|": FENCE_SIZES[1]}
 )
 _SCRIPT_TEXT, _TINY_TEXT = 0.85, 0.7
-
-
-def _text_size(text: str) -> Width:
-    """Return the width of words in mathematics, in the wider of two fonts."""
-    italic = TEXT_ITALIC.widths
-    em = sum(max(ROMAN[c], italic[c].text if c in italic else 0.0) for c in text) + TEXT_ITALIC.kern.text
-    return Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em)
 
 
 def identifier(text: str, style: str = "") -> str:

@@ -178,16 +178,11 @@ class MathmlWriter(ExpressionWriter):
             spelt = operator(sign, "" if sign == "/" else "infix" if i else "prefix") if sign else ""
             looser = (Product, Quotient) if sign == "/" else ()
             spelt = INVISIBLE_TIMES if sign == "*" else spelt
-            found.append(self._fenced_part(spelt, part, Sum, Negative, *looser))
+            fences = ("", "")
+            if isinstance(part, (Sum, Negative, *looser)):
+                fences = fence_signs(self.piece(part).nesting)
+            found.append((spelt + fences[0], part, fences[1]))
         return _joined(found, self) if isinstance(node, Product) else found or None
-
-    def _fenced_part(
-        self, before: str, node: Expression, *loose: type[Expression]
-    ) -> tuple[str, Expression, str]:
-        if not isinstance(node, loose):
-            return before, node, ""
-        opening, closing = fence_signs(self.piece(node).nesting)
-        return before + opening, node, closing
 
 
 def _joined(
@@ -214,8 +209,8 @@ def _primed(name: str, order: int) -> str:
 
 
 def _scientific(mantissa: str, exponent: str) -> str:
-    power = numeral(exponent.removeprefix("-"))
-    power = row(_MINUS, power) if exponent.startswith("-") else power
+    minus = [_MINUS] if exponent.startswith("-") else []
+    power = row(*minus, numeral(exponent.removeprefix("-")))
     front = [numeral(mantissa), operator("⋅")] if mantissa else []
     return row(*front, MATHML.power.format(numeral("10"), power))
 
@@ -265,9 +260,7 @@ WIDEST_FRACTION: Final = 42.0
 LONGEST: Final = 400_000
 """Characters beyond which a page does not show a formula."""
 _CALLIGRAPHIC: Final = {r"\mathcal{N}": "𝒩", r"\mathcal{D}": "𝒟"}
-_ARGUMENT_OF_S: Final = (
-    '<mo form="prefix" stretchy="false">(</mo><mi>s</mi><mo form="postfix" stretchy="false">)</mo>'
-)
+_OF_S: Final = (APPLY_FUNCTION, fence("<mi>s</mi>", 0, is_tall=False))
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,45 +286,34 @@ def transfer_function_mathml(tf: AnyTransferFunction, form: PrintedForm) -> tupl
     """
     labels = form_labels(tf, form)
     writer = MathmlWriter(labels)
-    rows = [*_formula(tf, form, writer, labels), *_where(form, writer, labels)]
+    rows = _formula(tf, form, writer)
+    below = [(label_mathml(name, labels), right) for name, right in form.where]
+    below += [(writer.piece(left).markup, right) for left, right in laws_and_starts(form)]
+    rows += [MathRow(left, writer.pieces(right), is_where=True) for left, right in below]
     size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows)
     return tuple(rows) if size <= LONGEST else None
 
 
 def _end(end: Input | Output) -> str:
-    label = label_mathml(end.name, {end.name: end.latex})
-    return row(label, "<mo>&#x2061;</mo>", f"<mrow>{_ARGUMENT_OF_S}</mrow>")
+    return row(label_mathml(end.name, {end.name: end.latex}), *_OF_S)
 
 
-def _formula(
-    tf: AnyTransferFunction, form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]
-) -> list[MathRow]:
+def _formula(tf: AnyTransferFunction, form: PrintedForm, writer: MathmlWriter) -> list[MathRow]:
     left = ratio_mathml(tf)
     if is_number(form.den, 1):
         return [MathRow(left, writer.pieces(form.num))]
     sign, num = split_sign(form)
-    minus = operator("-", "prefix") if sign else ""
     widths = [writer.width(part, Style.TEXT) for part in (num, form.den)]
-    if max(widths) <= WIDEST_FRACTION:
-        above, below = (writer.piece(part, Style.TEXT).markup for part in (num, form.den))
-        return [MathRow(left, (row(*filter(None, (minus, f"<mfrac>{above}{below}</mfrac>"))),))]
+    widest = WIDEST_FRACTION if max(widths) <= WIDEST_FRACTION else WIDEST_FRACTION / 2
     varying = varying_names(form)
     parts, rows = [], []
     for name, expression, width in zip(free_names(form, writer), (num, form.den), widths, strict=True):
-        if width <= WIDEST_FRACTION / 2:
+        if width <= widest:
             parts.append(writer.piece(expression, Style.TEXT).markup)
             continue
         depends = any(n.name in varying for n in names(expression) if isinstance(n, Name | Call))
-        head = identifier(_CALLIGRAPHIC.get(name, name))
-        head = row(head, "<mo>&#x2061;</mo>", f"<mrow>{_ARGUMENT_OF_S}</mrow>") if depends else head
+        head = row(identifier(_CALLIGRAPHIC.get(name, name)), *(_OF_S if depends else ()))
         parts.append(head)
         rows.append(MathRow(head, writer.pieces(expression)))
-    fraction = f"<mfrac>{parts[0]}{parts[1]}</mfrac>"
-    return [MathRow(left, (row(*filter(None, (minus, fraction))),)), *rows]
-
-
-def _where(form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]) -> list[MathRow]:
-    rows = [MathRow(label_mathml(name, labels), writer.pieces(e), is_where=True) for name, e in form.where]
-    for left, right in laws_and_starts(form):
-        rows.append(MathRow(writer.piece(left).markup, writer.pieces(right), is_where=True))
-    return rows
+    minus = [_MINUS] if sign else []
+    return [MathRow(left, (row(*minus, f"<mfrac>{parts[0]}{parts[1]}</mfrac>"),)), *rows]

@@ -77,13 +77,12 @@ def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
     lower = [r for r in roots if r.im < 0]
     entries = []
     for root in roots:
-        if root.im > 0:
-            partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
-            if partner is not None:
-                lower.remove(partner)
-            entries.append(PrintedRoot(root, partner is not None))
-        elif not root.im < 0:
-            entries.append(PrintedRoot(root, is_pair=False))
+        if root.im < 0:
+            continue
+        near = (r for r in lower if root.im > 0 and r.im.overlaps(-root.im) and r.re.overlaps(root.re))
+        if (partner := next(near, None)) is not None:
+            lower.remove(partner)
+        entries.append(PrintedRoot(root, partner is not None))
     return entries + [PrintedRoot(root, is_pair=False) for root in lower]
 
 
@@ -219,17 +218,15 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         im = f" +- {part.im:g} j" if part.im else ""
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
-    for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
-        none = "none" if found.certificate.certified else "none found"
-        lines += ["", _counted(title, roots, none), *_root_table(roots, digits, width)]
-    if found.unstable:
-        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside the region asked for"
-        lines += ["", title, *_root_table(found.unstable, digits, width)]
-    if found.hidden:
-        for cause, meaning in CAUSES.items():
-            hidden = [h.root for h in found.hidden if h.cause == cause]
-            if hidden:
-                lines += ["", f"{_counted('hidden', hidden)}, {meaning}", *_root_table(hidden, digits, width)]
+    tables = [("poles", found.poles, ""), ("zeros", found.zeros, "")]
+    outside = ", in the right half plane, outside the region asked for"
+    more = [("poles", found.unstable, outside)]
+    for cause, meaning in CAUSES.items():
+        more.append(("hidden", tuple(h.root for h in found.hidden if h.cause == cause), f", {meaning}"))
+    none = "none" if certificate.certified else "none found"
+    for title, roots, meaning in [*tables, *(table for table in more if table[1])]:
+        count = sum(root.multiplicity for root in roots) or none
+        lines += ["", f"{INDENT}{title}: {count}{meaning}", *_root_table(roots, digits, width)]
     everything = [*found.poles, *found.zeros, *found.unstable, *(h.root for h in found.hidden)]
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
@@ -259,17 +256,15 @@ def region_text(region: Region) -> str:
             return ""
 
 
-def _counted(title: str, roots: Sequence[Root], none: str = "none") -> str:
-    """Return a heading with the number of roots, multiplicity counted."""
-    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or none}"
-
-
 def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     """Return a line per real root or conjugate pair, or two where one is too long."""
     if not roots:
         return []
-    columns = columns_for(TERMINAL_COLUMNS, roots)
-    rows = _root_rows(roots, columns, digits)
+    columns, rows = columns_for(TERMINAL_COLUMNS, roots), []
+    for entry in one_of_each_pair(roots):
+        times = f"x{entry.root.multiplicity}" if entry.root.multiplicity > 1 else ""
+        flags = times + ("" if entry.root.certified else "?") + ("|" if entry.root.on_boundary else "")
+        rows.append((flags, *entry.cells(columns, digits, "+-")))
     heads = [column.head for column in columns]
     lines = aligned([("", *heads), *rows])
     if max(map(len, lines)) <= width:
@@ -283,17 +278,6 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     if max(map(len, lines)) <= width:
         return lines
     return [line for row in rows for line in _root_paragraph(row)][:-1]
-
-
-def _root_rows(roots: Sequence[Root], columns: Sequence[RootColumn], digits: int) -> list[tuple[str, ...]]:
-    """Return flags, real and imaginary part and what stands beside them; a conjugate pair is one row."""
-    rows = []
-    for entry in one_of_each_pair(roots):
-        root = entry.root
-        times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
-        flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
-        rows.append((flags, *entry.cells(columns, digits, "+-")))
-    return rows
 
 
 def _root_paragraph(row: tuple[str, ...]) -> list[str]:

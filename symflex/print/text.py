@@ -22,7 +22,7 @@ from symflex.print.forms import PrintedForm, with_hidden
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from symflex.transfer import AnyTransferFunction
 
@@ -57,18 +57,15 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
     if is_number(form.den, 1):
         lines += [INDENT + line for line in num]
     else:
-        bar = max(len(line) for line in (*num, *den))
-        lines += [INDENT + _placed(line, bar, alone=len(num) == 1) for line in num]
-        lines.append(INDENT + "-" * bar)
-        lines += [INDENT + _placed(line, bar, alone=len(den) == 1) for line in den]
+        bar = max(map(len, (*num, *den)))
+        above, below = ([e[0].center(bar).rstrip()] if len(e) == 1 else e for e in (num, den))
+        lines += [INDENT + line for line in (*above, "-" * bar, *below)]
     lines.append("")
     form, hidden = with_hidden(tf, form)
     for word, (name, expression) in zip(chain(["where"], repeat("     ")), form.where, strict=False):
         lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
-    for line in (line for law in form.laws for line in law_lines(*law)):
-        word = (
-            "     " if form.where or any(given.startswith(f"{INDENT}where") for given in lines) else "where"
-        )
+    laws = (line for law in form.laws for line in law_lines(*law))
+    for word, line in zip(chain([] if form.where else ["where"], repeat("     ")), laws, strict=False):
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
     for word, (left, expression) in zip(chain(["so   "], repeat("     ")), form.closed, strict=False):
@@ -110,10 +107,6 @@ def law_lines(name: str, law: Equation) -> list[str]:
     return [format_expression(law), f"{start}{name}{chr(39) * (order - 1)}(0) = 1"]
 
 
-def _placed(line: str, width: int, *, alone: bool) -> str:
-    return line.center(width).rstrip() if alone else line
-
-
 def wrapped(expression: Expression, width: int) -> list[str]:
     """Return an expression as lines of at most ``width`` columns where it can be broken.
 
@@ -138,13 +131,12 @@ def _lay_out(text: str, width: int, hanging: int) -> list[str]:
     factors = _split(text, lambda i: text[i - 1] == "*" or text[i] == "/")
     if len(factors) > 1:
         return _lay_out_product(factors, width)
-    group = _group(text)
-    if group is None:
+    if (group := _group(text)) is None:
         return [text]
     head, inner, tail = group
-    lines = _lay_out(inner, width - len(head) - len(tail), hanging=0)
-    lines[-1] += tail
-    return [head + lines[0], *(" " * len(head) + line for line in lines[1:])]
+    first, *more = _lay_out(inner, width - len(head) - len(tail), hanging=0)
+    lines = [head + first, *(" " * len(head) + line for line in more)]
+    return [*lines[:-1], lines[-1] + tail]
 
 
 def _group(text: str) -> tuple[str, str, str] | None:
@@ -161,10 +153,9 @@ def _lay_out_sum(terms: Sequence[str], width: int, hanging: int) -> list[str]:
         if simple and len(lines[-1]) + 1 + len(term) <= width:
             lines[-1] += f" {term}"
             continue
-        sign, rest = term[:2], term[2:]
-        first, *more = _lay_out(rest, width - hanging - len(sign), hanging)
+        first, *more = _lay_out(term[2:], width - hanging - 2, hanging)
         margin = " " * hanging
-        lines += [margin + sign + first, *(f"{margin}{' ' * len(sign)}{line}" for line in more)]
+        lines += [f"{margin}{term[:2]}{first}", *(f"{margin}  {line}" for line in more)]
     return lines
 
 
@@ -185,8 +176,9 @@ def _lay_out_product(factors: Sequence[str], width: int) -> list[str]:
         else:
             head, inner, tail = group
             lines[-1] += head
-            within = _lay_out(inner, width - 2 * len(INDENT) - len(tail), hanging=0)
-            lines += [2 * INDENT + line for line in within]
+            lines += [
+                2 * INDENT + line for line in _lay_out(inner, width - 2 * len(INDENT) - len(tail), hanging=0)
+            ]
             lines[-1] += tail
     return lines
 
@@ -233,25 +225,19 @@ def passages_text(passages: Iterable[Passage], width: int | None = None) -> str:
     <BLANKLINE>
     no zeros
     """
-    return "\n\n".join("\n".join(_passage_lines(passage, width)) for passage in passages)
-
-
-def _passage_lines(passage: Passage, width: int | None) -> Iterator[str]:
-    for line in passage.lines:
-        yield from (broken(line, width) if width else [line])
-    if passage.rows:
-        yield from aligned(passage.rows)
+    shown = []
+    for passage in passages:
+        lines = [part for line in passage.lines for part in (broken(line, width) if width else [line])]
+        shown.append("\n".join([*lines, *(aligned(passage.rows) if passage.rows else ())]))
+    return "\n\n".join(shown)
 
 
 def broken(line: str, width: int = WIDTH) -> list[str]:
     """Return a line in several, those after the first further in."""
     indent = line[: len(line) - len(line.lstrip())]
+    further = indent + INDENT
     return wrap(
-        line.lstrip(),
-        width,
-        initial_indent=indent,
-        subsequent_indent=indent + INDENT,
-        break_on_hyphens=False,
+        line.lstrip(), width, initial_indent=indent, subsequent_indent=further, break_on_hyphens=False
     )
 
 

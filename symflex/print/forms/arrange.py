@@ -32,6 +32,7 @@ from symflex.expressions import (
     Sum,
     format_expression,
     names,
+    negative,
     nodes,
     number,
     power,
@@ -96,8 +97,8 @@ class Arranger:
     @cached_property
     def _s_degree(self) -> tuple[tuple[int, int], ...]:
         """The generators that bear s, by index, and their degrees."""
-        degrees = enumerate(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
-        return tuple((i, degree) for i, degree in degrees if degree)
+        degrees = {LAPLACE: 1, **self.degrees}
+        return tuple((i, degrees[n]) for i, n in enumerate(self.ring.names) if degrees.get(n))
 
     @cached_property
     def _is_apart(self) -> tuple[bool, ...]:
@@ -115,12 +116,10 @@ class Arranger:
         """Return a polynomial by descending powers of s, each coefficient factored, or nested."""
         is_opened = self.kept is not None and polynomial.context() is self.kept.source.context
         parts = by_powers(self.kept.source if self.kept and is_opened else self.ring, polynomial)
-        s = self._symbols[0]
         terms = []
-        for exponent in sorted(parts, reverse=True):
-            part = parts[exponent]
+        for exponent, part in sorted(parts.items(), reverse=True):
             coefficient = self.grouped(part) if nested else self.coefficient(part, factored=factored)
-            terms.append(product_of([coefficient, power(s, exponent)]))
+            terms.append(product_of([coefficient, power(self._symbols[0], exponent)]))
         return sum_of(terms) if terms else number(0)
 
     def coefficient(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
@@ -144,9 +143,8 @@ class Arranger:
         if int(polynomial.leading_coefficient()) < 0:
             content = -content if int(content.leading_coefficient()) > 0 else content
         rest = polynomial / content
-        if rest.is_constant():
-            return self._flat(polynomial)
-        return product_of([self._flat(content), self._flat(rest)])
+        parts = [polynomial] if rest.is_constant() else [content, rest]
+        return product_of(map(self._flat, parts))
 
     def _flat(self, polynomial: fmpz_mpoly) -> Expression:
         return self._sum(_terms(polynomial))
@@ -215,20 +213,18 @@ class Arranger:
 
     def monomial(self, exponents: Sequence[int]) -> Expression:
         """Return a product of powers of the generators, those of ``ring`` or of what is kept closed."""
-        if self.kept is None or (self.kept.adds and len(exponents) == len(self.ring.names)):
-            return self._monomial(tuple(exponents), 1)
-        ((monomial, _),) = _terms(
-            self.kept.rewrite(self.kept.source.context.from_dict({tuple(exponents): 1}))
-        ).items()
+        monomial = tuple(exponents)
+        if self.kept is not None and not (self.kept.adds and len(exponents) == len(self.ring.names)):
+            (monomial,) = _terms(self.kept.rewrite(self.kept.source.context.from_dict({monomial: 1})))
         return self._monomial(monomial, 1)
 
     def _group(self, terms: dict[tuple[int, ...], int]) -> Expression:
-        content, rest = _pull_content(terms)
+        content = tuple(min(column) for column in zip(*terms, strict=True))
         front = self._monomial(content, 1)
-        if len(rest) == 1:
-            ((monomial, coefficient),) = rest.items()
-            return product_of([number(coefficient), front, self._monomial(monomial, 1)])
-        scale, rest = _pull_number(rest)
+        if len(terms) == 1:
+            return product_of([number(*terms.values()), front])
+        scale = gcd(*terms.values()) * (-1 if max(terms.values()) < 0 else 1)
+        rest = {tuple(map(sub, m, content)): c // scale for m, c in terms.items()}
         first = self._first(rest)
         if rest[first] < 0 and any(e and f for e, f in zip(first, self._is_apart, strict=True)):
             scale, rest = -scale, {m: -c for m, c in rest.items()}
@@ -242,8 +238,8 @@ class Arranger:
                 ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
                 positive = [(_terms(f if int(f.leading_coefficient()) > 0 else -f), e) for f, e in ordered]
                 # With every factor's leading coefficient positive, the product's sign is the sum's own.
-                sign = 1 if terms[max(terms)] > 0 else -1
-                return [number(sign), *(power(self._split(f), e) for f, e in positive)]
+                sign = number(1 if terms[max(terms)] > 0 else -1)
+                return [sign, *(power(self._split(f), e) for f, e in positive)]
         return [self._split(terms)]
 
     def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
@@ -257,10 +253,10 @@ class Arranger:
         """Return the groups of a sum with their places in print."""
         shared = self._most_shared(terms)
         if shared is None:
-            return [(self._rank(alike), self._coefficient_and_power(alike)) for alike in self._by_s(terms)]
+            return [(self._place(alike), self._coefficient_and_power(alike)) for alike in self._by_s(terms)]
         chosen = {m: c for m, c in terms.items() if m[shared]}
         others = {m: c for m, c in terms.items() if not m[shared]}
-        return [(self._rank(chosen), self._group(chosen)), *(self._parts(others) if others else [])]
+        return [(self._place(chosen), self._group(chosen)), *(self._parts(others) if others else [])]
 
     def _coefficient_and_power(self, terms: dict[tuple[int, ...], int]) -> Expression:
         """Return ``(m_1 + m_2)*s^2``, or a single term."""
@@ -281,28 +277,21 @@ class Arranger:
 
     def _most_shared(self, terms: dict[tuple[int, ...], int]) -> int | None:
         """Return the generator to take out of a sum: closed sums first, then parameters; never s alone."""
-        counts = [0] * len(self.ring.names)
-        for monomial in terms:
-            for i, exponent in enumerate(monomial):
-                if exponent and i:
-                    counts[i] += 1
-        candidates = [i for i, n in enumerate(counts) if n > 1]
-        if not candidates:
-            return None
-        return max(candidates, key=lambda i: (self._is_sum[i], counts[i], -i))
+        counts = [sum(map(bool, column)) for column in zip(*terms, strict=True)]
+        candidates = [i for i, n in enumerate(counts) if n > 1 and i]
+        return max(candidates, key=lambda i: (self._is_sum[i], counts[i], -i), default=None)
 
-    def _rank(self, terms: dict[tuple[int, ...], int]) -> tuple[int, ...]:
-        """Return a sort key: descending degree in s, then closed sums, then declared order."""
+    def _place(self, terms: Iterable[tuple[int, ...]]) -> tuple[int, ...]:
         return min(map(self._monomial_key, terms))
 
     def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
+        """Return a sort key: descending degree in s, then closed sums, then declared order."""
         degree = sum([monomial[i] * d for i, d in self._s_degree])
         sums = sum([monomial[i] for i in self._sums])
         return (-degree, -sums, *map(neg, monomial[1:]))
 
     def _sum(self, terms: dict[tuple[int, ...], int]) -> Expression:
-        ordered = sorted(terms, key=self._monomial_key)
-        return sum_of([self._monomial(m, terms[m]) for m in ordered])
+        return sum_of([self._monomial(m, terms[m]) for m in sorted(terms, key=self._monomial_key)])
 
     def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
         """Return number, pi, parameters in declared order, s, closed sums."""
@@ -316,10 +305,8 @@ class Arranger:
         def place(i: int) -> int:
             if i == 0:
                 return 2
-            if self._is_sum[i]:
-                return 4
-            if self._is_apart[i]:
-                return 3
+            if self._is_sum[i] or self._is_apart[i]:
+                return 4 if self._is_sum[i] else 3
             if self.ring.names[i] in ("pi", IMAGINARY):
                 return -1
             return 0 if self.ring.names[i].startswith("zeta") else 1  # as in 2*zeta*omega_n*s
@@ -328,31 +315,29 @@ class Arranger:
 
     @cached_property
     def _powers(self) -> Callable[[int, int], Expression]:
-        """Return a power of a generator, the same object every time."""
-        return cache(lambda i, exponent: _raised(self._symbols[i], exponent))
+        """Return a power of a generator, the same object every time; of ``exp(x)``, ``exp(n*x)``."""
 
+        @cache
+        def raised(i: int, exponent: int) -> Expression:
+            symbol = self._symbols[i]
+            if isinstance(symbol, Call) and symbol.name == "exp":
+                return Call("exp", product_of([number(exponent), symbol.argument]))
+            return power(symbol, exponent)
 
-def _raised(symbol: Expression, exponent: int) -> Expression:
-    """Return a power of a symbol; of an exponential, the exponential of a multiple."""
-    if isinstance(symbol, Call) and symbol.name == "exp":
-        return Call("exp", product_of([number(exponent), symbol.argument]))
-    return power(symbol, exponent)
+        return raised
 
 
 def _share_sums(parts: list[Expression]) -> list[Expression]:
     """Return the terms of a sum with a parenthesis that several of them bear taken out once."""
-    for part in parts:
-        for shared in _factors(part):
-            if not isinstance(shared, Sum):
-                continue
-            bearing = [p for p in parts if shared in _factors(p)]
-            if len(bearing) > 1:
-                inner = _share_factors(_share_sums([_without(p, shared) for p in bearing]))
-                # Plain factors stand before parentheses.
-                merged = product_of(sorted([shared, *_factors(inner)], key=lambda f: isinstance(f, Sum)))
-                first = parts.index(bearing[0])
-                rest = [p for p in parts if p not in bearing]
-                return _share_sums([*rest[:first], merged, *rest[first:]])
+    for shared in [f for part in parts for f in _factors(part) if isinstance(f, Sum)]:
+        bearing = [p for p in parts if shared in _factors(p)]
+        if len(bearing) > 1:
+            inner = _share_factors(_share_sums([_without(p, shared) for p in bearing]))
+            # Plain factors stand before parentheses.
+            merged = product_of(sorted([shared, *_factors(inner)], key=lambda f: isinstance(f, Sum)))
+            first = parts.index(bearing[0])
+            rest = [p for p in parts if p not in bearing]
+            return _share_sums([*rest[:first], merged, *rest[first:]])
     return parts
 
 
@@ -375,7 +360,7 @@ def _factors(part: Expression) -> tuple[Expression, ...]:
 def _without(part: Expression, shared: Expression) -> Expression:
     factors = list(_factors(part))
     factors.remove(shared)
-    return product_of(factors) if factors else number(1)
+    return product_of(factors)
 
 
 def _order_key(polynomial: fmpz_mpoly) -> tuple[tuple[int, ...], ...]:
@@ -393,20 +378,6 @@ def _is_trinomial_square(terms: Mapping[tuple[int, ...], int]) -> bool:
         return False
     (first, a), (middle, b), (last, c) = sorted(terms.items())
     return b * b == 4 * a * c and all(2 * m == f + n for f, m, n in zip(first, middle, last, strict=True))
-
-
-def _pull_content(terms: dict[tuple[int, ...], int]) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
-    """Return the common monomial and the terms without it."""
-    content = tuple(min(column) for column in zip(*terms, strict=True))
-    return content, {tuple(map(sub, m, content)): n for m, n in terms.items()}
-
-
-def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int, ...], int]]:
-    """Return the common integer, negative when every term is, and the terms without it."""
-    scale = gcd(*terms.values())
-    if all(c < 0 for c in terms.values()):
-        scale = -scale
-    return scale, {m: c // scale for m, c in terms.items()}
 
 
 SMALL = 400
@@ -463,7 +434,7 @@ class ProductPrinter:
 
     def square_root(self, value: Factored) -> Expression:
         """Return one square root of a product, with what is a square outside the sign of the root."""
-        outside, inside = value**0, value**0
+        outside = inside = value**0
         if not value.ring.is_sparse:  # (h + g)^2 is a factor by itself
             value = value.map_factors(value.ring, partial(with_squares, value.ring))
         for factor, exponent in value.factors:
@@ -476,12 +447,11 @@ class ProductPrinter:
             exact = root * root == part
             outside = outside * Fraction(root if exact else 1) ** sign
             inside = inside * Fraction(1 if exact else part) ** sign
-        if value.unit < 0:
-            inside = -inside
-        if inside.is_one:
-            return self.quotient(outside)
+        inside = -inside if value.unit < 0 else inside
         above, below = self.sides(outside)
-        return quotient(product_of([above, Call("sqrt", self.quotient(inside))]), below)
+        return quotient(
+            product_of([above] if inside.is_one else [above, Call("sqrt", self.quotient(inside))]), below
+        )
 
     def sum(self, polynomial: fmpz_mpoly) -> Expression:
         """Return a sum in its shortest arrangement; a minus sign that all of it bears stands in front."""
@@ -505,8 +475,7 @@ class ProductPrinter:
             tried = [nested, *tried, self.arranger.separated(polynomial, by_functions=False)]
         found = min(tried, key=_cost)
         if isinstance(found, Sum) and isinstance(found.terms[0], Negative):
-            terms = [t.operand if isinstance(t, Negative) else Negative(t) for t in found.terms]
-            found = Negative(Sum(tuple(terms)))
+            return Negative(Sum(tuple(map(negative, found.terms))))
         return found
 
 
@@ -515,11 +484,9 @@ def length_sides(printer: ProductPrinter, length: Factored) -> Sides:
     above, below = printer.sides(length)
     if isinstance(above, Negative):
         factors = list(above.operand.factors if isinstance(above.operand, Product) else (above.operand,))
-        last = factors[-1]
-        if isinstance(last, Sum) and any(isinstance(t, Negative) for t in last.terms):
-            turned = [t.operand if isinstance(t, Negative) else Negative(t) for t in last.terms]
-            factors[-1] = Sum(tuple(sorted(turned, key=lambda t: isinstance(t, Negative))))
-            above = product_of(factors)
+        if isinstance(last := factors[-1], Sum) and any(isinstance(t, Negative) for t in last.terms):
+            turned = sorted(map(negative, last.terms), key=lambda t: isinstance(t, Negative))
+            above = product_of([*factors[:-1], Sum(tuple(turned))])
     return above, below
 
 
@@ -569,13 +536,9 @@ def reading(expression: Expression) -> float:
 
 def _is_nested(term: Expression) -> bool:
     factors = term.factors if isinstance(term, Product) else ()
-    inner = [n for n in map(_inside, factors) if Name(LAPLACE) in n]
+    within = [names(f) for f in factors if isinstance(f, Sum)]
+    inner = [n for n in within if Name(LAPLACE) in n]
     return len(inner) == 1 and bool({*inner[0]} & {*factors})
-
-
-def _inside(factor: Expression) -> tuple[Expression, ...]:
-    """Return the names within a sum."""
-    return names(factor) if isinstance(factor, Sum) else ()
 
 
 MOST_WAYS = 16

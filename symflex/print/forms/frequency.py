@@ -58,8 +58,7 @@ def frequency_form(tf: TransferFunction) -> PrintedForm:
     The expression grammar has no imaginary unit: it stands as a name, ``j`` where that is free, with the line
     ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does.
     """
-    page = _FrequencyPage(tf)
-    return page.form()
+    return _FrequencyPage(tf).form()
 
 
 class _FrequencyPage:

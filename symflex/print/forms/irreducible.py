@@ -61,35 +61,17 @@ def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) ->
     if sum(times for _, times in split) == 1:
         return whole
     found = Factored.number(normal.ring, 1)
-    odd: dict[tuple[int, ...], list[fmpz_mpoly]] = {}
+    rest = coordinates.coordinates.constant(1)
     for part, times in split:
-        parity = coordinates.parity(part)
-        if any(parity):
-            odd.setdefault(parity, []).extend([part] * times)
+        if any(coordinates.parity(part)):
+            rest = rest * part**times
         else:
             found = found * _restored(part, coordinates, normal) ** times
-    rest = coordinates.coordinates.constant(1)
-    for parts_of_parity in odd.values():
-        first, *pairs = _paired(parts_of_parity)
-        for pair in pairs:
-            found = found * _restored(pair, coordinates, normal)
-        rest = rest * first
     if any(coordinates.parity(rest)):
         return whole
     found = found * _restored(rest, coordinates, normal)
     ratio = _expanded_ratio(found, factor, normal)
     return whole if ratio is None else found * ratio
-
-
-def _paired(parts: list[fmpz_mpoly]) -> list[fmpz_mpoly]:
-    """Return products of two, of different ones first, after the one that is left over (one, if none is)."""
-    left = list(parts)
-    pairs = []
-    while len(left) > 1:
-        first = left.pop(0)
-        other = next((i for i, p in enumerate(left) if p != first), 0)
-        pairs.append(first * left.pop(other))
-    return [left[0] if left else parts[0] ** 0, *pairs]
 
 
 def _restored(polynomial: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:

@@ -89,13 +89,10 @@ def embedded_laws(tf: TransferFunction, change: Invariants) -> dict[str, Factore
 
 def _families(change: Invariants, used: frozenset[str], naming: Naming) -> list[tuple[str, ...]]:
     """Return the names of the functions of every argument."""
-    found: list[tuple[str, ...]] = []
-    for i, group in enumerate(change.angles):
-        if not any(krylov_name(i, order) in used for order in range(_order(group))):
-            found.append(("",) * _order(group))
-            continue
-        found.append(naming.family("KLMNH", _order(group)))
-    return found
+    return [
+        naming.family("KLMNH", n) if any(krylov_name(i, order) in used for order in range(n)) else ("",) * n
+        for i, n in enumerate(map(_order, change.angles))
+    ]
 
 
 def _order(group: tuple[Angle, ...]) -> int:

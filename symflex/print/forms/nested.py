@@ -89,16 +89,11 @@ def nested_form(tf: NestedTransferFunction) -> PrintedForm:
     w_1 = b*s + k
     Z_1 = m_2*s^2
     """
-    return _Printer(tf, _plan(tf)).form()
+    return _Printer(tf, step_names(tf)).form()
 
 
 def step_names(tf: NestedTransferFunction) -> dict[int, str]:
     """Return the names of the steps that have one in the nested form, in order."""
-    return _plan(tf)
-
-
-def _plan(tf: NestedTransferFunction) -> dict[int, str]:
-    """Return the steps to name."""
     program = tf.program
     kinds, roles = program.kinds, program.roles
     uses: dict[int, int] = {}
@@ -124,10 +119,7 @@ def _plan(tf: NestedTransferFunction) -> dict[int, str]:
         is_shared = uses.get(i, 0) + (i in ends) > 1 and not (is_monomial or is_inverse)
         is_long = depth[i] >= DEEPEST or length[i] >= LONGEST_PRODUCT
         if role.startswith("=") or is_shared or (is_long and i not in ends):
-            if role.startswith("="):
-                names[i] = role[1:]
-            else:
-                names[i] = next(fresh[role or STEMS[Step(kind)]])
+            names[i] = role[1:] if role.startswith("=") else next(fresh[role or STEMS[Step(kind)]])
             depth[i], length[i] = 0, 1
     return names
 

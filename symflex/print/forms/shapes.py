@@ -18,7 +18,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from math import gcd, lcm
+from math import gcd
 from typing import TYPE_CHECKING, Final
 
 from flint import acb
@@ -168,15 +168,16 @@ class _Signs:
             case Sum(terms):
                 # Closed sums side by side may share a term: (c*s + k_1) + (c*s + k_2).
                 merged = sum_of(product_of([number(n), t]) for t, n in Counter(terms).items())
-                return self._with_loss_factor(self._sum(merged.terms) if isinstance(merged, Sum) else merged)
+                return self._sum(merged.terms) if isinstance(merged, Sum) else merged
             case Negative(Product() as product):
                 return negative(self._oriented(product))
             case Product(factors):
                 joined = _joined(factors)
-                if any(
-                    map(_is_decay, joined)
-                ):  # behind plain factors, before functions, above as below the bar
-                    joined = sorted(joined, key=lambda f: (_holds_call(f), not _is_decay(f)))
+                if any(map(_is_decay, joined)):
+                    # Behind plain factors, before functions, above as below the bar.
+                    joined = sorted(
+                        joined, key=lambda f: (any(isinstance(n, Call) for n in nodes(f)), not _is_decay(f))
+                    )
                 return self._rejoined(product_of(self._as_typed(joined)))
             case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
                 return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=length))
@@ -191,23 +192,6 @@ class _Signs:
             ordered = iter(sorted(own, key=lambda f: product.index(_base(f))))
             factors = [next(ordered) if f in own else f for f in factors]
         return factors
-
-    def _with_loss_factor(self, total: Expression) -> Expression:
-        """Return ``10*(1 + 0.1*j)`` for ``j + 10``, as loss factors are typed; no content in a sum."""
-        if self.known.get(IMAGINARY) != acb(0, 1) or not isinstance(total, Sum):
-            return total
-        terms = [powers_of(t) for t in total.terms]
-        content = Fraction(gcd(*(f.numerator for f, _ in terms)), lcm(*(f.denominator for f, _ in terms)))
-        if content != 1:
-            return product_of([number(content), sum_of([of_powers(f / content, p) for f, p in terms])])
-        fronts = {tuple(powers.items()): front for front, powers in terms}
-        if fronts.keys() != {(), ((Name(IMAGINARY), 1),)}:
-            return total
-        plain, lossy = fronts[()], fronts[(Name(IMAGINARY), 1),]
-        factor = _number_in(lossy / plain)
-        if factor is None:
-            return total
-        return product_of([number(plain), sum_of([number(1), product_of([factor, Name(IMAGINARY)])])])
 
     def _rejoined(self, product: Expression) -> Expression:
         """Return a product with ``1 - nu^2`` for ``(1 - nu)*(nu + 1)`` where the model has it."""
@@ -406,10 +390,6 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
 
 def _is_decay(factor: Expression) -> bool:
     return isinstance(factor, Call) and factor.name == "exp"
-
-
-def _holds_call(factor: Expression) -> bool:
-    return any(isinstance(n, Call) for n in nodes(factor))
 
 
 def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:
@@ -611,7 +591,7 @@ def _scaled(total: Sum, divisor: Fraction, digits: int) -> Expression | None:
     return sum_of(terms)
 
 
-def _number_in(value: Fraction, digits: int = DIGITS) -> Expression | None:
+def _number_in(value: Fraction, digits: int) -> Expression | None:
     """Return a number that is a whole one or a short decimal, None otherwise."""
     text = number_text(abs(value))
     is_short = value.denominator == 1 or (

@@ -119,18 +119,15 @@ def latex_files(
     for picture in pictures:
         name = free_name(_plain_stem(picture.name), (DOCUMENT, *files), ".pgf")
         files[name] = picture.latex
+        ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
         # What a figure shows stands on the page that shows it.
         parts.append(
-            f"\\noindent\\begin{{minipage}}{{\\linewidth}}\\raggedright\n\\input{{{name}}}\n\n"
-            f"\\smallskip\\noindent {_caption(picture)}\n\\end{{minipage}}\n\\bigskip\n\n"
+            f"\\noindent\\begin{{minipage}}{{\\linewidth}}\\raggedright\n\\input{{{name}}}\n\n\\smallskip"
+            f"\\noindent {escape_text(picture.title)}{f' of {ratios}' if ratios else ''}.\n"
+            "\\end{minipage}\n\\bigskip\n\n"
         )
     files[DOCUMENT] = "".join((*parts, "\\end{document}\n"))
     return files
-
-
-def _caption(picture: Picture) -> str:
-    ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
-    return f"{escape_text(picture.title)}{f' of {ratios}' if ratios else ''}."
 
 
 def _file(block: _Block, width_mm: float) -> str:
@@ -140,7 +137,11 @@ def _file(block: _Block, width_mm: float) -> str:
 
 def _opening(model: Model, width_mm: float, packages: Sequence[str] = ()) -> Iterator[str]:
     yield f"% To be compiled twice, with pdflatex or lualatex.\n{preamble(width_mm, packages)}\n\n"
-    yield f"\\begin{{document}}\n\n{_heading(model)}\n\n"
+    title = escape_text(model.title) or "Transfer functions"
+    lines = [r"\begin{center}", rf"{{\LARGE {title}\par}}"]
+    if source := escape_text(model.source):
+        lines += [r"\medskip", source]
+    yield "\\begin{document}\n\n" + "\n".join((*lines, r"\end{center}")) + "\n\n"
 
 
 def _blocks(
@@ -168,7 +169,11 @@ def _blocks(
         named, factors = with_hidden(tf, form)
         # Without a blank line: a display belongs to the paragraph before it.
         yield _equation(tf, named, width_mm, "\n\n")
-        hidden = _hidden_modes(tf, named, [e for e, _ in factors], width_mm)
+        hidden = []
+        if not isinstance(tf, NestedTransferFunction):
+            writer = Writer(form_labels(tf, named))
+            pairs = zip(tf.hidden, factors, strict=True)
+            hidden = [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in pairs]
         of_tf = [found for found in maps if found.tf == tf.name]
         if hidden and not of_tf:
             yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
@@ -180,7 +185,12 @@ def _blocks(
                     table = root_table(found, kind, width_mm=width_mm)
                     yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
     if any(found.all_poles for found in maps):
-        yield _Block(f"\\section{{Modes}}\n\n{_about_modes(maps)}{_BEFORE_TABLE}")
+        shown = (
+            "" if all(found.certificate.certified for found in maps) else " The lists are not all certified."
+        )
+        whose = "the transfer function" if len(maps) == 1 else "at least one of the transfer functions"
+        about = f"The modes that are poles of {whose}; number 0 is motion as a rigid body.{shown}"
+        yield _Block(f"\\section{{Modes}}\n\n{about}{_BEFORE_TABLE}")
         yield _table(mode_table(maps, width_mm=width_mm), "modes", "Modes")
 
 
@@ -206,28 +216,16 @@ def _plain_stem(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_]", "_", name)
 
 
-def _heading(model: Model) -> str:
-    title = escape_text(model.title) or "Transfer functions"
-    source = escape_text(model.source)
-    lines = [r"\begin{center}", rf"{{\LARGE {title}\par}}"]
-    if source:
-        lines += [r"\medskip", source]
-    return "\n".join((*lines, r"\end{center}"))
-
-
 def _introduction(tf: AnyTransferFunction) -> str:
     unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
     if isinstance(tf, NestedTransferFunction):
-        quantity = escape_text(tf.quantity)
-        return (
-            f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {quantity}{unit}, in nested form; "
-            "hidden modes were not looked for:\n"
-        )
-    zeros, poles = counts_of(tf)
-    counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
-    if zeros is None and poles is None:
-        counts = "infinitely many zeros and poles"
-    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:\n"
+        about = "in nested form; hidden modes were not looked for"
+    else:
+        zeros, poles = counts_of(tf)
+        about = f"with {_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
+        if zeros is None and poles is None:
+            about = "with infinitely many zeros and poles"
+    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, {about}:\n"
 
 
 def _counted(count: int | None, noun: str) -> str:
@@ -237,19 +235,10 @@ def _counted(count: int | None, noun: str) -> str:
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
 
-def _hidden_modes(
-    tf: AnyTransferFunction, form: PrintedForm, printed: Sequence[Expression], width_mm: float
-) -> list[str]:
-    """Return a sentence for every factor in s that cancelled."""
-    if isinstance(tf, NestedTransferFunction):
-        return []
-    writer = Writer(form_labels(tf, form))
-    return [_hidden_mode(h, e, tf, writer, width_mm) for h, e in zip(tf.hidden, printed, strict=True)]
-
-
 def _hidden_mode(
     factor: HiddenFactor, printed: Expression, tf: TransferFunction, writer: Writer, width_mm: float
 ) -> str:
+    """Return a sentence on a factor in s that cancelled."""
     ring = tf.ratio.ring
     degrees = factor.polynomial.degrees()
     count = int(degrees[ring.index[LAPLACE]])
@@ -280,20 +269,9 @@ def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
         sentences.append(f"Listed are {escape_text(shown)}.")
     for said in filter(None, (found.verdict.sentence, found.verdict.hidden_motion)):
         sentences.append(f"{escape_text(said[:1].upper() + said[1:])}.")
-    if found.certificate.certified:
-        sentences.append(
-            "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
-        )
-    else:
-        reason = escape_text(found.certificate.reason or "no reason given")
-        sentences.append(f"The list is not certified: {reason}.")
-    return sentences
-
-
-def _about_modes(maps: Sequence[PoleZeroMap]) -> str:
-    shown = "" if all(found.certificate.certified for found in maps) else " The lists are not all certified."
-    whose = "the transfer function" if len(maps) == 1 else "at least one of the transfer functions"
-    return f"The modes that are poles of {whose}; number 0 is motion as a rigid body.{shown}"
+    proved = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+    reason = escape_text(found.certificate.reason or "no reason given")
+    return [*sentences, proved if found.certificate.certified else f"The list is not certified: {reason}."]
 
 
 def _comment(text: str) -> str:

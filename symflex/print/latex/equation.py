@@ -7,8 +7,7 @@ Output: ``equation`` and ``align`` environments; they need amsmath and nothing e
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
@@ -48,12 +47,10 @@ _WIDEST_LEFT: Final = 6.0
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
 
-@dataclass(frozen=True, slots=True)
-class _DisplayRow:
-    """One equation of a display: its sides, the right one in lines, and the width of the left one."""
+class _DisplayRow(NamedTuple):
+    """One equation of a display: its left side, and its right one in lines."""
 
     left: str
-    left_width: float
     right: tuple[str, ...]
 
 
@@ -127,8 +124,7 @@ def formula_latex(
     width = max(width_mm, NARROWEST_MM) / EM_MM
     # The commands of the left side are wider than what they print.
     left_width = min(float(len(left)), _WIDEST_LEFT)
-    rows = [_row(left, left_width, expression, writer, width, left_width)]
-    parts = [_align(rows, "align*", "")]
+    parts = [_align([_row(left, expression, writer, width, left_width)], "align*", "")]
     if where:
         parts.append(_align(_where_rows(_defined(where, writer), writer, width - _WHERE_WIDTH), "align*", ""))
     return "\n".join(parts)
@@ -220,49 +216,37 @@ def _formula(
 
 
 def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_DisplayRow]:
-    """Return the equations that a formula too wide for one line is made of."""
+    """Return a formula too wide for one line: a quotient in names for what is long, and what these are."""
     left, left_width = _left_side(tf, form, writer)
     if is_number(form.den, 1):
-        return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
-    return _named_parts(form, writer, width, left, left_width)
-
-
-def _named_parts(
-    form: PrintedForm, writer: Writer, width: float, left: str, left_width: float
-) -> list[_DisplayRow]:
-    """Return the quotient of what is short and of names for what is not, and what the names stand for."""
+        return [_row(left, form.num, writer, width, left_width, _TAG)]
     sign, num = split_sign(form)
     varying, argument = varying_names(form), writer.piece(form.argument)
-    parts = []
+    parts, rows = [], []
     for name, expression in zip(free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
-        is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
-        depends = any(n.name in varying for n in names(expression))
-        head = f"{name}({argument.markup})" if depends else name
-        parts.append((head if is_long else piece.markup, expression, is_long))
-    rows = [_DisplayRow(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
-    rows += [
-        _row(head, MINUS + argument.width + _PARENTHESES, expression, writer, width, left_width)
-        for head, expression, is_long in parts
-        if is_long
-    ]
-    return rows
+        head = piece.markup
+        if left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width:
+            depends = any(n.name in varying for n in names(expression))
+            head = f"{name}({argument.markup})" if depends else name
+            rows.append(_row(head, expression, writer, width, left_width))
+        parts.append(head)
+    return [_DisplayRow(left, (rf"{sign}\frac{{{parts[0]}}}{{{parts[1]}}}",)), *rows]
 
 
 def varying_names(form: PrintedForm) -> frozenset[str]:
     """Return s, and the names that stand for functions of it."""
     varying = {LAPLACE, *functions_in(form)}
     # A line may use the names of any other.
-    users: dict[str, list[str]] = {}
+    users: dict[str, set[str]] = {}
     for name, expression in form.where:
         for used in names(expression):
             if isinstance(used, Name):
-                users.setdefault(used.name, []).append(name)
+                users.setdefault(used.name, set()).add(name)
     pending = list(varying)
     while pending:
-        fresh = [name for name in users.get(pending.pop(), ()) if name not in varying]
-        varying.update(fresh)
-        pending += fresh
+        pending += users.get(pending.pop(), set()) - varying
+        varying.update(pending)
     return frozenset(varying)
 
 
@@ -271,8 +255,7 @@ def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
     expressions = [form.num, form.den, *(e for _, e in form.where)]
     used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
     taken = {writer.label(name).latex for name in sorted(used)}
-    free = [pair for pair in _NUMERATORS if not taken & set(pair)]
-    return free[0] if free else _NUMERATORS[-1]
+    return next((pair for pair in _NUMERATORS if not taken & set(pair)), _NUMERATORS[-1])
 
 
 def _explained(form: PrintedForm, writer: Writer) -> list[_Sides]:
@@ -285,14 +268,15 @@ def _where_rows(equations: Sequence[_Sides], writer: Writer, width: float | None
     """Return equations aligned with each other, "where" before the first."""
     widths = (left_width + _WHERE_WIDTH * (not i) for i, (_, left_width, _) in enumerate(equations))
     column = max(widths, default=0.0)
-    rows = [_row(left, own, right, writer, width, column) for left, own, right in equations]
-    return [replace(row, left=f"{_WHERE}{row.left}") if not i else row for i, row in enumerate(rows)]
+    return [
+        _row(left if i else f"{_WHERE}{left}", right, writer, width, column)
+        for i, (left, _, right) in enumerate(equations)
+    ]
 
 
 def _defined(where: Sequence[tuple[str, Expression]], writer: Writer) -> list[_Sides]:
     """Return both sides of definitions of names."""
-    labels = [(writer.label(name), expression) for name, expression in where]
-    return [(label.latex, label.width, expression) for label, expression in labels]
+    return [((label := writer.label(name)).latex, label.width, e) for name, e in where]
 
 
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
@@ -308,13 +292,7 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
 
 
 def _row(
-    left: str,
-    left_width: float,
-    expression: Expression,
-    writer: Writer,
-    width: float | None,
-    column: float,
-    tag: float = 0.0,
+    left: str, expression: Expression, writer: Writer, width: float | None, column: float, tag: float = 0.0
 ) -> _DisplayRow:
     """Return an equation with its right side broken.
 
@@ -322,14 +300,13 @@ def _row(
     line leaves for its number.
     """
     if width is None:
-        return _DisplayRow(left, left_width, (writer.piece(expression).markup,))
+        return _DisplayRow(left, (writer.piece(expression).markup,))
     room = width - column - RELATION
     if room - tag < _LEAST_ROOM:
         # The left side stands in a line of its own.
         room = width - RELATION - QUAD
-        lines = break_lines(expression, writer, room, room - QUAD + RELATION)
-        return _DisplayRow(left, left_width, ("", *lines))
-    return _DisplayRow(left, left_width, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
+        return _DisplayRow(left, ("", *break_lines(expression, writer, room, room - QUAD + RELATION)))
+    return _DisplayRow(left, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
 
 
 def _align(rows: Sequence[_DisplayRow], environment: str, label: str) -> str:
@@ -337,15 +314,10 @@ def _align(rows: Sequence[_DisplayRow], environment: str, label: str) -> str:
     stands_alone = any(row.right[0] == "" for row in rows)
     lines: list[str] = []
     for row in rows:
-        if stands_alone:
-            whole = row.right[1:] if row.right[0] == "" else row.right
-            lines += [f"& {row.left}", rf"&\quad = {whole[0]}"]
-            continuation = whole[1:]
-        else:
-            lines.append(f"{row.left} &= {row.right[0]}")
-            continuation = row.right[1:]
+        first, *more = row.right if row.right[0] else row.right[1:]
+        lines += [f"& {row.left}", rf"&\quad = {first}"] if stands_alone else [f"{row.left} &= {first}"]
         indent = r"&\qquad " if stands_alone else r"&\quad "
-        lines += [f"{indent}{line}" for line in continuation]
+        lines += [f"{indent}{line}" for line in more]
     if environment == "align":
         lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
     displays = []

@@ -149,12 +149,10 @@ class Edge(NamedTuple):
     width: float = 0.0
 
 
-_NOTHING: Final = Glue()
-_SLASH: Final = Glue("/", SLASH, "{}/ ", SLASH)
 _GLUES: Final = {
     "+": Glue(" + ", OPERATOR, "{}+ ", OPERATOR),
     "-": Glue(" - ", OPERATOR, "{}- ", OPERATOR),
-    "/": _SLASH,
+    "/": Glue("/", SLASH, "{}/ ", SLASH),
 }
 _TIMES: Final = r"{}\times "
 _DOT: Final = r"{}\cdot "
@@ -177,13 +175,8 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     """
     # What has no room in the first line may then stand in no other, and so need not leave it empty.
     filler = _Filler(writer, first, min(first, others))
-    filler.place(_NOTHING, Edge(), expression, as_is, Edge(), 0)
-    return filler.finish()
-
-
-def as_is(piece: Written) -> Written:
-    """Return a piece that stands alone."""
-    return piece
+    filler.place(Glue(), Edge(), expression, lambda piece: piece, Edge(), 0)
+    return [*filler.lines, "".join(filler.parts)]
 
 
 class _Filler:
@@ -192,13 +185,9 @@ class _Filler:
     def __init__(self, writer: Writer, first: float, others: float) -> None:
         self._writer = writer
         self._others = others
-        self._lines: list[str] = []
-        self._parts: list[str] = []
+        self.lines: list[str] = []
+        self.parts: list[str] = []  # of the line that is being filled
         self._room = first
-
-    def finish(self) -> list[str]:
-        """Return the lines."""
-        return [*self._lines, "".join(self._parts)]
 
     def place(
         self,
@@ -231,20 +220,15 @@ class _Filler:
 
     def _append(self, glue: Glue, latex: str, width: float) -> bool:
         """Set something unbroken if this line or the next has room for it."""
-        if self._parts and glue.width + width <= self._room:
-            self._parts.append(f"{glue.latex}{latex}")
-            self._room -= glue.width + width
-            return True
-        if not self._parts and not self._lines and width <= self._room:
-            self._parts.append(latex)
-            self._room -= width
-            return True
-        if glue.start_width + width <= self._rest(glue.depth):
+        if self.parts and glue.width + width <= self._room:
+            latex, width = f"{glue.latex}{latex}", glue.width + width
+        elif self.parts or self.lines or width > self._room:
+            if glue.start_width + width > self._rest(glue.depth):
+                return False
             self._start(glue)
-            self._parts.append(latex)
-            self._room -= width
-            return True
-        return False
+        self.parts.append(latex)
+        self._room -= width
+        return True
 
     def _force(self, glue: Glue, latex: str, width: float) -> None:
         """Set something that cannot be broken, on a line of its own and less far in if it must be."""
@@ -252,16 +236,16 @@ class _Filler:
             glue = glue._replace(depth=glue.depth - 1)
         if not self._append(glue, latex, width):
             self._start(glue)
-            self._parts.append(latex)
+            self.parts.append(latex)
             self._room -= width
 
     def _rest(self, depth: int) -> float:
         return self._others - QUAD * min(depth, DEEPEST_INDENT)
 
     def _start(self, glue: Glue) -> None:
-        if self._parts:
-            self._lines.append("".join(self._parts))
-        self._parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
+        if self.parts:
+            self.lines.append("".join(self.parts))
+        self.parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
         self._room = self._rest(glue.depth) - glue.start_width
 
     def _split(
@@ -273,17 +257,25 @@ class _Filler:
             case Product():
                 self._split_product(glue, left, [p.node for p in parts_of(node)], right, depth, hang)
             case Power(base=base, exponent=exponent):
-                raised = self._raised(exponent)
+                piece = self._writer.exponent(exponent)
+                raised = Edge(f"^{{{piece.markup}}}", piece.size.script + SCRIPT_SPACE.text)
+                raised = Edge("^{1/2}", _SQUARE_ROOT) if is_half(exponent) else raised
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
                 self.place(glue, left, base, self._writer.as_base, after, depth)
+            case Call(name="sqrt", argument=argument):
+                after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
+                self.place(glue, left, argument, self._writer.fenced, after, depth)
             case Call(name=name, argument=argument):
-                self._split_call(glue, left, name, argument, right, depth)
-            case Number():
-                self._split_number(glue, left, node, right, depth)
+                head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
+                self.place(glue, head, argument, self._writer.fenced, right, depth)
+            case Number(value):
+                above, _, below = number_text(value).partition("/")
+                self._split_digits(glue, left, above, Edge() if below else right, depth)
+                if below:
+                    self._split_digits(_GLUES["/"]._replace(depth=depth), Edge(), below, right, depth)
             case _:
-                self._force(
-                    glue, f"{left.latex}{bare.markup}{right.latex}", left.width + bare.width + right.width
-                )
+                width = left.width + bare.width + right.width
+                self._force(glue, f"{left.latex}{bare.markup}{right.latex}", width)
 
     def _split_signed(
         self, glue: Glue, left: Edge, node: Expression, right: Edge, depth: int, hang: int
@@ -324,33 +316,8 @@ class _Filler:
                 between, gap = self._writer.between(pieces[index - 1], piece)
                 start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
                 sign, edge = Glue(between, gap.text, start, start_width, depth + hang), Edge()
-            inner = depth + hang if index else depth
-            self.place(
-                sign,
-                edge,
-                factor,
-                self._writer.as_factor,
-                right if index == len(factors) - 1 else Edge(),
-                inner,
-            )
-
-    def _split_call(
-        self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
-    ) -> None:
-        if name == "sqrt":
-            after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
-            self.place(glue, left, argument, self._writer.fenced, after, depth)
-            return
-        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
-        self.place(glue, head, argument, self._writer.fenced, right, depth)
-
-    def _split_number(self, glue: Glue, left: Edge, node: Number, right: Edge, depth: int) -> None:
-        above, _, below = number_text(node.value).partition("/")
-        if below:
-            self._split_digits(glue, left, above, Edge(), depth)
-            self._split_digits(_SLASH._replace(depth=depth), Edge(), below, right, depth)
-        else:
-            self._split_digits(glue, left, above, right, depth)
+            after = right if index == len(factors) - 1 else Edge()
+            self.place(sign, edge, factor, self._writer.as_factor, after, depth + hang * bool(index))
 
     def _split_digits(self, glue: Glue, left: Edge, text: str, right: Edge, depth: int) -> None:
         """Set a number too long for a line: its digits go on in the next."""
@@ -372,14 +339,8 @@ class _Filler:
             before = left if start == 0 else Edge()
             after = right if start + count >= len(text) else Edge()
             self._start(glue if start == 0 else Glue(depth=depth))
-            self._parts.append(f"{before.latex}{chunk}{after.latex}")
+            self.parts.append(f"{before.latex}{chunk}{after.latex}")
             self._room -= before.width + DIGIT * len(chunk) + after.width
-
-    def _raised(self, exponent: Expression) -> Edge:
-        if is_half(exponent):
-            return Edge("^{1/2}", _SQUARE_ROOT)
-        piece = self._writer.exponent(exponent)
-        return Edge(f"^{{{piece.markup}}}", piece.size.script + SCRIPT_SPACE.text)
 
     def _beside(self, pieces: Sequence[Written], *, leading: bool = False) -> Edge:
         """Return all pieces but the last, or the first, side by side as they stand next to it."""

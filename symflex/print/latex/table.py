@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 from typing import TYPE_CHECKING, Final
 
 from symflex.expressions.format import decimal_exponent
@@ -56,9 +57,10 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     widest = max(map(_value_width, model.settable), default=0.0)
     last = TabularColumn("l", ("Value",), (text_width("Value"),), values, widest)
     room = width_mm / EM_MM
-    if not any(p.doc for p in model.settable):
+    docs = [p.doc for p in model.settable]
+    if not any(docs):
         return tabular((first, last), fitting((first, last), room) or SETTINGS[-1])
-    texts = tuple(_cut(p.doc) for p in model.settable)
+    texts = [d if len(d) <= LONGEST_MEANING else f"{d[:LONGEST_MEANING]}\u2026" for d in docs]
     meanings = tuple(map(escape_text, texts))
     natural = TabularColumn(
         "l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts))
@@ -72,10 +74,7 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     # Without room beside each other, a value stands below its meaning.
     setting = SETTINGS[-1]
     left = room - setting.width((first, TabularColumn("p", ("",), (0.0,), (), 0.0)))
-    both = tuple(
-        rf"{meaning}\newline {value}" if meaning else value
-        for meaning, value in zip(meanings, values, strict=True)
-    )
+    both = tuple(rf"{m}\newline {v}" if m else v for m, v in zip(meanings, values, strict=True))
     below = TabularColumn("l", ("Meaning, value",), natural.head_widths, both, 0.0)
     heights = [1 + height for height in _heights(texts, left, setting)]
     return tabular((first, _wrapped(below, left)), setting, heights)
@@ -125,11 +124,9 @@ def mode_table(
             elif entry.root.multiplicity > modes[same[0]].root.multiplicity:
                 modes[same[0]] = entry
     modes.sort(key=lambda m: float(m.root.natural_frequency().mid()))
-    numbers, before = [], 0
-    for mode in modes:
-        # Rigid-body motions are number 0, as mode_shape() counts.
-        numbers.append("0" if mode.root.is_zero else str(before + 1))
-        before += 0 if mode.root.is_zero else mode.root.multiplicity
+    # Rigid-body motions are number 0, as mode_shape() counts.
+    before = accumulate((0 if m.root.is_zero else m.root.multiplicity for m in modes), initial=1)
+    numbers = ["0" if m.root.is_zero else str(n) for m, n in zip(modes, before, strict=False)]
     columns = columns_for(MODE_COLUMNS, [m.root for m in modes])
     return _table_of(modes, columns, digits, width_mm / EM_MM, ("Mode", numbers))
 
@@ -155,8 +152,7 @@ def _table_of(
             times = tuple(str(entry.root.multiplicity) for entry in entries)
             head = ("Multi-", "plicity")
             columns.append(TabularColumn("r", head, tuple(map(text_width, head)), times, 1.0))
-        setting = fitting(columns, room)
-        if setting is not None:
+        if (setting := fitting(columns, room)) is not None:
             break
     return tabular(columns, setting or SETTINGS[-1])
 
@@ -188,10 +184,6 @@ def decimal_text(value: ExactValue) -> str:
         whole = text[: leading + 1].ljust(leading + 1, "0")
         return f"{sign}{whole}{'.' if len(text) > leading + 1 else ''}{text[leading + 1 :]}"
     return f"{sign}{text[0]}{'.' if len(text) > 1 else ''}{text[1:]}e{leading}"
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= LONGEST_MEANING else f"{text[:LONGEST_MEANING]}\u2026"
 
 
 def _value(parameter: ModelParameter) -> str:
@@ -308,15 +300,12 @@ def number_column(
     """
     numbers = [cell for cell in cells if not cell.startswith("{")]
     signed = any(cell.startswith(("-", r"\pm")) for cell in numbers)
-    whole = places = exponent = 0
-    negative_exponent = False
-    for cell in numbers:
-        mantissa, _, power = cell.removeprefix(r"\pm ").removeprefix("-").partition("e")
-        before, _, after = mantissa.partition(".")
-        whole, places = max(whole, len(before)), max(places, len(after))
-        exponent = max(exponent, len(power.removeprefix("-")))
-        negative_exponent = negative_exponent or power.startswith("-")
-    whole = max(whole, 1)
+    parts = [cell.removeprefix(r"\pm ").removeprefix("-").partition("e") for cell in numbers]
+    mantissas = [mantissa.partition(".") for mantissa, _, _ in parts]
+    whole = max((len(before) for before, _, _ in mantissas), default=1)
+    places = max((len(after) for _, _, after in mantissas), default=0)
+    exponent = max((len(power.removeprefix("-")) for _, _, power in parts), default=0)
+    negative_exponent = any(power.startswith("-") for _, _, power in parts)
     power = f"e{'-' if negative_exponent else ''}{exponent}" if exponent else ""
     width = (MINUS if signed else 0) + DIGIT * whole + THIN * (whole // 4)
     width += _DOT + DIGIT * places if places else 0
