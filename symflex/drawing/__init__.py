@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
 from symflex.drawing.diagram import diagrams, loose_ends, statements
 from symflex.drawing.fields import FieldRow, field_rows
@@ -17,8 +16,9 @@ from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
 from symflex.drawing.joins import Join, joined
 from symflex.drawing.lettering import Labels, column_of, filled
+from symflex.drawing.order import abbreviated
 from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stacked
-from symflex.drawing.rows import lay_out, order_of
+from symflex.drawing.rows import lay_out
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph, whole
 from symflex.errors import Diagnostic, UsageError
@@ -114,7 +114,7 @@ def _network(network: DrawnNetwork, scheme: Scheme, model: Model, spacing: Spaci
         nodes = {n for p in others for n in p.nodes} | {m.node for m in marks}
         own = tuple(n for n in network.nodes if n in nodes)
         network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
-    shortened, gone = abbreviated(network, order_of(network, scheme.domains), scheme.domains)
+    shortened, gone = abbreviated(network, scheme.domains)
     yield lay_out(shortened, scheme.domains, spacing), gone
 
 

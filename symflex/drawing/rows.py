@@ -49,7 +49,7 @@ from symflex.drawing.columns import (
 )
 from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, free_level, union
 from symflex.drawing.lettering import text
-from symflex.drawing.order import ordered
+from symflex.drawing.order import order_of
 from symflex.drawing.scheme import Distance, Mark
 from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, guide, line, rectangle, wall
 from symflex.library.elements import CIRCUITS
@@ -94,27 +94,6 @@ def lay_out(
 ) -> tuple[Placed, ...]:
     """Return a network as a row, the axis of its columns at y = 0."""
     return tuple(_Layout(network, domains, spacing).items)
-
-
-def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the nodes of a network from left to right."""
-    pull = dict.fromkeys(network.nodes, 0.0)
-    for part in network.parts:
-        if len(part.ends) > 1 and any(not e.node for e in part.ends):
-            for node in part.nodes:
-                pull[node] -= 0.7
-        for node in part.nodes[:1]:
-            pull[node] -= {"source": 0.6, "support": 0.1}.get(part.symbol.role, 0.0)
-    for mark in network.marks:
-        kinds = {kind for kind, *_ in mark.labels}
-        moved = mark.style in ("motion", "raise", "twist")
-        pull[mark.node] += (-2.0 if moved else -0.4) if "input" in kinds else 0.15
-    joints = [pair for p in network.parts for pair in pairwise(p.nodes)]
-    directed = {pair for p in network.parts if p.symbol.role == "member" for pair in pairwise(p.nodes)}
-    lanes = {n: domains[n] for n in network.nodes}
-    found = ordered(network.nodes, joints, pull, lanes, directed)
-    wanted = iter(network.order)
-    return tuple(next(wanted) if n in network.order else n for n in found)
 
 
 @dataclass

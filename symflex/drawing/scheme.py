@@ -17,16 +17,15 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.drawing.signals import whole
 from symflex.drawing.symbols import (
+    FORCE_BETWEEN,
+    MOTION_BETWEEN,
     SYMBOLS,
+    TORQUE_BETWEEN,
     TRANSFORMER_SYMBOLS,
     TRANSFORMERS,
     ElementSymbol,
     box,
-    effort_between,
-    motion_between,
-    symbol_of,
     tapered,
-    torque_between,
 )
 from symflex.expressions import (
     Attribute,
@@ -263,7 +262,7 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     by_port = dict(use.domains)
     ends = tuple(_end(r, by_port[port], domains) for port, found in use.nodes for r in found)
     kind = use.element.type_name
-    symbol = symbol_of(kind)
+    symbol = SYMBOLS.get(kind, ElementSymbol("coupling"))  # a plain box for one that has none
     if kind == "transformer":
         first = [_end(found[0], by_port[port], domains) for port, found in use.nodes]
         pair = (first[0].domain, first[1].domain)
@@ -406,15 +405,12 @@ def _input_part(one: Input, labels: Labels) -> DrawnPart:
     law = INPUT_KINDS[one.kind]
     ends = tuple(End("" if r.is_ground else r.node, law.domain, r.component) for r in one.nodes)
     ends = ends if len(ends) > 1 else (*ends, End(GROUND, law.domain))
-    if one.kind == "voltage":
-        symbol = SYMBOLS["voltage_source"]
-    elif one.kind == "current":
-        symbol = SYMBOLS["current_source"]
+    if one.kind in ("voltage", "current"):
+        symbol = SYMBOLS[f"{one.kind}_source"]
     elif law.is_imposed:
-        symbol = ElementSymbol("branch", motion_between, 26.0)
+        symbol = MOTION_BETWEEN
     else:
-        draw = torque_between if law.domain == "rotation" else effort_between
-        symbol = ElementSymbol("branch", draw, 30.0)
+        symbol = TORQUE_BETWEEN if law.domain == "rotation" else FORCE_BETWEEN
     return DrawnPart("input", one.name, one.kind, symbol, ends, labels.end(one.name, one.latex))
 
 
