@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.drawing.cells import SPACINGS
 from symflex.drawing.diagram import diagrams, loose_ends, statements
 from symflex.drawing.fields import FieldRow, field_rows
-from symflex.drawing.frames import frame_plan, is_planar, name_of
+from symflex.drawing.frames import frame_plan, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
 from symflex.drawing.joins import Join, joined
 from symflex.drawing.lettering import Labels, column_of, filled
@@ -101,7 +101,7 @@ def drawing_of(
 
 def _network(network: DrawnNetwork, scheme: Scheme, model: Model, spacing: Spacing) -> Iterator[_Row]:
     """Yield a frame in its plane, and the row of what is no frame with the elements it leaves out."""
-    plan = frame_plan(network, model) if is_planar(network) else None
+    plan = frame_plan(network, model)
     if plan is not None:
         items, others = plan
         yield items, ()

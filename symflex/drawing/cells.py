@@ -15,7 +15,7 @@ from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, 
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.drawing.geometry import Stroke
     from symflex.drawing.scheme import DrawnPart, End
@@ -105,6 +105,12 @@ class SymbolCell:
     def is_member(self) -> bool:
         """Whether it reaches from body to body."""
         return self.part.symbol.role == "member"
+
+    def attached(self) -> Iterator[tuple[End, float, int]]:
+        """Yield ends at nodes, how far above the axis they are, and on which side of the node it stands."""
+        for side, sign in ((self.left, 1), (self.right, -1)):
+            pairs = zip(side, self.offsets(side), strict=True)
+            yield from ((end, offset, sign) for end, offset in pairs if end.node)
 
 
 @dataclass(frozen=True, slots=True)
