@@ -10,7 +10,7 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import SPACINGS
-from symflex.drawing.diagram import diagrams, loose_ends, statements
+from symflex.drawing.diagram import diagrams, statements
 from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
@@ -76,7 +76,8 @@ def drawing_of(
         usual = sorted(COLUMNS_MM.values())
         rooms = [w / MM_PER_INCH * POINTS - 2 * MARGIN for w in usual]
         bands = cache(partial(diagrams, content.graph))  # by how wide they may be
-        ends = [loose_ends(bands(room)) for room in (*rooms, 1e9)]
+        # How many names stand for wires: more than need be where a loop goes on below its beginning.
+        ends = [sum(i.kind == "tag" for band in bands(room) for i in band) for room in (*rooms, 1e9)]
         if ends[0] > ends[-1] >= ends[1]:
             usual = usual[1:]  # a loop is closed there
         networks = cache(partial(_networks, content))  # by their spacing

@@ -9,12 +9,12 @@ until it touches nothing that is drawn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 from math import acos, cos, dist, hypot, pi, sin, tan
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import coordinate, label_texts, tags_of
+from symflex.drawing.cells import coordinate, label_of, tags_of
 from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
 from symflex.drawing.geometry import BLACK, BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
@@ -189,21 +189,20 @@ class _Plan:
         for node in dict.fromkeys(p.nodes[0] for p in bodies):
             own = [p for p in bodies if p.nodes[0] == node]
             written = [r",\,".join(one for one in (p.label, p.centre[0]) if one) for p in own]
-            texts = [label_texts(one, p.name, p.lines) for one, p in zip(written, own, strict=True)]
-            blocks = [union(t.box for t in block) for block in texts]
+            labels = [label_of(replace(p, label=one)) for one, p in zip(written, own, strict=True)]
+            blocks = [label.box for label in labels]
             wide = max(14.0, *(b.width + 6 for b in blocks))
             wheels = [p.type_name == "inertia" for p in own]
             heights = [wide if w else max(13.0, b.height + 6) for w, b in zip(wheels, blocks, strict=True)]
             x, y = self.at[node]
             top = y + sum(heights) / 2
             self.radius[node] = (wide / 2, sum(heights) / 2)
-            for part, block, box, height in zip(own, texts, blocks, heights, strict=True):
+            for part, label, height in zip(own, labels, heights, strict=True):
                 shape = rectangle(x - wide / 2, top - height, x + wide / 2, top, FILLED)
                 if part.type_name == "inertia":
                     shape = circle(x, top - height / 2, wide / 2, FILLED)
                 self._add(Placed(part.kind, part.name, (shape,)))
-                middle = top - height / 2 - (box.y0 + box.y1) / 2
-                self._add(Placed("label", part.name, (), tuple(t.moved(x, middle) for t in block)))
+                self._add(label.moved(x, top - height / 2 - label.box.centre[1]))
                 top -= height
 
     def _meeting(self, place: Point) -> int:
@@ -372,8 +371,7 @@ class _Plan:
 
     def _finish(self, part: DrawnPart, symbol: Placed) -> None:
         """Write what belongs to a symbol beside it."""
-        texts = label_texts(part.label, part.name, part.lines)
-        self._near([Placed("label", part.name, (), texts)], symbol.box)
+        self._near([label_of(part)], symbol.box)
         self._tags(part, part.nodes[0])
 
     def _draw_mark(self, mark: Mark) -> None:
@@ -430,16 +428,12 @@ class _Plan:
                 marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
                 options.append([marker, Placed("label", name, (), (place,))])
             self._add(*next(filter(self._is_free, options), options[-1]))
-        texts = label_texts(part.label, part.name, part.lines)
-        block = union(t.box for t in texts)
-        centre, near = block.centre, _reach(block, n) + HALF + 2.5
-        moves = [
-            tuple(a[i] + share * size * d[i] + sign * n[i] * (near + more) - centre[i] for i in (0, 1))
-            for more in (0.0, 6.0, 14.0, 26.0, 40.0)
-            for share in (0.5, 0.38, 0.62, 0.25, 0.75)
-            for sign in (1.0, -1.0)
-        ]
-        own = Placed("label", part.name, (), texts)
+        own = label_of(part)
+        (x, y), near = own.box.centre, _reach(own.box, n) + HALF + 2.5
+        tried = product((0.0, 6.0, 14.0, 26.0, 40.0), (0.5, 0.38, 0.62, 0.25, 0.75), (1.0, -1.0))
+        places = ((share * size, sign * (near + more)) for more, share, sign in tried)
+        moves = ((a[0] + u * d[0] + v * n[0], a[1] + u * d[1] + v * n[1]) for u, v in places)
+        own = own.moved(-x, -y)
         self._add(own.moved(*self._first_free([own], moves)))
         for one in tags_of(part):
             self._near(one.placed, _about((a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), 4.0, 4.0))

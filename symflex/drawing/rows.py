@@ -25,7 +25,7 @@ from symflex.drawing.cells import (
     SymbolCell,
     build,
     coordinate,
-    label_texts,
+    label_of,
     strokes_of,
 )
 from symflex.drawing.columns import (
@@ -540,15 +540,15 @@ class _Layout:
         found = []
         for span in sorted(self.spans, key=lambda s: not s.is_length):
             ends = (self._end_of(span, 0), self._end_of(span, 1))
-            texts = label_texts(span.label, span.name, span.lines)
-            shown = union(t.box for t in texts)
+            label = label_of(span)
+            shown = label.box
             left, right = sorted(x for x, _ in ends)
             more = max(0.0, shown.width + 4 - (right - left)) / 2 + (0.0 if span.is_length else 1.0)
             room = Extent(left - more, -3.0, right + more, 5.0 + shown.height)
             y = self._free(room, max(y for _, y in ends) + 4, is_up=True)
-            found.append((span, ends, texts, shown, room, y))
+            found.append((span, ends, label, room, y))
         level = max((y for span, *_, y in found if span.is_length), default=0.0)
-        for span, ends, texts, shown, room, free in found:
+        for span, ends, label, room, free in found:
             y = self._free(room, (level if span.is_length else free) - 3.0, is_up=True)
             for node, (x, top) in zip(span.nodes, ends, strict=True):
                 foot = (self._column(node).x if node else x, top)
@@ -561,9 +561,8 @@ class _Layout:
             # Leads go up between them.
             between = sorted(c.lead_x for c in self.columns if low <= c.lead_x <= high)
             widest = max(pairwise(between), key=lambda pair: pair[1] - pair[0], default=(low, high))
-            start, end = widest if widest[1] - widest[0] > shown.width + 2 else (low, high)
-            place = ((start + end) / 2, y + 3 - shown.y0)
-            self._add(Placed("label", span.name, (), tuple(t.moved(*place) for t in texts)))
+            start, end = widest if widest[1] - widest[0] > label.box.width + 2 else (low, high)
+            self._add(label.moved((start + end) / 2, y + 3 - label.box.y0))
 
 
 def _wire_width(cell: SymbolCell, end: End) -> float:

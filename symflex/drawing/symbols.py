@@ -137,11 +137,11 @@ def _stroke(kind: str, written: Sequence[str], length: float) -> Strokes:
         case "shape" | "solid":
             return (outline(*points, fill=FILLED if kind == "solid" else PAPER),)
         case "disc":
-            return (circle(*points[0], *numbers),)
+            return (circle(*points[0], numbers[0]),)
         case "dot":
-            return (circle(*points[0], *numbers, fill=BLACK, width=0.3),)
+            return (circle(*points[0], numbers[0], fill=BLACK, width=0.3),)
         case "turn":
-            return (arc(*points[0], *numbers, width=THIN),)
+            return (arc(*points[0], numbers[0], numbers[1], numbers[2], THIN),)
         case "head":
             return (head(points[0], (numbers[0], numbers[1]), numbers[2]),)
         case "arrow" | "push" | "span":
