@@ -232,10 +232,10 @@ class _Row:
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
         calls = [n for n in names(expression) if isinstance(n, Call) and n.name in self.unknowns]
-        constants = {*(one.name for one in (*self.model.parameters, *self.model.definitions)), "s", "pi"}
+        constants = {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions}
         inside = {n for c in calls for n in names(c.argument)}
         others = [n for n in names(expression) if n not in calls and n not in inside]
-        is_alone = all(isinstance(n, Name) and n.name in constants for n in others)
+        is_alone = all(isinstance(n, Name) and n.name in {*constants, "s", "pi"} for n in others)
         is_one = len(calls) == 1 and is_alone and not isinstance(without_s(expression), Attribute)
         return calls[0] if is_one else None
 

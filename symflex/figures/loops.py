@@ -107,7 +107,12 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     width = canvas.width or COLUMN_INCHES
     lines = title_lines(canvas.title, width)
     stages = _stages(locus)
-    said = _said_of_stability(locus.gain, stages)
+    name = label_of_name(locus.gain)
+    # What each gain makes of stability, then what no gain moves and nothing sees.
+    verdicts = [stage.found.verdict for stage in stages]
+    heads = [replace(verdict, hidden="").headline for verdict in verdicts]
+    said = [f"${name} = {stage.gain}$, {head}" for stage, head in zip(stages, heads, strict=True)]
+    said += dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden)
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + 1))
     marks = [
         *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
@@ -119,7 +124,6 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     seen = float(np.max(np.abs([view.re, view.im])))
     axes.axvspan(0, max(view.re[1], 0.0), color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
     draw_zero_lines(axes)
-    name = label_of_name(locus.gain)
     labels: dict[Kind, str] = {stage.kind: f"poles, ${name} = {stage.gain}$" for stage in stages}
     for kind, label in {**labels, ZERO: "zeros"}.items():
         points = [mark.s for mark in marks if mark.kind == kind]
@@ -129,17 +133,15 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         if inside or (points and kind != ZERO):
             told = f"{label} ({outside if inside else 'all'} outside)" if outside else label
             draw_points(axes, inside, LOOKS[kind], told)
-    kinds = (
-        (locus.branches, "-", None),
+    for branches, line, told_of in (
+        (locus.branches, "-", ""),
         (locus.entering, "--", "from poles not marked"),
-    )
-    for branches, line, told_of in kinds:
+    ):
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
-            axes.plot(
-                s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=None if i else told_of
-            )
+            entry = told_of if told_of and not i else None
+            axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=entry)
     _draw_holes(axes, locus)
     label_s_plane(axes)
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
@@ -175,24 +177,11 @@ class Stage:
 def _stages(locus: RootLocus) -> list[Stage]:
     """Return the gains whose poles are marked, ascending."""
     low, high = locus.limits
-    found: list[tuple[Kind, Fraction, PoleZeroMap, Sequence[complex]]] = [
-        ("pole", low, locus.start, [point_of(root) for root in locus.start.all_poles])
-    ]
-    if locus.nominal is not None:
-        gain, poles = locus.nominal
-        found.append(("nominal", gain, poles, [point_of(root) for root in poles.all_poles]))
-    found.append(("last", high, locus.end, locus.ends))
+    proved: list[tuple[Kind, Fraction, PoleZeroMap]] = [("pole", low, locus.start)]
+    proved += [("nominal", *locus.nominal)] if locus.nominal else []
+    found = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
+    found.append(("last", high, locus.end, list(locus.ends)))
     return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in found]
-
-
-def _said_of_stability(gain: str, stages: Sequence[Stage]) -> list[str]:
-    """Return what each gain makes of stability, then what no gain moves and nothing sees."""
-    verdicts = [stage.found.verdict for stage in stages]
-    said = [
-        f"${label_of_name(gain)} = {stage.gain}$, {replace(verdict, hidden='').headline}"
-        for stage, verdict in zip(stages, verdicts, strict=True)
-    ]
-    return said + list(dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden))
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
@@ -200,15 +189,13 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
     high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
     view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
     size = max(map(abs, view.shown), default=0.0)
-    curves = (s for branch in locus.branches for s in branch if abs(s) <= CURVE_REACH * size)
+    curves = [ROOM * s for branch in locus.branches for s in branch if abs(s) <= CURVE_REACH * size]
     reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
-    re, im = view.re, (min(view.im[0], -reach), max(view.im[1], reach))
-    for s in curves:
-        re = min(re[0], ROOM * s.real), max(re[1], ROOM * s.real)
-        im = min(im[0], ROOM * s.imag), max(im[1], ROOM * s.imag)
-    return View(
-        canvas.frame.x or re, canvas.frame.y or im, view.shown if canvas.frame == FREE else frozenset()
-    )
+    across, upwards = [s.real for s in curves], [s.imag for s in curves]
+    re = min([view.re[0], *across]), max([view.re[1], *across])
+    im = min([view.im[0], -reach, *upwards]), max([view.im[1], reach, *upwards])
+    shown = view.shown if canvas.frame == FREE else frozenset[complex]()
+    return View(canvas.frame.x or re, canvas.frame.y or im, shown)
 
 
 def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
@@ -231,13 +218,11 @@ def _is_seen(axes: Axes, s: complex) -> bool:
 def _draw_holes(axes: Axes, locus: RootLocus) -> None:
     """Draw what was not searched, as poles accumulate there."""
     holes = {(hole.re, side * hole.im, hole.radius) for hole in locus.end.excluded for side in (1, -1)}
-    label = "poles accumulate"
-    for re, im, radius in sorted(holes):
-        if _is_seen(axes, complex(re, im)):
-            axes.add_patch(
-                Circle((re, im), radius, fill=False, edgecolor=QUIET, linewidth=0.8, zorder=1.5, label=label)
-            )
-            label = ""
+    shown = [hole for hole in sorted(holes) if _is_seen(axes, complex(*hole[:2]))]
+    for i, (re, im, radius) in enumerate(shown):
+        ring = Circle((re, im), radius, fill=False, edgecolor=QUIET, linewidth=0.8, zorder=1.5)
+        ring.set_label("" if i else "poles accumulate")
+        axes.add_patch(ring)
 
 
 Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
@@ -376,9 +361,8 @@ def _sentence_of_poles(verdicts: Sequence[StabilityVerdict], *, is_loop: bool) -
 def _columns(labels: Sequence[str], width: float) -> int:
     """Return how many columns of a legend have room in a width [inches]."""
     points = max(size_of_text(label, FontProperties(size=LEGEND_POINTS))[0] for label in labels)
-    return max(
-        1, min(len(labels), 3, int((POINTS_PER_INCH * width - LEGEND_POINTS) / (points + LINE_POINTS)))
-    )
+    fitting = int((POINTS_PER_INCH * width - LEGEND_POINTS) / (points + LINE_POINTS))
+    return max(1, min(len(labels), 3, fitting))
 
 
 def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]:
@@ -400,16 +384,14 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     if band is None:
         judged = roots_if_found(bound)
         low, high = default_band(judged)
-        low, high = low / WIDENED, high * WIDENED
-    else:
-        low, high = band
+        band = low / WIDENED, high * WIDENED
+    low, high = band
     found = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and not bound.is_distributed:
         values = np.concatenate((values, _onwards(bound, high)))
-    finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
-    return finite, found.verdict
+    return values[np.isfinite(values)], found.verdict
 
 
 def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
@@ -437,9 +419,9 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) ->
     """Draw an arrow halfway along the part of a curve that is shown."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     half_width, half_height = (right - left) / 2, (high - low) / 2
-    aside = np.abs(values.real - (left + right) / 2) / half_width
-    aside = np.maximum(aside, np.abs(values.imag - (low + high) / 2) / half_height)
-    shown = np.flatnonzero(aside < WITHIN)
+    across = np.abs(values.real - (left + right) / 2) / half_width
+    upwards = np.abs(values.imag - (low + high) / 2) / half_height
+    shown = np.flatnonzero(np.maximum(across, upwards) < WITHIN)
     steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004 (two steps at least)
     if not steps.size or not float(steps.sum()) > 0:
         return
@@ -448,9 +430,5 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) ->
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
     b = a + SHAFT * min(half_width, half_height) * step / abs(step)
-    axes.annotate(
-        "",
-        (b.real, b.imag),
-        (a.real, a.imag),
-        arrowprops={"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour},
-    )
+    look = {"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour}
+    axes.annotate("", (b.real, b.imag), (a.real, a.imag), arrowprops=look)
