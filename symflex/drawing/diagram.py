@@ -45,8 +45,6 @@ WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 """Of a formula that is written out below the diagrams, and the space after it [points]."""
 MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one, from a start."""
-MANY_STARTS: Final = 20
-"""More share the paths of so many."""
 NAMED: Final = ("input", "reading", "signal")
 BOXES: Final = ("gain", "block")
 
@@ -129,7 +127,7 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
     best_rank = (0, 0)
     # From anywhere else no path is better than one from an input, so that these are tried only without one.
     starts = [i for i in starts if graph.nodes[i].kind == "input"] or starts
-    shared = MANY_STARTS * MOST_PATHS // max(len(starts), 1)
+    shared = 20 * MOST_PATHS // max(len(starts), 1)
     most = min(MOST_PATHS, max(shared, len(graph.nodes) + 1))  # so that each reaches the end of one path
     for start in starts:
         pending, tries = [[start]], 0

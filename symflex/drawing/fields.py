@@ -60,8 +60,6 @@ SHORTEST: Final = 0.22
 LEADING: Final = 3.0
 APART: Final = 14.0
 """Least distance of two columns of conditions [points]."""
-PUSHING: Final = ("push", "torque", "raise", "twist")
-"""Marks of inputs, which stand before those of outputs."""
 OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
 """What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
 BENDING: Final = 4
@@ -266,7 +264,8 @@ class _Row:
         """Draw arrows above the member, side by side or above each other; return how high they reach."""
         occupied = [i.box for i in self.items if i.kind == "ground" and i.box.y1 > HALF]
         places: dict[float, list[Mark]] = {}
-        found = sorted(self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in PUSHING))
+        inputs = ("push", "torque", "raise", "twist")  # which stand before outputs
+        found = sorted(self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in inputs))
         for (style, x), labels in found:
             places.setdefault(x, []).append(Mark(style, "", tuple(labels)))
         for x, marks in places.items():

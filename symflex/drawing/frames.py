@@ -36,9 +36,6 @@ LONGEST: Final = 500.0
 """Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
-SPIRAL: Final = 7.0
-"""From the inner to the outer end of a spiral spring [points]."""
-SPIRAL_TURNS, SPIRAL_POINTS = 1.75, 48
 CLAMP: Final = 8.0
 """Half the width of a wall that holds a member [points]."""
 SHARP: Final = pi / 3
@@ -357,8 +354,8 @@ class _Plan:
         sizes = (max(size) for n, size in self.radius.items() if self.at[n] == (x, y) and not is_apart)
         inner = max(sizes, default=JOINT)
         dx, dy = self._free_directions(node)[-1 if len(part.nodes) > 1 else 1]
-        steps = (i / SPIRAL_POINTS for i in range(SPIRAL_POINTS + 1))
-        polar = [(inner + CLEAR + SPIRAL * share, 2 * pi * SPIRAL_TURNS * (share - 1)) for share in steps]
+        steps = (i / 48 for i in range(48 + 1))
+        polar = [(inner + CLEAR + 7.0 * share, 2 * pi * 1.75 * (share - 1)) for share in steps]
         spiral = line(*((r * cos(a), r * sin(a)) for r, a in polar))
         items = [Placed(part.kind, part.name, (spiral,))]
         if len(part.nodes) == 1:

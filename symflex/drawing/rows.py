@@ -59,7 +59,6 @@ if TYPE_CHECKING:
     from symflex.drawing.geometry import Point
     from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
-EMPTY_GAP: Final = 14.0
 SIDE_ARROW: Final = 20.0
 FACE: Final = 9.0
 """Room of a wall or a guide beside a node."""
@@ -67,8 +66,6 @@ MARK: Final = 17.0
 """Height of what stands upright at a node."""
 WIDEST_LENGTH: Final = 34.0
 """Of a length that a dimension shows; a longer one stands in the label of its member [points]."""
-BLADE: Final = 2.2
-"""Width of a lead to a member."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,7 +283,7 @@ class _Layout:
             before = self.columns[g - 1] if g else None
             after = self.columns[g] if g < len(self.columns) else None
             if before and after:
-                width = max(width, 0.0 if levels else EMPTY_GAP)
+                width = max(width, 0.0 if levels else 14.0)
                 if self.spacing.has_room:
                     wide = max([0.0, *(flat_width(m) for m in before.marks if m not in before.upright)])
                     width = max(width, wide - before.right - after.left)
@@ -567,5 +564,5 @@ class _Layout:
 
 def _wire_width(cell: SymbolCell, end: End) -> float:
     if cell.is_member and cell.part.type_name != "string":
-        return BLADE
+        return 2.2
     return BOLD if end.domain == "rotation" else LINE

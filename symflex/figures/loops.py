@@ -75,10 +75,6 @@ if TYPE_CHECKING:
 
 HEIGHT_INCHES: Final = 3.3
 ROOM: Final = 1.12
-ZERO_REACH: Final = 2.0
-"""Zeros are shown up to so many times the largest pole shown."""
-CURVE_REACH: Final = 1.6
-"""Curves are shown up to so many times the largest root shown."""
 ZERO: Final = "zero"
 LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
     "pole": ("x", COLOURS[1], 5),
@@ -88,8 +84,6 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
 }
 """Shape, colour and size of marks."""
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
-LEGEND_LETTERS: Final = 18.0
-"""So many letters of three labels have room in a line, per inch."""
 CLOSE: Final = 0.3
 """Narrowest width shown, over the height."""
 
@@ -148,7 +142,7 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     legend = canvas.legend(
         axes,
         title="\n".join(said),
-        ncols=3 if letters <= LEGEND_LETTERS * width else 2,
+        ncols=3 if letters <= 18 * width else 2,  # letters of three labels in a line, per inch
         frameon=False,
         handletextpad=0.2,
         columnspacing=1.0,
@@ -189,7 +183,7 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
     high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
     view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
     size = max(map(abs, view.shown), default=0.0)
-    curves = [ROOM * s for branch in locus.branches for s in branch if abs(s) <= CURVE_REACH * size]
+    curves = [ROOM * s for branch in locus.branches for s in branch if abs(s) <= 1.6 * size]
     reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
     across, upwards = [s.real for s in curves], [s.imag for s in curves]
     re = min([view.re[0], *across]), max([view.re[1], *across])
@@ -199,7 +193,7 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
 
 
 def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
-    """Return the poles that no gap parts from the smallest ones, and others not much further out.
+    """Return the poles that no gap parts from the smallest ones, and zeros up to twice as far out.
 
     Where these are the smaller part of all, those behind the gap are shown as well.
     """
@@ -207,7 +201,7 @@ def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
     radius = first_run(poles) or first_run(abs(m.s) for m in marks if m.s)
     while 2 * sum(size > radius for size in poles) > len(poles):
         radius = first_run(size for size in poles if size > radius)
-    return {m.s for m in marks if abs(m.s) <= radius * (ZERO_REACH if m.kind == ZERO else 1.0)}
+    return {m.s for m in marks if abs(m.s) <= radius * (2.0 if m.kind == ZERO else 1.0)}
 
 
 def _is_seen(axes: Axes, s: complex) -> bool:
@@ -233,23 +227,11 @@ REACHES: Final = (1.5, 2.5)
 """Half the side of the square shown of a loop gain, about -1."""
 OBLONG: Final = 4.0
 """Limits asked for whose ratio exceeds this have a scale each."""
-TICK_PAD: Final = 4.5
-"""Between the numbers of ticks and the frame [points]."""
-ALMOST: Final = 0.01
-"""Of its size at the end of a band, where a curve has reached the origin to the eye."""
-FARTHEST_DECADES: Final = 1e4
-"""Times the end of the band up to which a curve may go on."""
-ONWARDS: Final = 60
-"""Values on the way, which is nearly straight."""
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
 """Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
-QUANTILE: Final = 0.9
-"""Share of the values of a function that is not a loop gain for which the square is made."""
 WITHIN: Final = 0.9
 """An arrow stands in so much of what is shown."""
-SHAFT: Final = 0.01
-"""Length of an arrow without its head, in halves of the square."""
 
 
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -313,7 +295,7 @@ def _draw_curves(
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
         _point_along(axes, values, colour)
     set_round_ticks(axes, 5, 5)
-    axes.tick_params(pad=TICK_PAD)  # ends of a square may have ticks next to their corner
+    axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
     # A title of the figure would stand over a legend outside of the axes.
@@ -372,9 +354,9 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
     """
     last = abs(bound(2j * pi * high))
     frequency = high
-    while frequency < FARTHEST_DECADES * high and abs(bound(2j * pi * frequency)) > ALMOST * last:
+    while frequency < 1e4 * high and abs(bound(2j * pi * frequency)) > 0.01 * last:
         frequency *= 10.0
-    steps = np.geomspace(high, frequency, ONWARDS)[1:] if frequency > high else np.array([])
+    steps = np.geomspace(high, frequency, 60)[1:] if frequency > high else np.array([])  # nearly straight
     return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
 
 
@@ -408,11 +390,11 @@ def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
-    """Return half the side of a square that shows -1, and most of a curve that is not a loop gain."""
+    """Return half the side of a square that shows -1, and 90 % of a curve that is not a loop gain."""
     largest = float(np.max(np.abs(values))) if values.size else 1.0
     if is_loop:
         return min(max(1.1 * largest, REACHES[0]), REACHES[1])
-    return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
+    return 1.1 * float(np.quantile(np.abs(values), 0.9)) or 1.0
 
 
 def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) -> None:
@@ -429,6 +411,6 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) ->
     i = int(shown[min(middle, shown.size - 2)])
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
-    b = a + SHAFT * min(half_width, half_height) * step / abs(step)
+    b = a + 0.01 * min(half_width, half_height) * step / abs(step)
     look = {"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour}
     axes.annotate("", (b.real, b.imag), (a.real, a.imag), arrowprops=look)

@@ -37,15 +37,11 @@ MARGIN: Final = 0.2
 """Room around the roots shown, over their size."""
 MARGIN_FOR_NOTES: Final = 0.5
 """The same at a side where notes name the roots outside."""
-LEFT_SHARE: Final = 0.65
-"""Of room that is to be added, how much goes to the left, where stable poles lie."""
 RIM: Final = (0.95, 1.03)
 """A root so near the frame, relative to its distance from the origin, would be cut by it."""
 WIDER: Final = 1.085
 WIDENINGS: Final = 8
 """Times the view may be widened so that no root is cut by its frame."""
-SAME_DIRECTION: Final = pi / 30
-"""Roots outside within six degrees share an arrow."""
 PLAIN_LIMIT: Final = 1e5
 ROUNDING: Final = 1e-12
 """Of a root's size: what four operations in doubles may leave, with room."""
@@ -159,7 +155,7 @@ def choose_view(
     right = max([0.0, *(s.real for s in shown)]) + beyond[1]
     missing = ratios[0] * 2 * half - (right - left)
     if missing > 0:
-        share = 0.5 if any(s.real > 0 for s in points) else LEFT_SHARE
+        share = 0.5 if any(s.real > 0 for s in points) else 0.65  # more to the left, where stable poles lie
         left, right = left - share * missing, right + (1 - share) * missing
     half = max(half, (right - left) / ratios[1] / 2)
     view = View((left, right), (-half, half), frozenset(shown))
@@ -172,11 +168,11 @@ def choose_view(
 
 
 def leaving(marks: Iterable[RootMark], view: View) -> list[list[RootMark]]:
-    """Return the roots outside the view in groups of about one direction, the nearest first."""
+    """Return the roots outside the view in groups within six degrees, the nearest first."""
     groups: list[list[RootMark]] = []
     for mark in sorted((m for m in marks if not view.shows(m)), key=lambda m: abs(m.s)):
         angle = phase(mark.s)
-        alike = (g for g in groups if isclose(angle, phase(g[0].s), abs_tol=SAME_DIRECTION))
+        alike = (g for g in groups if isclose(angle, phase(g[0].s), abs_tol=pi / 30))
         if not (group := next(alike, [])):
             groups.append(group)
         group.append(mark)
@@ -225,8 +221,6 @@ TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
 """To cover another text, to be shifted, smaller by a step, or far away weighs as much as so many roots."""
 GRID: Final = 3.0
 """Distance of places far from an arrow that are tried where nothing near is free [points]."""
-DIGIT_POINTS: Final = 7.5
-"""Height of the box of a number."""
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Of roots that are named at an arrow; to poles at the last gain of a locus its curves lead."""
 
@@ -386,7 +380,7 @@ class _Notes:
     def number(self, mark: RootMark) -> None:
         """Write a multiplicity beside its mark, at a corner where it covers nothing if there is one."""
         x, y = self.panel.at(mark.s)
-        wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), DIGIT_POINTS
+        wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), NOTE_LINE_POINTS
         others = replace(self.panel, roots=tuple(s for s in self.panel.roots if s != mark.s))
         boxes = [
             (x + dx, y + dy, x + dx + wide, y + dy + high)

@@ -56,9 +56,6 @@ if TYPE_CHECKING:
     Family = tuple[Labelled, int]  # the parameter that lines run along, and its axis
 
 PANEL_INCHES: Final = 2.1
-MAP: Final = "viridis"
-MAP_END: Final = 0.92
-"""The yellow at the end of the map is too pale for a line."""
 DECADES: Final = 15.0
 """Values that span more than this factor stand on a logarithmic axis."""
 BAND: Final = (5, 95)
@@ -266,8 +263,8 @@ def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
     low, high = float(np.min(values)), float(np.max(values))
     is_log = _spans_decades(values) and not _is_evenly_spaced(values)
     norm = LogNorm(low, high) if is_log else Normalize(low, high)
-    whole = colormaps[MAP]
-    return norm, ListedColormap([whole(x) for x in np.linspace(0, MAP_END, 256)])
+    # The yellow at the end of the map is too pale for a line.
+    return norm, ListedColormap([colormaps["viridis"](x) for x in np.linspace(0, 0.92, 256)])
 
 
 def _loci(sweep: Sweep, modes: int | None, line: Labelled | None, axes: Axes) -> None:
