@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
-from symflex.drawing.diagram import diagrams, loose_ends, statements
+from symflex.drawing.diagram import diagrams, statements
 from symflex.drawing.fields import FieldRow, field_rows
-from symflex.drawing.frames import frame_plan, is_planar, name_of
+from symflex.drawing.frames import frame_plan, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
 from symflex.drawing.joins import Join, joined
 from symflex.drawing.lettering import Labels, column_of, filled
+from symflex.drawing.order import abbreviated
 from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stacked
-from symflex.drawing.rows import lay_out, order_of
+from symflex.drawing.rows import lay_out
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph, whole
 from symflex.errors import Diagnostic, UsageError
@@ -76,10 +76,11 @@ def drawing_of(
         usual = sorted(COLUMNS_MM.values())
         rooms = [w / MM_PER_INCH * POINTS - 2 * MARGIN for w in usual]
         bands = cache(partial(diagrams, content.graph))  # by how wide they may be
-        ends = [loose_ends(bands(room)) for room in (*rooms, 1e9)]
+        # How many names stand for wires: more than need be where a loop goes on below its beginning.
+        ends = [sum(i.kind == "tag" for band in bands(room) for i in band) for room in (*rooms, 1e9)]
         if ends[0] > ends[-1] >= ends[1]:
             usual = usual[1:]  # a loop is closed there
-        networks = cache(partial(_networks, content))  # by their spacing
+        networks = cache(lambda spacing: list(_networks(content, spacing)))
         for width in asked or usual:
             points = width / MM_PER_INCH * POINTS
             for spacing in SPACINGS:
@@ -99,23 +100,25 @@ def drawing_of(
         raise UsageError(Diagnostic("SF902", message, None, hint))
 
 
-def _network(network: DrawnNetwork, scheme: Scheme, model: Model, spacing: Spacing) -> Iterator[_Row]:
-    """Yield a frame in its plane, and the row of what is no frame with the elements it leaves out."""
-    plan = frame_plan(network, model) if is_planar(network) else None
-    if plan is not None:
-        items, others = plan
-        yield items, ()
-        if not others:
-            return
-        drawn = {i.name for i in items}
-        marks = tuple(m for m in network.marks if m.labels[0][1] not in drawn)
-        shared = dict.fromkeys(n for p in others for n in p.nodes if scheme.domains[n] == "plane")
-        marks += tuple(name_of(n) for n in shared)
-        nodes = {n for p in others for n in p.nodes} | {m.node for m in marks}
-        own = tuple(n for n in network.nodes if n in nodes)
-        network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
-    shortened, gone = abbreviated(network, order_of(network, scheme.domains), scheme.domains)
-    yield lay_out(shortened, scheme.domains, spacing), gone
+def _networks(content: _Content, spacing: Spacing) -> Iterator[_Row]:
+    """Yield frames in their plane, and rows of what is no frame with the elements that they leave out."""
+    domains = content.scheme.domains
+    for one in content.scheme.networks:
+        network, plan = one, frame_plan(one, content.model)
+        if plan is not None:
+            items, others = plan
+            yield items, ()
+            if not others:
+                continue
+            drawn = {i.name for i in items}
+            marks = tuple(m for m in network.marks if m.labels[0][1] not in drawn)
+            shared = dict.fromkeys(n for p in others for n in p.nodes if domains[n] == "plane")
+            marks += tuple(name_of(n) for n in shared)
+            nodes = {n for p in others for n in p.nodes} | {m.node for m in marks}
+            own = tuple(n for n in network.nodes if n in nodes)
+            network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
+        shortened, gone = abbreviated(network, domains)
+        yield lay_out(shortened, domains, spacing), gone
 
 
 @dataclass(frozen=True)
@@ -152,11 +155,6 @@ def _legend(model: Model, labels: Labels) -> list[Placed]:
     return [Placed("values", "", (), lines)] if lines else []
 
 
-def _networks(content: _Content, spacing: Spacing) -> list[_Row]:
-    model, scheme = content.model, content.scheme
-    return [row for network in scheme.networks for row in _network(network, scheme, model, spacing)]
-
-
 def _laid_out(content: _Content, found: list[_Row], width: float, bands: list[list[Placed]]) -> Drawing:
     model, graph = content.model, content.graph
     rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
@@ -189,7 +187,9 @@ def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
         driving = [n.name for n in names(use.values[0][1]) if isinstance(n, Name)]
         starts = [b for n in driving for b in boxes.get(("end", n), ())] or boxes.get(("drive", use.name), [])
         ends = tuple(boxes.get(("element", use.name), ()))
-        joins.append(Join(use.name, tuple(starts), tuple(map(_tail, ends)), ends))
+        # Where an arrow to the right begins; of another symbol all of it.
+        tails = tuple(Extent(b.x0, b.y0, b.x0, b.y1) if b.width > 2 * b.height else b for b in ends)
+        joins.append(Join(use.name, tuple(starts), tails, ends))
     return replace(drawing, items=(*drawing.items, *joined(drawing, joins)))
 
 
@@ -199,8 +199,3 @@ def _faces(part: DrawnPart, box: Extent) -> tuple[Extent, ...]:
         return (box,)
     (x, y), near = box.centre, ROUND * box.width / 2
     return Extent(x - near, box.y0, x + near, box.y1), Extent(box.x0, y - near, box.x1, y + near)
-
-
-def _tail(box: Extent) -> Extent:
-    """Return where an arrow to the right begins; of another symbol all of it."""
-    return Extent(box.x0, box.y0, box.x0, box.y1) if box.width > 2 * box.height else box

@@ -9,16 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
+from symflex.drawing.geometry import BOLD, LINE, THIN, Placed
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
 from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, line, rectangle, wall
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.drawing.geometry import Stroke
-    from symflex.drawing.scheme import DrawnPart, End
+    from symflex.drawing.scheme import Distance, DrawnPart, End
 
 SPACE: Final = 3.0
 """Between a symbol and a text, and between texts [points]."""
@@ -106,6 +106,12 @@ class SymbolCell:
         """Whether it reaches from body to body."""
         return self.part.symbol.role == "member"
 
+    def attached(self) -> Iterator[tuple[End, float, int]]:
+        """Yield ends at nodes, how far above the axis they are, and on which side of the node it stands."""
+        for side, sign in ((self.left, 1), (self.right, -1)):
+            pairs = zip(side, self.offsets(side), strict=True)
+            yield from ((end, offset, sign) for end, offset in pairs if end.node)
+
 
 @dataclass(frozen=True, slots=True)
 class Built:
@@ -117,14 +123,13 @@ class Built:
     above: float
 
 
-def label_texts(latex: str, name: str, lines: Sequence[str] = ()) -> tuple[Lettering, ...]:
+def label_of(one: DrawnPart | Distance) -> Placed:
     """Return a label with lines of values below it, centred at x = 0, the last line on y = 0."""
-    if not latex:
-        return ()
-    first = text(latex)
-    if first is None or first.width > WIDEST:
-        first = text(name_latex(name))
-    return column_of([t for t in (first, *(text(one, SMALL) for one in lines)) if t is not None])
+    first = text(one.label)
+    if one.label and (first is None or first.width > WIDEST):
+        first = text(name_latex(one.name))
+    lines = (first, *(text(line, SMALL) for line in one.lines)) if one.label else ()
+    return Placed("label", one.name, (), column_of([t for t in lines if t]))
 
 
 def tags_of(part: DrawnPart) -> list[Built]:
@@ -156,9 +161,9 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     """Draw a cell at least so wide."""
     part, is_member = cell.part, cell.is_member
     length = part.symbol.length * (spacing.member if is_member else spacing.length)
-    texts = label_texts(part.label, part.name, part.lines)
+    label = label_of(part)
     tags = tags_of(part)
-    widest = max([0.0, *(t.width for t in texts), *(one.width + 2 for one in tags)])
+    widest = max([label.box.width, *(one.width + 2 for one in tags)])
     lead = 0.0 if is_member else spacing.lead
     walls = [HATCH + 3.0 if any(not e.node for e in side) else 0.0 for side in (cell.left, cell.right)]
     width = max(max(length + 2 * lead, widest + 4) + sum(walls), width)
@@ -180,11 +185,11 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     boxes = [i.box for i in items]
     above, below = max(b.y1 for b in boxes), min(b.y0 for b in boxes)
     middle = start + length / 2
-    if texts:
-        block = union(t.box for t in texts)
+    if label.texts:
+        block = label.box
         y = below - SPACE - block.y1 if cell.is_label_below else above + SPACE - block.y0
         shift = _kept(middle, block.width, 1.0 + cell.margins[0], width - 1.0 - cell.margins[1])
-        items.append(Placed("label", part.name, (), tuple(t.moved(shift, y) for t in texts)))
+        items.append(label.moved(shift, y))
         above, below = max(above, y + block.y1), min(below, y + block.y0)
     for one in tags:
         y = below - SPACE - one.above

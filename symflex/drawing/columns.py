@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import SPACE, label_texts, tags_of
+from symflex.drawing.cells import SPACE, label_of, tags_of
 from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Placed, around, union
 from symflex.drawing.lettering import SMALL, text
 from symflex.drawing.scheme import Mark, Style
@@ -14,8 +14,6 @@ from symflex.drawing.symbols import Strokes, arc, arrow, circle, head, line, rec
 from symflex.library.elements import CIRCUITS, COMPONENTS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.drawing.scheme import DrawnPart
 
 DISC_WIDTH, DISC_HEIGHT = 9.0, 34.0
@@ -78,10 +76,9 @@ class Column:
     def first_mark(self) -> float:
         """Where its first upright mark begins."""
         start = self.x - max(self.half, ARROW / 2)
-        is_crowded = self.has_lead_up or len(self.upright) < len(self.marks)
-        if not (is_crowded and self.upright):
-            return start
-        return max(start + LANE, self.x + LANE / 2 if self.half < ARROW / 2 else start)
+        if self.upright and (self.has_lead_up or len(self.upright) < len(self.marks)):
+            return max(start + LANE, self.x + LANE / 2 if self.half < ARROW / 2 else start)
+        return start
 
     @property
     def lead_x(self) -> float:
@@ -100,51 +97,42 @@ class Column:
         They stand side by side below its middle; at the end of a row what hangs from a member stands outside.
         """
         holds, hangs = [*map(support_width, self.supports)], [*map(hanging_width, self.hanging)]
-        x = -sum(holds) / 2
-        is_outside = self.is_round and (bool(holds) or len(hangs) > 1)
-        if not (is_outside and self.outside):
-            x -= sum(hangs) / 2
-        at = x - sum(hangs) if is_outside and self.outside < 0 else x + sum(holds)
-        return [*_side_by_side(x, holds), *_side_by_side(at, hangs)]
+        outside = self.outside if self.is_round and (holds or len(hangs) > 1) else 0
+        x = -sum(holds) / 2 - (0.0 if outside else sum(hangs) / 2)
+        at = x - sum(hangs) if outside < 0 else x + sum(holds)
+        places = (accumulate(holds, initial=x), accumulate(hangs, initial=at))
+        return [ends for each in places for ends in pairwise(each)]
 
     def resize(self, size: float) -> None:
         """Find how far it reaches; masses are at least so large."""
         low, high = min(self.levels, default=0.0), max(self.levels, default=0.0)
         sizes = [body_size(p, self.kind, size) for p in self.bodies]
+        widths, heights = [w for w, _ in sizes], [h for _, h in sizes]
         start = min((x for x, _ in self.below), default=0.0)
         end = max((x for _, x in self.below), default=0.0)
         lane = LANE if self.below and self.stubs else 0.0
-        if not sizes and self.is_flat:
-            is_shoe = any(p.type_name == "slider" for p in self.faces.values())
-            reach = SHOE if self.faces else FLAT
-            self.top, self.bottom, self.half, self.crown = high + reach, low - reach, SHOE / 2 * is_shoe, 0.0
-        elif not sizes:
-            reach = REACH if not self.is_electrical and (high > low or self.kind == "translation") else 0.0
-            reach = SHOE if self.faces else reach
-            self.top, self.bottom, self.half, self.crown = high + reach, low - reach, 0.0, 0.0
+        middle, spread = (high + low) / 2, high - low + 2 * REACH
+        if not sizes:
+            is_shoe = self.is_flat and any(p.type_name == "slider" for p in self.faces.values())
+            is_bar = not self.is_electrical and (high > low or self.kind == "translation")
+            reach = SHOE if self.faces else FLAT if self.is_flat else REACH if is_bar else 0.0
+            tall, self.half = high - low + 2 * reach, SHOE / 2 * is_shoe
         elif self.kind == "rotation":
-            tall = max(DISC_HEIGHT, high - low + 2 * REACH)
-            self.crown = max(h for _, h in sizes) + SPACE
-            self.top, self.bottom = (high + low + tall) / 2 + self.crown, (high + low - tall) / 2
-            self.half = sum(w for w, _ in sizes) / 2
+            self.crown = max(heights) + SPACE
+            tall, self.half = max(DISC_HEIGHT, spread), sum(widths) / 2
         else:
-            tall = max(sum(h for _, h in sizes), high - low + 2 * REACH)
-            self.top, self.bottom = (high + low + tall) / 2, (high + low - tall) / 2
-            self.half = max(*(w for w, _ in sizes), 0.0 if self.is_round else end - start + 2 * lane) / 2
-        marks = sum(upright_width(m) for m in self.upright)
-        self.x = 0.0
+            tall = max(sum(heights), spread)
+            self.half = max(*widths, 0.0 if self.is_round else end - start + 2 * lane) / 2
+        self.top, self.bottom = middle + tall / 2 + self.crown, middle - tall / 2
+        marks = sum(map(upright_width, self.upright))
         least = max(self.half, ARROW / 2 if marks else 1.0)
         self.left = max(least, lane - start)
         self.right = max(least, lane + end, self.first_mark + marks)
 
 
-def _side_by_side(start: float, widths: Sequence[float]) -> list[tuple[float, float]]:
-    return list(pairwise(accumulate(widths, initial=start)))
-
-
 def body_size(part: DrawnPart, kind: str, size: float) -> tuple[float, float]:
     """Return width and height of a mass; of a moment of inertia, its width and the height of its label."""
-    block = union(t.box for t in label_texts(part.label, part.name, part.lines))
+    block = label_of(part).box
     if kind == "rotation":
         return max(DISC_WIDTH, block.width + 2), block.height
     is_wide = part.type_name == "rigid_body"
@@ -164,13 +152,10 @@ def bodies(column: Column, size: float) -> list[Placed]:
             axis = line((x, middle), (x + 2 * column.half, middle), width=BOLD)
             found.append(Placed("wire", column.name, (axis,)))
         for part, (width, _) in zip(column.bodies, sizes, strict=True):
-            texts = label_texts(part.label, part.name, part.lines)
-            block = union(t.box for t in texts)
-            at, top = x + width / 2, column.top - column.crown
+            label, at, top = label_of(part), x + width / 2, column.top - column.crown
             disc = rectangle(at - DISC_WIDTH / 2, column.bottom, at + DISC_WIDTH / 2, top, FILLED)
             found.append(Placed(part.kind, part.name, (disc,)))
-            label = tuple(t.moved(at, top + SPACE - block.y0) for t in texts)
-            found.append(Placed("label", part.name, (), label))
+            found.append(label.moved(at, top + SPACE - label.box.y0))
             x += width
         return found
     y = column.top
@@ -182,8 +167,6 @@ def bodies(column: Column, size: float) -> list[Placed]:
 
 
 def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]:
-    texts = label_texts(part.label, part.name, part.lines)
-    block = union(t.box for t in texts)
     x, middle = column.x, (y0 + y1) / 2
     strokes: Strokes = (rectangle(x - column.half, y0, x + column.half, y1, FILLED),)
     if part.type_name == "inertia":
@@ -191,11 +174,13 @@ def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]
     if part.type_name == "rigid_body":
         middle = (y0 + 9 + y1) / 2
         strokes += _mass_centre(part, x, column.half, y0 + 6)
-    label = tuple(t.moved(x, middle - (block.y0 + block.y1) / 2) for t in texts)
+    label = label_of(part)
+    label = label.moved(x, middle - label.box.centre[1])
     if offset := text(part.centre[0], SMALL):
         left = x + 2.5 - (offset.width + 5 if part.centre[1] > 0 else 0.0)
-        label += (offset.moved(left, y0 + 6 - (offset.height - offset.depth) / 2),)
-    return [Placed(part.kind, part.name, strokes), Placed("label", part.name, (), label)]
+        own = offset.moved(left, y0 + 6 - (offset.height - offset.depth) / 2)
+        label = replace(label, texts=(*label.texts, own))
+    return [Placed(part.kind, part.name, strokes), label]
 
 
 def _arm(part: DrawnPart) -> float:
@@ -206,11 +191,10 @@ def _arm(part: DrawnPart) -> float:
 
 def _mass_centre(part: DrawnPart, x: float, half: float, y: float) -> Strokes:
     """Draw the mass centre, and how far it is from the node, which stands in the middle of its body."""
-    arm = min(_arm(part), half - 5) * part.centre[1]
-    cx = x + arm
+    cx = x + min(_arm(part), half - 5) * part.centre[1]
     cross = (line((cx - 3, y), (cx + 3, y), width=THIN), line((cx, y - 3), (cx, y + 3), width=THIN))
     centre = (circle(cx, y, 3.0), *cross)
-    if not arm:
+    if cx == x:
         return centre
     length = arrow((x, y), (cx - 3 * part.centre[1], y), THIN)
     return (line((x, y - 3.5), (x, y + 3.5), width=THIN), *length, *centre)
@@ -245,9 +229,8 @@ def hanging_reach(part: DrawnPart) -> tuple[float, float]:
 
 def hanging_texts(part: DrawnPart, x: float, y: float) -> list[Placed]:
     """Write what belongs to a part that hangs from x on, its middle at y."""
-    texts = label_texts(part.label, part.name, part.lines)
-    blocks: list[Sequence[Placed]] = [[Placed("label", part.name, (), texts)]] if texts else []
-    blocks += [one.placed for one in tags_of(part)]
+    label = label_of(part)
+    blocks = [*([(label,)] if label.texts else []), *(one.placed for one in tags_of(part))]
     boxes = [union(i.box for i in block) for block in blocks]
     y += sum(b.height + 3 for b in boxes) / 2
     found = []

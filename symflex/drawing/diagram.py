@@ -18,13 +18,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import Built
-from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, free_level, union
-from symflex.drawing.lettering import SIZE, SMALL, column_of, filled, text
+from symflex.drawing.geometry import BLACK, Extent, Lettering, Placed, free_level, union
+from symflex.drawing.lettering import SIZE, SMALL, column_of, downwards, filled, text
 from symflex.drawing.signals import MOST_AT_SUM, formula
-from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
+from symflex.drawing.symbols import DOT, arrow, circle, line, rectangle
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Sequence
 
     from symflex.drawing.geometry import Point
     from symflex.drawing.signals import SignalGraph, SignalNode
@@ -45,8 +45,6 @@ WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 """Of a formula that is written out below the diagrams, and the space after it [points]."""
 MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one, from a start."""
-MANY_STARTS: Final = 20
-"""More share the paths of so many."""
 NAMED: Final = ("input", "reading", "signal")
 BOXES: Final = ("gain", "block")
 
@@ -60,11 +58,6 @@ class _Branch:
     origin: int | None  # a signal of the same path, from which a wire leads here
     is_minus: bool
     is_tag: bool = False  # the last node is drawn elsewhere, and here its name
-
-
-def loose_ends(bands: list[list[Placed]]) -> int:
-    """Return how many names stand for wires: more than need be where a loop goes on below its beginning."""
-    return sum(i.kind == "tag" for band in bands for i in band)
 
 
 def diagrams(graph: SignalGraph, widest: float) -> list[list[Placed]]:
@@ -127,17 +120,14 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
     def ahead(node: int) -> list[int]:
         return [n for n in graph.nodes[node].after if (node, n) not in joined and n not in drawn]
 
-    starts = [
-        i
-        for i, n in enumerate(graph.nodes)
-        if not _is_fed_back(graph, i) and (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
-    ]
+    fresh = [i for i, n in enumerate(graph.nodes) if i not in drawn or (n.kind in NAMED and ahead(i))]
+    starts = [i for i in fresh if not _is_fed_back(graph, i)]
     minus = {(before, i) for i, n in enumerate(graph.nodes) for before, is_minus in n.before if is_minus}
     best: list[int] = []
     best_rank = (0, 0)
     # From anywhere else no path is better than one from an input, so that these are tried only without one.
     starts = [i for i in starts if graph.nodes[i].kind == "input"] or starts
-    shared = MANY_STARTS * MOST_PATHS // max(len(starts), 1)
+    shared = 20 * MOST_PATHS // max(len(starts), 1)
     most = min(MOST_PATHS, max(shared, len(graph.nodes) + 1))  # so that each reaches the end of one path
     for start in starts:
         pending, tries = [[start]], 0
@@ -146,18 +136,17 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
             tries += 1
             passed = set(path)
             onward = [n for n in ahead(path[-1]) if n not in passed]
-            while len(path) > 1 and not onward and _leads_back(graph, path):
+            while len(path) > 1 and not onward:
+                last = graph.nodes[path[-1]]
+                if last.kind not in (*BOXES, "sum") or not any(n in path for n in last.after):
+                    break  # else it feeds what is on the path, and is drawn from there
                 path = path[:-1]
-                onward = []
-            if not onward and (rank := (_forward(path, minus), len(path))) > best_rank:
-                best, best_rank = path, rank
+            # How much of it comes before what it is subtracted from, that is fed back.
+            forward = next((i for i, pair in enumerate(pairwise(path), 1) if pair in minus), len(path))
+            if not onward and (forward, len(path)) > best_rank:
+                best, best_rank = path, (forward, len(path))
             pending += [[*path, n] for n in reversed(onward)]
     return best
-
-
-def _forward(path: list[int], minus: Collection[tuple[int, int]]) -> int:
-    """Return how much of a path comes before what it is subtracted from: that is fed back."""
-    return next((i for i, pair in enumerate(pairwise(path), 1) if pair in minus), len(path))
 
 
 def _is_fed_back(graph: SignalGraph, node: int) -> bool:
@@ -167,12 +156,6 @@ def _is_fed_back(graph: SignalGraph, node: int) -> bool:
         if graph.nodes[node].kind == "sum":
             return True
     return False
-
-
-def _leads_back(graph: SignalGraph, path: list[int]) -> bool:
-    """Tell whether a path ends in a box that feeds what is on it: that is drawn from there."""
-    last = graph.nodes[path[-1]]
-    return last.kind in (*BOXES, "sum") and any(n in path for n in last.after)
 
 
 @dataclass
@@ -200,9 +183,9 @@ class _Band:
         self._draw_path(branches)
         for branch in branches:
             centre = self.x[branch.target][0] + RADIUS
-            self.risers += (
-                [centre] if branch.origin is None else [centre, self._left_at(branch.origin, centre)]
-            )
+            self.risers.append(centre)
+            if branch.origin is not None:
+                self.risers.append(self._left_at(branch.origin, centre))
         waiting = sorted(branches, key=lambda b: -self.x[b.target][0])
         while waiting:
             branch = waiting.pop(0)
@@ -232,16 +215,11 @@ class _Band:
                         break
                     self.joined.add((before[0], node))
                     node = before[0]
-                is_tag = False
-                is_wired = node in self.path and node not in chain and self.graph.nodes[node].kind == "signal"
-                if node in self.drawn and node not in chain and not is_wired:
-                    chain.append(node)
-                    is_tag = True
-                if is_wired and target not in self.path:
-                    chain.append(node)
-                    is_wired, is_tag = False, True
-                origin = node if is_wired else None
-                found.append(_Branch(target, tuple(chain), origin, is_minus, is_tag))
+                is_met = node not in chain  # it is drawn elsewhere
+                is_wired = is_met and self._kind(node) == "signal" and {node, target} <= {*self.path}
+                is_tag = is_met and not is_wired
+                nodes_drawn = (*chain, node) if is_tag else tuple(chain)
+                found.append(_Branch(target, nodes_drawn, node if is_wired else None, is_minus, is_tag))
         return found
 
     # ------------------------------------------------------------------------------------------- drawing
@@ -250,7 +228,7 @@ class _Band:
         x = 0.0
         for i, node in enumerate(self.path):
             if i:
-                x += WIRE if self._kind(node) != "signal" else WIRE / 2
+                x += WIRE / 2 if self._kind(node) == "signal" else WIRE
             for branch in (b for b in branches if b.origin is not None):
                 other = branch.origin if node == branch.target else branch.target
                 length = sum(one.width + WIRE for one in self._all_shown(branch))
@@ -317,12 +295,8 @@ class _Band:
         if is_read:  # from beyond the end of the path, where a wire finds it without crossing that
             other = max(other, self.box.x1)
         low, high, sign = min(centre, other), max(centre, other), 1.0 if other >= centre else -1.0
-        room = Extent(
-            low - 3,
-            -max([RADIUS, *(-s.below for s in shown)]) - APART / 2,
-            high + 4,
-            max([RADIUS, *(s.above for s in shown)]) + APART / 2,
-        )
+        below, above = min([-RADIUS, *(s.below for s in shown)]), max([RADIUS, *(s.above for s in shown)])
+        room = Extent(low - 3, below - APART / 2, high + 4, above + APART / 2)
         y, is_up = self._height(branch, room, [centre] if branch.origin is None else [centre, other])
         self._sign(target, "above" if is_up else "below", is_minus=branch.is_minus)
         spare = max(0.0, high - low - length)
@@ -337,14 +311,15 @@ class _Band:
             towards = branch.nodes[i - 1] if i else None
             self._lead((x, y), (before, y), towards)
             if towards is not None and self._kind(towards) == "sum":
-                side = "right" if sign > 0 else "left"
-                self._sign(towards, side, is_minus=self._is_minus(node, towards))
+                self._sign(towards, "right" if sign > 0 else "left", is_minus=self._is_minus(node, towards))
             x += sign * one.width
             before = x
         edge = level + self.reach[target][is_up]
         self.items.append(Placed("wire", "", arrow((centre, y), (centre, edge))))
-        if branch.origin is not None:
-            self._close(branch, other, before, y)
+        if branch.origin is not None:  # the wire from the signal of the path that feeds it
+            self.items.append(Placed("wire", "", (line((other, 0.0), (other, y)),)))
+            self._lead((other, y), (before, y), branch.nodes[-1] if branch.nodes else None)
+            self.items.append(Placed("node", "", (circle(other, 0.0, DOT, fill=BLACK),)))
         self.occupied += [room.moved(0, y), Extent(centre - 1, min(y, edge), centre + 1, max(y, edge))]
 
     def _left_at(self, origin: int, centre: float) -> float:
@@ -370,10 +345,8 @@ class _Band:
                 x += sign * (one.width + WIRE)
             return found
 
-        offered = (
-            [6.0 * i for i in range(8)] if is_loose else [abs(spare) * s for s in (0.5, 0.3, 0.7, 0.1, 0.9)]
-        )
-        return min(offered, key=met)
+        shares = [abs(spare) * share for share in (0.5, 0.3, 0.7, 0.1, 0.9)]
+        return min([6.0 * i for i in range(8)] if is_loose else shares, key=met)
 
     def _height(self, branch: _Branch, room: Extent, risers: list[float]) -> tuple[float, bool]:
         """Return where a branch runs, and whether that is above its sum."""
@@ -385,16 +358,9 @@ class _Band:
             is_up = not self._is_blocked(risers, up, level)
         return (up if is_up else down), is_up
 
-    def _close(self, branch: _Branch, x: float, end: float, y: float) -> None:
-        """Draw the wire from a signal of the path to the branch that it feeds."""
-        self.items.append(Placed("wire", "", (line((x, 0.0), (x, y)),)))
-        self._lead((x, y), (end, y), branch.nodes[-1] if branch.nodes else None)
-        self.items.append(Placed("node", "", (circle(x, 0.0, DOT, fill="#000000"),)))
-
     def _is_blocked(self, risers: list[float], y: float, level: float) -> bool:
         """Tell whether vertical wires would pass through something."""
-        edge = level + (RADIUS + 1 if y > level else -RADIUS - 1)
-        low, high = min(y, edge), max(y, edge)
+        low, high = sorted((y, level + (RADIUS + 1 if y > level else -RADIUS - 1)))
         return any(b.overlaps(Extent(x - 1, low, x + 1, high)) for b in self.solid for x in risers)
 
     # ------------------------------------------------------------------------------------------- symbols
@@ -416,14 +382,11 @@ class _Band:
                 return self._tag(one, is_tag=is_tag)
 
     def _box(self, one: SignalNode) -> Built:
-        label = _fitting(one.label, SIZE) or _fitting(r"\cdots", SIZE)
-        if one.kind == "block":
-            block = self.graph.blocks[one.name]
-            found = formula(block)
-            shown = text(self.graph.labels.fraction(found), SIZE) if found is not None else None
-            if shown and shown.width <= WIDEST:
-                return _boxed(one, shown, _fitting(one.label, SMALL))
-        return _boxed(one, label, None)
+        found = formula(self.graph.blocks[one.name]) if one.kind == "block" else None
+        shown = text(self.graph.labels.fraction(found), SIZE) if found is not None else None
+        if shown and shown.width <= WIDEST:
+            return _boxed(one, shown, _fitting(one.label, SMALL))
+        return _boxed(one, _fitting(one.label, SIZE) or text(r"\cdots", SIZE), None)
 
     def _tag(self, one: SignalNode, *, is_tag: bool) -> Built:
         """Return a name at the beginning or end of a wire."""
@@ -453,11 +416,8 @@ class _Band:
         for end in self.shown_at.get(index, []):
             out = self.graph.nodes[end]
             label = _fitting(out.label, SIZE)
-            strokes: Strokes = (
-                circle(wide, 0.0, DOT, fill="#000000"),
-                *arrow((wide, 0.0), (wide, -13.0), LINE),
-            )
-            items.append(Placed("output", out.name, strokes))
+            dot = circle(wide, 0.0, DOT, fill=BLACK)
+            items.append(Placed("output", out.name, (dot, *arrow((wide, 0.0), (wide, -13.0)))))
             if label:
                 items.append(Placed("label", out.name, (), (label.moved(wide + 3, -10.0),)))
                 wide += label.width + 8
@@ -482,35 +442,27 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
         items.append(Placed("label", one.name, (), tuple(t.moved(*place) for t in texts)))
     above = tall
     if name:
-        items.append(
-            Placed("label", one.name, (), (name.moved((wide - name.width) / 2, tall + 2 + name.depth),))
-        )
+        place = (wide - name.width) / 2, tall + 2 + name.depth
+        items.append(Placed("label", one.name, (), (name.moved(*place),)))
         above += name.height + name.depth + 2
     return Built(wide, tuple(items), -tall, above)
 
 
 def statements(graph: SignalGraph) -> list[Placed]:
     """Return equations, and the formulas of blocks that stand in no diagram, one below the other."""
-    shown = {n.name for n in graph.nodes if n.kind == "block"}
+    drawn = {n.name for n in graph.nodes if n.kind == "block"}
     y, found = 0.0, []
     for equation in graph.equations:
         sides = " = ".join(graph.labels.expression(side) for side in equation.children)
-        if line := text(sides, SMALL):
-            y -= line.height
-            found.append(Placed("condition", "", (), (line.moved(0.0, y),)))
-            y -= line.depth + BETWEEN_FORMULAS
-    for block in graph.blocks.values():
-        if block.name in shown:
-            continue
+        if shown := text(sides, SMALL):
+            lines, y = downwards([shown], y, BETWEEN_FORMULAS)
+            found.append(Placed("condition", "", (), tuple(lines)))
+    for block in (b for b in graph.blocks.values() if b.name not in drawn):
         value = formula(block)
         name = graph.labels.name(block.name)
         written = text(f"{name} = {graph.labels.fraction(value)}", SMALL) if value is not None else None
         written = written if written and written.width <= WIDEST_FORMULA else text(name, SMALL)
         values = filled(graph.labels.values([e for _, e in block.values]), WIDEST_FORMULA)
-        lines = []
-        for one in (written, *values) if written else ():
-            y -= one.height
-            lines.append(one.moved(0.0, y))
-            y -= one.depth + BETWEEN_FORMULAS
+        lines, y = downwards((written, *values) if written else (), y, BETWEEN_FORMULAS)
         found.append(Placed("block", block.name, (), tuple(lines)))
     return found

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import coordinate
 from symflex.drawing.columns import upright_mark, upright_width
-from symflex.drawing.geometry import THIN, Extent, Placed, Stroke
-from symflex.drawing.lettering import SMALL, Labels, text
+from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, union
+from symflex.drawing.lettering import SMALL, Labels, downwards, text
 from symflex.drawing.scheme import UNKNOWN, Mark, Style, evaluate, sections, values_of, without_s
 from symflex.drawing.symbols import (
     HALF,
@@ -60,8 +60,6 @@ SHORTEST: Final = 0.22
 LEADING: Final = 3.0
 APART: Final = 14.0
 """Least distance of two columns of conditions [points]."""
-PUSHING: Final = ("push", "torque", "raise", "twist")
-"""Marks of inputs, which stand before those of outputs."""
 OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
 """What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
 BENDING: Final = 4
@@ -87,24 +85,18 @@ def field_rows(model: Model, labels: Labels, outputs: Sequence[str]) -> list[Fie
     rows: list[FieldRow] = []
     left = list(outputs)
     inputs = [i.name for i in model.inputs if i.kind == "signal"]
-    for group in _groups(model.fields):
+    groups: list[list[FieldProblem]] = []  # of which each begins where the one before it ends
+    for one in model.fields:
+        before = next((g for g in groups if g[-1].end == one.start), [])
+        if not before:
+            groups.append(before)
+        before.append(one)
+    for group in groups:
         row = _Row(model, labels, group, left, inputs).laid_out()
         left = [o for o in left if o not in row.outputs]
         inputs = [i for i in inputs if i not in row.inputs]
         rows.append(row)
     return rows
-
-
-def _groups(fields: Sequence[FieldProblem]) -> list[list[FieldProblem]]:
-    """Return fields of which each begins where the one before it ends."""
-    groups: list[list[FieldProblem]] = []
-    for one in fields:
-        before = next((g for g in groups if g[-1].end == one.start), None)
-        if before:
-            before.append(one)
-        else:
-            groups.append([one])
-    return groups
 
 
 @dataclass
@@ -152,8 +144,7 @@ class _Row:
         low, high = self.starts[one.name]
         if point in (one.start, one.end):
             return low if point == one.start else high
-        ends = [evaluate(e, self.known) for e in (one.start, one.end, point)]
-        a, b, at = ends
+        a, b, at = (evaluate(e, self.known) for e in (one.start, one.end, point))
         if a is None or b is None or at is None or a == b:
             return (low + high) / 2
         return low + (high - low) * min(1.0, max(0.0, (at - a) / (b - a)))
@@ -162,8 +153,8 @@ class _Row:
         """Return the depths of a member that tapers, by how stiff and how heavy its equations say it is."""
         if not is_tapered(self.model) or COORDINATE in one.unknowns:
             return ()
-        ends = [evaluate(e, self.known) for e in (one.start, one.end)]
-        a, b = (0.0 if ends[0] is None else ends[0]), (UNKNOWN if ends[1] is None else ends[1])
+        a, b = (evaluate(e, self.known) for e in (one.start, one.end))
+        ends = (0.0 if a is None else a, UNKNOWN if b is None else b)
         for equation in one.equations:
             if not (found := _derivatives(equation)):
                 continue  # an unknown that follows another
@@ -172,22 +163,17 @@ class _Row:
             moved = {**others, Name(highest.name): number(1)}
             inert, still = (_coefficient(equation, {**moved, Name("s"): number(n)}) for n in (1, 0))
             heavy = sum_of([inert, negative(still)])
-            if shape := sections(stiff, heavy, (a, b), self.known, None if self._is_beam(one) else 2):
+            if shape := sections(stiff, heavy, ends, self.known, None if self._is_beam(one) else 2):
                 return shape
         return ()
 
     def _half(self, x: float) -> float:
         """Return half the depth of what is drawn at x."""
-        here = [(f, ends) for f in self.fields for ends in (self.starts[f.name],) if ends[0] <= x <= ends[1]]
-        return max(half_depth(self.depths[f.name], (x - a) / (b - a)) for f, (a, b) in here)
+        here = [(name, a, b) for name, (a, b) in self.starts.items() if a <= x <= b]
+        return max(half_depth(self.depths[name], (x - a) / (b - a)) for name, a, b in here)
 
     def _values(self, equation: Equation) -> list[Call]:
-        return [
-            n
-            for side in equation.children
-            for n in names(side)
-            if isinstance(n, Call) and n.name in self.unknowns
-        ]
+        return [n for n in names(equation) if isinstance(n, Call) and n.name in self.unknowns]
 
     def _collect_inputs(self) -> list[str]:
         found: list[str] = []
@@ -195,19 +181,15 @@ class _Row:
             is_beam = self._is_beam(one)
             for condition in one.conditions:
                 calls = self._values(condition)
-                driving = [n.name for s in condition.children for n in names(s) if isinstance(n, Name)]
+                driving = [n.name for n in names(condition) if isinstance(n, Name)] if calls else []
                 for name in (n for n in driving if n in self.free and n not in found):
-                    if not calls:
-                        continue
                     at = max(calls, key=lambda c: c.order)
                     style: Style = "push" if at.order else "raise"
                     style = OF_BEAMS.get(at.order, style) if is_beam else style
                     x = self._x(self.unknowns[at.name], at.argument)
                     self.marks.setdefault((style, x), []).append(("input", name, self._label(name)))
                     found.append(name)
-            for name in self._loads(one):
-                if name not in found:
-                    found.append(name)
+            found += [name for name in self._loads(one) if name not in found]
         return found
 
     def _label(self, name: str) -> str:
@@ -216,7 +198,7 @@ class _Row:
 
     def _loads(self, one: FieldProblem) -> list[str]:
         """Return the inputs that act all along a field."""
-        held = {n.name for e in one.equations for s in e.children for n in names(s) if isinstance(n, Name)}
+        held = {n.name for e in one.equations for n in names(e) if isinstance(n, Name)}
         return [n for n in self.free if n in held]
 
     def _collect_outputs(self) -> list[str]:
@@ -241,20 +223,17 @@ class _Row:
         """Whether a tension alone holds a field: neither a modulus nor what resists bending or torsion."""
         if self._is_beam(one) or len(one.unknowns) > 1 or not _derivatives(one.equations[0]):
             return False
-        stiff, _ = _stiffness(one.equations[0], one.unknowns)
-        held = {n.name for n in names(stiff) if isinstance(n, Name)}
+        held = {n.name for n in names(_stiffness(one.equations[0], one.unknowns)[0]) if isinstance(n, Name)}
         found = {unit_of(p.unit).dimension for p in self.model.parameters if p.name in held and p.unit}
         return bool(found) and not found & STIFF_SECTIONS
 
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
         calls = [n for n in names(expression) if isinstance(n, Call) and n.name in self.unknowns]
-        constants = (
-            {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions} | {"s", "pi"}
-        )
+        constants = {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions}
         inside = {n for c in calls for n in names(c.argument)}
         others = [n for n in names(expression) if n not in calls and n not in inside]
-        is_alone = all(isinstance(n, Name) and n.name in constants for n in others)
+        is_alone = all(isinstance(n, Name) and n.name in {*constants, "s", "pi"} for n in others)
         is_one = len(calls) == 1 and is_alone and not isinstance(without_s(expression), Attribute)
         return calls[0] if is_one else None
 
@@ -285,9 +264,9 @@ class _Row:
         """Draw arrows above the member, side by side or above each other; return how high they reach."""
         occupied = [i.box for i in self.items if i.kind == "ground" and i.box.y1 > HALF]
         places: dict[float, list[Mark]] = {}
-        for (style, x), labels in sorted(
-            self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in PUSHING)
-        ):
+        inputs = ("push", "torque", "raise", "twist")  # which stand before outputs
+        found = sorted(self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in inputs))
+        for (style, x), labels in found:
             places.setdefault(x, []).append(Mark(style, "", tuple(labels)))
         for x, marks in places.items():
             start = x - 5.0
@@ -314,8 +293,7 @@ class _Row:
             arrows: Strokes = (line((low, foot + 10), (high, foot + 10), width=THIN),)
             arrows += tuple(s for x in xs for s in arrow((x, foot), (x, foot + 10), THIN))
             self.items.append(Placed("input", name, arrows))
-            shown = text(self._label(name))
-            if shown:
+            if shown := text(self._label(name)):
                 place = shown.moved((low + high - shown.width) / 2, foot + 13 + shown.depth)
                 self.items.append(Placed("label", name, (), (place,)))
             above = foot + 24
@@ -336,30 +314,21 @@ class _Row:
                 calls = self._values(condition)
                 xs = [self._x(self.unknowns[c.name], c.argument) for c in calls]
                 columns.setdefault(sum(xs) / len(xs) if xs else 0.0, []).append(self._sides(given))
-        blocks = [
-            (x, [t for one in lines if (t := text(one, SMALL))]) for x, lines in sorted(columns.items())
-        ]
-        right = -1e9
-        lowest = bottom
-        for i, (x, lines) in enumerate(blocks):
-            wide = max([0.0, *(t.width for t in lines)])
-            at = x if i == 0 else x - wide if i == len(blocks) - 1 else x - wide / 2
+        right, lowest = -1e9, bottom
+        for i, (x, given_there) in enumerate(sorted(columns.items())):
+            written = [t for one in given_there if (t := text(one, SMALL))]
+            wide = max([0.0, *(t.width for t in written)])
+            at = x if i == 0 else x - wide if i == len(columns) - 1 else x - wide / 2
             at = max(at, right + APART)
             right = at + wide
-            y = bottom
-            for written in lines:
-                y -= written.height
-                self.items.append(Placed("condition", "", (), (written.moved(at, y),)))
-                y -= written.depth + LEADING
+            lines, y = downwards(written, bottom, LEADING)
+            self.items += [Placed("condition", "", (), (t.moved(at, 0.0),)) for t in lines]
             lowest = min(lowest, y)
-        middle = (min(b.x0 for b in (i.box for i in self.items)) + max(i.box.x1 for i in self.items)) / 2
-        y = lowest - 1
-        for equation in (e for f in self.fields for e in f.written[: len(f.equations)] or f.equations):
-            shown = text(self._sides(equation), SMALL)
-            if shown:
-                y -= shown.height
-                self.items.append(Placed("condition", "", (), (shown.moved(middle - shown.width / 2, y),)))
-                y -= shown.depth + LEADING
+        middle = union(i.box for i in self.items).centre[0]
+        equations = (e for f in self.fields for e in f.written[: len(f.equations)] or f.equations)
+        shown = [t for e in equations if (t := text(self._sides(e), SMALL))]
+        lines, _ = downwards(shown, lowest - 1, LEADING)
+        self.items += [Placed("condition", "", (), (t.moved(middle - t.width / 2, 0.0),)) for t in lines]
 
     def _sides(self, equation: Equation) -> str:
         left, right = equation.children

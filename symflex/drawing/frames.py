@@ -9,14 +9,14 @@ until it touches nothing that is drawn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from itertools import combinations
-from math import acos, cos, hypot, pi, sin, tan
+from dataclasses import dataclass, field, replace
+from itertools import combinations, product
+from math import acos, cos, dist, hypot, pi, sin, tan
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import coordinate, label_texts, tags_of
+from symflex.drawing.cells import coordinate, label_of, tags_of
 from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
-from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
+from symflex.drawing.geometry import BLACK, BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
 from symflex.drawing.scheme import Mark, evaluate, values_of
 from symflex.drawing.symbols import DOT, HALF, arrow, circle, guide, head, line, outline, rectangle, wall
@@ -36,9 +36,6 @@ LONGEST: Final = 500.0
 """Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
-SPIRAL: Final = 7.0
-"""From the inner to the outer end of a spiral spring [points]."""
-SPIRAL_TURNS, SPIRAL_POINTS = 1.75, 48
 CLAMP: Final = 8.0
 """Half the width of a wall that holds a member [points]."""
 SHARP: Final = pi / 3
@@ -47,18 +44,14 @@ CLEAR: Final = 1.2
 SAME: Final = 1e-6
 DIRECTIONS: Final = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))
 AROUND: Final = tuple((cos(pi / 180 * a), sin(pi / 180 * a)) for a in (45, 135, -45, -135, 90, 0, -90, 180))
-DISTANCES: Final = (4.0, 8.0, 13.0, 20.0, 30.0, 42.0, 60.0, 90.0, 130.0, 200.0)
 MEMBERS: Final = ("frame", "rigid_link")
 ALONE: Final = ("spring", "damper", "torsion_spring", "rotary_damper")
 
 
-def is_planar(network: DrawnNetwork) -> bool:
-    """Tell whether a network has members of frames."""
-    return any(p.type_name == "frame" for p in network.parts)
-
-
 def frame_plan(network: DrawnNetwork, model: Model) -> tuple[list[Placed], list[DrawnPart]] | None:
-    """Return the drawing of a frame and the parts that have no place in it."""
+    """Return the drawing of a frame and the parts that have no place in it; None without members of one."""
+    if not any(p.type_name == "frame" for p in network.parts):
+        return None
     plan = _Plan(network, model)
     return (plan.items, plan.others) if plan.is_sound else None
 
@@ -75,16 +68,13 @@ class _Plan:
 
     def __post_init__(self) -> None:
         self.members = [p for p in self.network.parts if p.type_name in MEMBERS]
+        self.vectors = self._vectors()
         self.ends = self._place()
         self.is_sound = self._is_sound()
         if not self.is_sound:
             return
-        at = {
-            e.node: xy
-            for p in self.members
-            for e, xy in zip(p.ends, self.ends[p.name], strict=True)
-            if e.node
-        }
+        pairs = [pair for p in self.members for pair in zip(p.ends, self.ends[p.name], strict=True)]
+        at = {end.node: place for end, place in pairs if end.node}
         # What a joint holds, such as a cart below its pole, has the place of the member's end.
         at = {self.joint(node): place for node, place in at.items()} | at
         self.at = {n: at[self.joint(n)] for n in self.network.nodes if self.joint(n) in at}
@@ -95,27 +85,22 @@ class _Plan:
         for part in self.members:
             self._draw_member(part)
         self._draw_joints()
-        for part in own:
-            if part.symbol.role == "support":
-                self._draw_support(part)
-        for part in own:
+        for part in (p for p in own if p.symbol.role == "support"):
+            self._draw_support(part)
+        for part in (p for p in own if p.type_name in ALONE):
             if part.type_name == "torsion_spring":
                 self._draw_spiral(part)
-            elif part.type_name in ALONE:
+            else:
                 self._draw_grounded(part)
-        for mark in (
-            *map(mark_of_source, (p for p in own if p.symbol.role == "source")),
-            *self.network.marks,
-        ):
-            if mark.node in self.at:
-                self._draw_mark(mark)
+        sources = [mark_of_source(p) for p in own if p.symbol.role == "source"]
+        for mark in (m for m in (*sources, *self.network.marks) if m.node in self.at):
+            self._draw_mark(mark)
         for part in self.members:
             self._label(part)
         for node in dict.fromkeys(n for p in self.others for n in p.nodes if n in self.at):
             self._draw_mark(name_of(node))
-        for part in self.members:
-            if part.type_name == "frame":
-                self._draw_coordinate(part)
+        for part in (p for p in self.members if p.type_name == "frame"):
+            self._draw_coordinate(part)
 
     # -------------------------------------------------------------------------------------------- places
 
@@ -131,11 +116,9 @@ class _Plan:
             return False
         if part.type_name in MEMBERS or part.symbol.role == "body":
             return True
-        places = {tuple(round(v, 3) for v in self.at[n]) for n in part.nodes}
-        if part.symbol.role in ("support", "source"):
-            return len(places) == 1
-        if part.type_name == "torsion_spring" and len(part.nodes) > 1:
-            return len(places) == 1
+        is_spiral = part.type_name == "torsion_spring" and len(part.nodes) > 1
+        if is_spiral or part.symbol.role in ("support", "source"):
+            return len({tuple(round(v, 3) for v in self.at[n]) for n in part.nodes}) == 1
         return part.type_name in ALONE and len(part.nodes) == 1 and any(not e.node for e in part.ends)
 
     def _vectors(self) -> dict[str, tuple[float, float]]:
@@ -151,13 +134,10 @@ class _Plan:
 
     def _place(self) -> dict[str, tuple[Point, Point]]:
         """Return where both ends of each member are, at the scale of the drawing."""
-        vectors = self._vectors()
         joints = {p.name: [self.joint(e.node) if e.node else "" for e in p.ends] for p in self.members}
-        ends = places_of_members({name: (a, b, vectors[name]) for name, (a, b) in joints.items()})
-        points = [p for pair in ends.values() for p in pair]
-        box = around(points)
-        sizes = [hypot(b[0] - a[0], b[1] - a[1]) for a, b in ends.values()]
-        least = min(sizes)
+        ends = places_of_members({name: (a, b, self.vectors[name]) for name, (a, b) in joints.items()})
+        box = around(p for pair in ends.values() for p in pair)
+        least = min(dist(a, b) for a, b in ends.values())
         scale = EXTENT / (max(box.width, box.height) or 1.0)
         scale = max(scale, SHORTEST / least) if least > SAME else scale
         return {n: ((a[0] * scale, a[1] * scale), (b[0] * scale, b[1] * scale)) for n, (a, b) in ends.items()}
@@ -166,25 +146,23 @@ class _Plan:
         for node, (x, y) in self.at.items():
             if all(self.at[other] != (x, y) for other in self.radius):
                 radius = JOINT if self._meeting((x, y)) > 1 else DOT
-                self.items.append(Placed("node", node, (circle(x, y, radius, fill="#000000"),)))
+                self.items.append(Placed("node", node, (circle(x, y, radius, fill=BLACK),)))
 
     def _is_sound(self) -> bool:
         """Tell whether members lie beside each other, and each between its own ends."""
-        vectors = self._vectors()
-        for name, ((ax, ay), (bx, by)) in self.ends.items():
-            dx, dy = vectors[name]
-            size = hypot(bx - ax, by - ay)
-            along = ((bx - ax) * dx + (by - ay) * dy) / (size * hypot(dx, dy)) if size else 0.0
+        for name, (a, b) in self.ends.items():
+            dx, dy = self.vectors[name]
+            size = dist(a, b)
+            along = ((b[0] - a[0]) * dx + (b[1] - a[1]) * dy) / (size * hypot(dx, dy)) if size else 0.0
             if not SHORTEST - 1 < size < LONGEST or along < 1 - SAME:
                 return False
         for one, other in combinations(self.ends.values(), 2):
             pieces = [list(_pieces(*pair, skip=9.0)) for pair in (one, other)]
             if any(a.overlaps(b) for a in pieces[0] for b in pieces[1]):
                 return False
-        clamps = [
-            xy for p in self.members for e, xy in zip(p.ends, self.ends[p.name], strict=True) if not e.node
-        ]
-        return all(hypot(a[0] - b[0], a[1] - b[1]) > 2 * CLAMP for a, b in combinations(clamps, 2))
+        pairs = (pair for p in self.members for pair in zip(p.ends, self.ends[p.name], strict=True))
+        clamps = [place for end, place in pairs if not end.node]
+        return all(dist(a, b) > 2 * CLAMP for a, b in combinations(clamps, 2))
 
     # ------------------------------------------------------------------------------------------- drawing
 
@@ -198,39 +176,40 @@ class _Plan:
     def _first_free(self, items: Sequence[Placed], moves: Iterable[Point]) -> Point:
         """Return the first move after which parts touch nothing that is drawn; the last one if all do."""
         pieces = [e.grown(1.6 if i.texts else 0.8) for i in items for e in i.extents]
-        last = (0.0, 0.0)
-        for dx, dy in moves:
-            last = (dx, dy)
-            if not any(p.moved(dx, dy).overlaps(s) for p in pieces for s in self.solid):
+        move = (0.0, 0.0)
+        for move in moves:
+            if not any(p.moved(*move).overlaps(s) for p in pieces for s in self.solid):
                 break
-        return last
+        return move
 
     def _draw_bodies(self, bodies: Sequence[DrawnPart]) -> None:
         for node in dict.fromkeys(p.nodes[0] for p in bodies):
             own = [p for p in bodies if p.nodes[0] == node]
             written = [r",\,".join(one for one in (p.label, p.centre[0]) if one) for p in own]
-            texts = [label_texts(one, p.name, p.lines) for one, p in zip(written, own, strict=True)]
-            blocks = [union(t.box for t in block) for block in texts]
+            labels = [label_of(replace(p, label=one)) for one, p in zip(written, own, strict=True)]
+            blocks = [label.box for label in labels]
             wide = max(14.0, *(b.width + 6 for b in blocks))
-            heights = [
-                wide if p.type_name == "inertia" else max(13.0, b.height + 6)
-                for p, b in zip(own, blocks, strict=True)
-            ]
+            wheels = [p.type_name == "inertia" for p in own]
+            heights = [wide if w else max(13.0, b.height + 6) for w, b in zip(wheels, blocks, strict=True)]
             x, y = self.at[node]
             top = y + sum(heights) / 2
             self.radius[node] = (wide / 2, sum(heights) / 2)
-            for part, block, box, height in zip(own, texts, blocks, heights, strict=True):
+            for part, label, height in zip(own, labels, heights, strict=True):
                 shape = rectangle(x - wide / 2, top - height, x + wide / 2, top, FILLED)
                 if part.type_name == "inertia":
-                    shape = circle(x, top - height / 2, min(wide, height) / 2, FILLED)
+                    shape = circle(x, top - height / 2, wide / 2, FILLED)
                 self._add(Placed(part.kind, part.name, (shape,)))
-                middle = top - height / 2 - (box.y0 + box.y1) / 2
-                self._add(Placed("label", part.name, (), tuple(t.moved(x, middle) for t in block)))
+                self._add(label.moved(x, top - height / 2 - label.box.centre[1]))
                 top -= height
 
     def _meeting(self, place: Point) -> int:
         """Return how many members meet at a place."""
         return sum(_is_near(end, place) for pair in self.ends.values() for end in pair)
+
+    def _body_at(self, place: Point) -> tuple[float, float]:
+        """Return half the width and height of the body at a place, noughts where there is none."""
+        found = [size for node, size in self.radius.items() if self.at[node] == place]
+        return found[-1] if found else (0.0, 0.0)
 
     def _shortened(self, part: DrawnPart) -> tuple[Point, Point]:
         """Return the ends of a member at the surfaces of bodies."""
@@ -238,72 +217,61 @@ class _Plan:
         size, d = _direction(a, b)
         cuts = []
         for end, place, sign in ((part.ends[0], a, 1.0), (part.ends[1], b, -1.0)):
-            wide, tall = self.radius.get(end.node, (0.0, 0.0)) if end.node else (0.0, 0.0)
-            for other in self.radius if end.node else ():
-                if self.at[other] == self.at[end.node]:
-                    wide, tall = self.radius[other]
+            wide, tall = self._body_at(self.at[end.node]) if end.node else (0.0, 0.0)
             reach = [h / abs(c) for h, c in ((wide, d[0]), (tall, d[1])) if abs(c) > SAME]
             meets = end.node and self._meeting(self.at[end.node]) > 1
             cut = min(reach) if wide else JOINT + 0.6 if meets else 0.0
-            narrow = self._narrowest(part, place, (sign * d[0], sign * d[1]))
+            others = self._directions(place, but=part.name)
+            cosines = (sign * (d[0] * e[0] + d[1] * e[1]) for e in others)
+            narrow = min((acos(max(-1.0, min(1.0, c))) for c in cosines), default=pi)
             cuts.append(max(cut, min(HALF / tan(narrow / 2), size / 3)) if narrow < SHARP else cut)
         return (a[0] + cuts[0] * d[0], a[1] + cuts[0] * d[1]), (b[0] - cuts[1] * d[0], b[1] - cuts[1] * d[1])
-
-    def _narrowest(self, part: DrawnPart, place: Point, d: Point) -> float:
-        """Return the angle between a member and the nearest other one where they meet."""
-        pairs = [pair for name, (a, b) in self.ends.items() if name != part.name for pair in ((a, b), (b, a))]
-        others = [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], place)]
-        return min((acos(max(-1.0, min(1.0, d[0] * e[0] + d[1] * e[1]))) for e in others), default=pi)
 
     def _draw_member(self, part: DrawnPart) -> None:
         a, b = self._shortened(part)
         _, (dx, dy) = _direction(a, b)
         nx, ny = -dy * HALF, dx * HALF
         corners = ((x + s * nx, y + s * ny) for (x, y), s in ((a, 1), (b, 1), (b, -1), (a, -1)))
-        shape = outline(*corners, fill=FILLED)
-        self._add(
-            Placed(part.kind, part.name, (shape if part.type_name == "frame" else line(a, b, width=MEMBER),))
-        )
+        is_frame = part.type_name == "frame"
+        shape = outline(*corners, fill=FILLED) if is_frame else line(a, b, width=MEMBER)
+        self._add(Placed(part.kind, part.name, (shape,)))
         ends = zip(part.ends, (a, b), self.ends[part.name], (-1.0, 1.0), strict=True)
         for end, at, joint, sign in ends:
             is_bare = not any(_is_near(self.at[n], joint) for n in self.radius)
-            if (
-                is_bare and hypot(at[0] - joint[0], at[1] - joint[1]) > JOINT + 1
-            ):  # at a sharp angle to another one only its axis reaches the joint
+            if is_bare and dist(at, joint) > JOINT + 1:
+                # At a sharp angle to another one only its axis reaches the joint.
                 self.items.append(Placed("wire", part.name, (line(joint, at, width=MEMBER),)))
             if not end.node:
                 clamp = Placed("ground", "", wall(-CLAMP, CLAMP, 1)).rotated(sign * dx, sign * dy)
                 self._add(clamp.moved(*at))
 
+    def _directions(self, place: Point, but: str = "") -> list[Point]:
+        """Return the directions of members from where they meet, but for one."""
+        ends = [pair for name, pair in self.ends.items() if name != but]
+        pairs = (pair for a, b in ends for pair in ((a, b), (b, a)))
+        return [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], place)]
+
     def _free_directions(self, node: str) -> list[Point]:
         """Return directions from a node, the one farthest from its members first."""
-        x, y = self.at[node]
-        pairs = (pair for a, b in self.ends.values() for pair in ((a, b), (b, a)))
-        taken = [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], (x, y))]
-        return sorted(
-            DIRECTIONS, key=lambda d: round(max((d[0] * t[0] + d[1] * t[1] for t in taken), default=0.0), 3)
-        )
+        taken = self._directions(self.at[node])
+
+        def nearest(d: Point) -> float:
+            return round(max((d[0] * t[0] + d[1] * t[1] for t in taken), default=0.0), 3)
+
+        return sorted(DIRECTIONS, key=nearest)
 
     def _surface(self, node: str, direction: Point) -> float:
         """Return how far the body at a node reaches in a direction along x or y."""
         wide, tall = self.radius.get(node, (DOT + 1.0, DOT + 1.0))
         return wide if direction[0] else tall
 
-    def _at_surface(self, node: str, d: Point) -> Point:
-        x, y = self.at[node]
-        reach = self._surface(node, d)
-        return x + reach * d[0], y + reach * d[1]
-
     def _draw_support(self, part: DrawnPart) -> None:
         node = part.nodes[0]
         x, y = self.at[node]
         if len(part.nodes) > 1:
             x, y = self._hinge(part.nodes[1])
-            ring = (
-                circle(x, y, JOINT - 0.3)
-                if part.type_name == "pin"
-                else rectangle(x - 1.8, y - 1.8, x + 1.8, y + 1.8)
-            )
+            is_pin = part.type_name == "pin"
+            ring = circle(x, y, JOINT - 0.3) if is_pin else rectangle(x - 1.8, y - 1.8, x + 1.8, y + 1.8)
             self.items.append(Placed(part.kind, part.name, (ring,)))
             self.solid.append(self.items[-1].box)
             return
@@ -314,13 +282,11 @@ class _Plan:
             symbol = Placed(part.kind, part.name, guide(-7, 7, -1, 0)).rotated(0, 1)
             directions = [d for d in directions if bool(d[0]) is (component == "x")]
         for d in directions:
-            reach = self._surface(node, d) + CLEAR
-            turned = symbol.rotated(-d[1], d[0])
-            place = (x + d[0] * reach, y + d[1] * reach)
-            if self._first_free([turned], [place, (0.0, 0.0)]) == place:
-                self._add(
-                    turned.moved(*place), Placed("wire", node, (line(self._at_surface(node, d), place),))
-                )
+            surface = self._surface(node, d)
+            start, place = ((x + d[0] * r, y + d[1] * r) for r in (surface, surface + CLEAR))
+            turned = symbol.rotated(-d[1], d[0]).moved(*place)
+            if self._is_free([turned]):
+                self._add(turned, Placed("wire", node, (line(start, place),)))
                 break
         else:
             self._beside([symbol], node)
@@ -333,15 +299,14 @@ class _Plan:
     def _near(self, items: Sequence[Placed], what: Extent) -> None:
         """Draw parts beside a rectangle, in the first place that is free."""
         box = union(i.box for i in items)
-        centre, at, size = box.centre, what.centre, (what.width / 2, what.height / 2)
 
         def moves() -> Iterator[Point]:
-            for distance in DISTANCES:
-                for dx, dy in AROUND:
-                    side = ((dx > SAME) - (dx < -SAME), (dy > SAME) - (dy < -SAME))
-                    x = at[0] + dx * (size[0] + distance) + side[0] * box.width / 2
-                    y = at[1] + dy * (size[1] + distance) + side[1] * box.height / 2
-                    yield x - centre[0], y - centre[1]
+            distances = (4.0, 8.0, 13.0, 20.0, 30.0, 42.0, 60.0, 90.0, 130.0, 200.0)
+            for distance, (dx, dy) in product(distances, AROUND):
+                side = ((dx > SAME) - (dx < -SAME), (dy > SAME) - (dy < -SAME))
+                x = what.centre[0] + dx * (what.width / 2 + distance) + side[0] * box.width / 2
+                y = what.centre[1] + dy * (what.height / 2 + distance) + side[1] * box.height / 2
+                yield x - box.centre[0], y - box.centre[1]
 
         move = self._first_free(items, moves())
         self._add(*(i.moved(*move) for i in items))
@@ -354,26 +319,22 @@ class _Plan:
         """Draw a spring or damper from a node to the ground, along the component that it acts on."""
         node = part.nodes[0]
         component = next(e.component for e in part.ends if e.node)
-        allowed = [
-            d for d in self._free_directions(node) if component == "theta" or bool(d[0]) is (component == "x")
-        ]
-        x, y = self.at[node]
+        free, is_turning = self._free_directions(node), component == "theta"
+        allowed = [d for d in free if is_turning or bool(d[0]) is (component == "x")]
         length = part.symbol.length
         tried: list[list[Placed]] = []
-        for stub in (2.0, 10.0, 20.0, 34.0, 50.0):
-            for d in allowed:
-                reach = self._surface(node, d) + stub
-                symbol = Placed(part.kind, part.name, part.symbol.draw(length)).moved(reach, 0)
-                base = Placed("ground", "", wall(-6, 6, 1, reach + length))
-                lead = Placed("wire", part.name, (line((self._surface(node, d), 0.0), (reach, 0.0)),))
-                items = [i.rotated(*d).moved(x, y) for i in (symbol, base, lead)]
-                tried.append(items)
-                if self._is_free(items):
-                    self._add(*items)
-                    self._finish(part, symbol.rotated(*d).moved(x, y))
-                    return
-        self._near(tried[0], _about((x, y), 4.0, 4.0))
-        self._finish(part, self.items[-len(tried[0])])
+        for stub, d in product((2.0, 10.0, 20.0, 34.0, 50.0), allowed):
+            reach = self._surface(node, d) + stub
+            symbol = Placed(part.kind, part.name, part.symbol.draw(length)).moved(reach, 0)
+            base = Placed("ground", "", wall(-6, 6, 1, reach + length))
+            lead = Placed("wire", part.name, (line((self._surface(node, d), 0.0), (reach, 0.0)),))
+            tried.append([i.rotated(*d).moved(*self.at[node]) for i in (symbol, base, lead)])
+            if self._is_free(tried[-1]):
+                self._add(*tried[-1])
+                break
+        else:
+            self._near(tried[0], _about(self.at[node], 4.0, 4.0))
+        self._finish(part, self.items[-3])
 
     def _hinge(self, node: str) -> Point:
         """Return where a member or spring turns about what a joint holds: the surface of a body there."""
@@ -393,9 +354,10 @@ class _Plan:
         sizes = (max(size) for n, size in self.radius.items() if self.at[n] == (x, y) and not is_apart)
         inner = max(sizes, default=JOINT)
         dx, dy = self._free_directions(node)[-1 if len(part.nodes) > 1 else 1]
-        steps = (i / SPIRAL_POINTS for i in range(SPIRAL_POINTS + 1))
-        polar = [(inner + CLEAR + SPIRAL * share, 2 * pi * SPIRAL_TURNS * (share - 1)) for share in steps]
-        items = [Placed(part.kind, part.name, (line(*((r * cos(a), r * sin(a)) for r, a in polar)),))]
+        steps = (i / 48 for i in range(48 + 1))
+        polar = [(inner + CLEAR + 7.0 * share, 2 * pi * 1.75 * (share - 1)) for share in steps]
+        spiral = line(*((r * cos(a), r * sin(a)) for r, a in polar))
+        items = [Placed(part.kind, part.name, (spiral,))]
         if len(part.nodes) == 1:
             items.append(Placed("ground", "", wall(-5, 5, 1, polar[-1][0])))
         turned = [i.rotated(dx, dy).moved(x, y) for i in items]
@@ -406,9 +368,7 @@ class _Plan:
 
     def _finish(self, part: DrawnPart, symbol: Placed) -> None:
         """Write what belongs to a symbol beside it."""
-        self._near(
-            [Placed("label", part.name, (), label_texts(part.label, part.name, part.lines))], symbol.box
-        )
+        self._near([label_of(part)], symbol.box)
         self._tags(part, part.nodes[0])
 
     def _draw_mark(self, mark: Mark) -> None:
@@ -417,15 +377,10 @@ class _Plan:
         if mark.style in ("force", "push"):
             kind, name, label = mark.labels[0]
             d = (1.0, 0.0) if mark.style == "force" else (0.0, 1.0)
-            shown = text(label)
-            for sign in (1.0, -1.0):
-                reach = sign * (self._surface(mark.node, d) + CLEAR)
-                ends = [
-                    (reach * d[0], reach * d[1]),
-                    ((reach + sign * 17) * d[0], (reach + sign * 17) * d[1]),
-                ]
-                start, tip = ends if sign > 0 else ends[::-1]
-                shaft = Placed(kind, name, arrow(start, tip, BOLD)).moved(x, y)
+            shown, reach = text(label), self._surface(mark.node, d) + CLEAR
+            for start in (reach, -reach - 17):
+                strokes = arrow((start, 0.0), (start + 17, 0.0), BOLD)
+                shaft = Placed(kind, name, strokes).rotated(*d).moved(x, y)
                 if self._is_free([shaft]):
                     self._add(shaft)
                     if shown:
@@ -460,34 +415,23 @@ class _Plan:
             at = min(max(size * share, 6.0), size - 6.0)
             x, y = a[0] + at * d[0], a[1] + at * d[1]
             options = []
-            for distance in (9.0, 14.0, 20.0, 30.0):
-                for sign in (1.0, -1.0):
-                    m = (sign * n[0], sign * n[1])
-                    far = _reach(shown.box, m) + distance + 2
-                    tip = (x + 3.0 * m[0], y + 3.0 * m[1])
-                    stem = line((x + distance * m[0], y + distance * m[1]), tip, width=THIN)
-                    cx, cy = shown.box.centre
-                    place = shown.moved(x + far * m[0] - cx, y + far * m[1] - cy)
-                    marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
-                    options.append([marker, Placed("label", name, (), (place,))])
+            for distance, sign in product((9.0, 14.0, 20.0, 30.0), (1.0, -1.0)):
+                m = (sign * n[0], sign * n[1])
+                far = _reach(shown.box, m) + distance + 2
+                tip = (x + 3.0 * m[0], y + 3.0 * m[1])
+                stem = line((x + distance * m[0], y + distance * m[1]), tip, width=THIN)
+                cx, cy = shown.box.centre
+                place = shown.moved(x + far * m[0] - cx, y + far * m[1] - cy)
+                marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
+                options.append([marker, Placed("label", name, (), (place,))])
             self._add(*next(filter(self._is_free, options), options[-1]))
-        texts = label_texts(part.label, part.name, part.lines)
-        block = union(t.box for t in texts)
-        centre = block.centre
-
-        def moves() -> Iterator[Point]:
-            far = _reach(block, n) + HALF + 2.5
-            for more in (0.0, 6.0, 14.0, 26.0, 40.0):
-                for share in (0.5, 0.38, 0.62, 0.25, 0.75):
-                    for sign in (1.0, -1.0):
-                        x, y = a[0] + share * size * d[0], a[1] + share * size * d[1]
-                        yield (
-                            x + sign * n[0] * (far + more) - centre[0],
-                            y + sign * n[1] * (far + more) - centre[1],
-                        )
-
-        own = Placed("label", part.name, (), texts)
-        self._add(own.moved(*self._first_free([own], moves())))
+        own = label_of(part)
+        (x, y), near = own.box.centre, _reach(own.box, n) + HALF + 2.5
+        tried = product((0.0, 6.0, 14.0, 26.0, 40.0), (0.5, 0.38, 0.62, 0.25, 0.75), (1.0, -1.0))
+        places = ((share * size, sign * (near + more)) for more, share, sign in tried)
+        moves = ((a[0] + u * d[0] + v * n[0], a[1] + u * d[1] + v * n[1]) for u, v in places)
+        own = own.moved(-x, -y)
+        self._add(own.moved(*self._first_free([own], moves)))
         for one in tags_of(part):
             self._near(one.placed, _about((a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), 4.0, 4.0))
 
@@ -509,7 +453,7 @@ def _about(centre: Point, wide: float, tall: float) -> Extent:
 
 def _direction(a: Point, b: Point) -> tuple[float, Point]:
     """Return how far one point is from another, and in which direction."""
-    size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
+    size = dist(a, b) or 1.0
     return size, ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
 
 
@@ -519,10 +463,8 @@ def _is_near(a: Point, b: Point) -> bool:
 
 def _pieces(a: Point, b: Point, skip: float) -> Iterator[Extent]:
     """Yield squares along a line between two points, but near its ends."""
-    size = hypot(b[0] - a[0], b[1] - a[1])
+    size = dist(a, b)
     count = max(2, int(size / 3))
-    for i in range(count + 1):
-        share = i / count
+    for share in (i / count for i in range(count + 1)):
         if skip < share * size < size - skip:
-            x, y = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
-            yield Extent(x - HALF, y - HALF, x + HALF, y + HALF)
+            yield _about((a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])), HALF, HALF)

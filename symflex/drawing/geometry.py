@@ -83,11 +83,7 @@ def free_level(room: Extent, limit: float, occupied: Sequence[Extent], *, is_up:
     """
     y = limit - (room.y0 if is_up else room.y1)
     beside = [b for b in occupied if b.x0 < room.x1 and room.x0 < b.x1]
-
-    def hits(place: Extent) -> list[Extent]:
-        return [b for b in beside if b.overlaps(place)]
-
-    while hit := hits(room.moved(0, y)):
+    while hit := [b for b in beside if b.overlaps(room.moved(0, y))]:
         y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
     return y
 
@@ -156,10 +152,9 @@ class Placed:
         self, place: Callable[[float, float], Point], texts: Iterable[Lettering], by: float = 1.0
     ) -> Placed:
         """Return the part with every point of its strokes elsewhere, its lines thicker, and other texts."""
-        strokes = (
-            replace(s, points=tuple(place(*p) for p in s.points), width=by * s.width) for s in self.strokes
-        )
-        return replace(self, strokes=tuple(strokes), texts=tuple(texts))
+        moved = ((tuple(place(*p) for p in s.points), s) for s in self.strokes)
+        strokes = tuple(replace(s, points=points, width=by * s.width) for points, s in moved)
+        return replace(self, strokes=strokes, texts=tuple(texts))
 
     @property
     def extents(self) -> tuple[Extent, ...]:
@@ -207,9 +202,8 @@ _SHORT, _PIECE = 20.0, 3.0
 
 
 def _is_slanted(a: Point, b: Point) -> bool:
-    return (
-        min(abs(a[0] - b[0]), abs(a[1] - b[1])) > 1.0 and max(abs(a[0] - b[0]), abs(a[1] - b[1])) > _SHORT / 2
-    )
+    shorter, longer = sorted((abs(a[0] - b[0]), abs(a[1] - b[1])))
+    return shorter > 1.0 and longer > _SHORT / 2
 
 
 def _pieces(a: Point, b: Point) -> Iterator[Extent]:
@@ -230,12 +224,8 @@ class Drawing:
 
     def scaled(self, by: float) -> Drawing:
         """Return the drawing larger or smaller."""
-        return replace(
-            self,
-            width=by * self.width,
-            height=by * self.height,
-            items=tuple(i.scaled(by) for i in self.items),
-        )
+        items = tuple(i.scaled(by) for i in self.items)
+        return replace(self, width=by * self.width, height=by * self.height, items=items)
 
     def of_kind(self, *kinds: str) -> tuple[Placed, ...]:
         """Return the parts of some kinds."""

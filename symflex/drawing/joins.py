@@ -32,8 +32,6 @@ BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 LONGEST: Final = 300.0
 """Cost of a way that would rather confuse."""
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
-ROUNDS: Final = 3
-"""In which wires that meet look for other ways; the first ones do not know what comes after them."""
 Cell = tuple[int, int]
 
 
@@ -68,7 +66,7 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     blocked.update((x, y) for x in (0, right) for y in range(top + 1))
     blocked.update((x, y) for x in range(right + 1) for y in (0, top))
     ways: list[list[Point]] = [[] for _ in joins]
-    for turn in range(ROUNDS):
+    for turn in range(3):  # wires that meet look for other ways: the first do not know what comes after them
         for i, one in enumerate(joins):
             others = {c for way in ways if way is not ways[i] for c in _passed(way)}
             if not turn or others & set(_passed(ways[i])):
@@ -142,8 +140,10 @@ def _way(
     first: Sequence[Extent], last: Sequence[Extent], blocked: set[Cell], crossed: Mapping[Cell, float]
 ) -> list[Point]:
     """Return where the cheapest way begins, turns and ends, or nothing where there is none (A*)."""
-    starts = {c: p for box in first for c, p in _beside(box).items() if c not in blocked}
-    ends = {c: p for box in last for c, p in _beside(box).items() if c not in blocked}
+    starts, ends = (
+        {c: p for box in boxes for c, p in _beside(box).items() if c not in blocked}
+        for boxes in (first, last)
+    )
     if not starts or not ends:
         return []
     goal = union(Extent(x, y, x, y) for x, y in ends)
@@ -158,10 +158,8 @@ def _way(
     best: dict[tuple[Cell, int], float] = {}
     before: dict[tuple[Cell, int], tuple[Cell, int] | None] = {}
     for cell in sorted(starts):
-        for d, (dx, dy) in enumerate(STEPS):
-            x, y = _centre(cell)
-            is_away = (x - starts[cell][0]) * dx + (y - starts[cell][1]) * dy > 0
-            if is_away:
+        for d in range(len(STEPS)):
+            if _leads(starts[cell], d, _centre(cell)):
                 best[cell, d], before[cell, d] = 0.0, None
                 heappush(pending, (left(cell), cell, d))
     seen: set[tuple[Cell, int]] = set()
@@ -170,7 +168,7 @@ def _way(
         if (cell, d) in seen:
             continue
         seen.add((cell, d))
-        if cell in ends and _leads_to(cell, d, ends[cell]):
+        if cell in ends and _leads(_centre(cell), d, ends[cell]):
             points, place = [ends[cell]], (cell, d)
             while (earlier := before[place]) is not None:
                 if earlier[1] != place[1]:
@@ -189,6 +187,5 @@ def _way(
     return []
 
 
-def _leads_to(cell: Cell, d: int, goal: Point) -> bool:
-    (x, y), (dx, dy) = _centre(cell), STEPS[d]
-    return (goal[0] - x) * dx + (goal[1] - y) * dy > 0
+def _leads(start: Point, d: int, goal: Point) -> bool:
+    return (goal[0] - start[0]) * STEPS[d][0] + (goal[1] - start[1]) * STEPS[d][1] > 0

@@ -29,7 +29,7 @@ from symflex.print.writer import Style
 from symflex.quantities import looks_like_quantity, parse_quantity, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.expressions import Expression
     from symflex.model import Model, ModelParameter
@@ -74,6 +74,15 @@ def column_of(lines: Sequence[Lettering]) -> tuple[Lettering, ...]:
         placed.append(one.moved(-one.width / 2, y))
         y += one.height + LEADING
     return tuple(reversed(placed))
+
+
+def downwards(lines: Iterable[Lettering], y: float, between: float) -> tuple[list[Lettering], float]:
+    """Return lines one below the other from a height down, and where they end."""
+    placed = []
+    for one in lines:
+        placed.append(one.moved(0.0, y - one.height))
+        y -= one.height + one.depth + between
+    return placed, y
 
 
 def filled(parts: Sequence[str], width: float, size: float = SMALL) -> list[Lettering]:

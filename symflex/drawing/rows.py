@@ -21,12 +21,11 @@ from symflex.drawing.cells import (
     SPACE,
     SPACINGS,
     WALL,
-    Built,
     Spacing,
     SymbolCell,
     build,
     coordinate,
-    label_texts,
+    label_of,
     strokes_of,
 )
 from symflex.drawing.columns import (
@@ -47,9 +46,9 @@ from symflex.drawing.columns import (
     upright_mark,
     upright_width,
 )
-from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, free_level, union
+from symflex.drawing.geometry import BLACK, BOLD, LINE, THIN, Extent, Placed, free_level, union
 from symflex.drawing.lettering import text
-from symflex.drawing.order import ordered
+from symflex.drawing.order import order_of
 from symflex.drawing.scheme import Distance, Mark
 from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, guide, line, rectangle, wall
 from symflex.library.elements import CIRCUITS
@@ -60,7 +59,6 @@ if TYPE_CHECKING:
     from symflex.drawing.geometry import Point
     from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
-EMPTY_GAP: Final = 14.0
 SIDE_ARROW: Final = 20.0
 FACE: Final = 9.0
 """Room of a wall or a guide beside a node."""
@@ -68,8 +66,6 @@ MARK: Final = 17.0
 """Height of what stands upright at a node."""
 WIDEST_LENGTH: Final = 34.0
 """Of a length that a dimension shows; a longer one stands in the label of its member [points]."""
-BLADE: Final = 2.2
-"""Width of a lead to a member."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +78,10 @@ class _SideArrow:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """Something in a gap, and how high above the axis."""
+    """Something in a gap, how wide it is and how high above the axis."""
 
     what: SymbolCell | _SideArrow
-    built: Built | None
+    width: float
     y: float
 
 
@@ -94,27 +90,6 @@ def lay_out(
 ) -> tuple[Placed, ...]:
     """Return a network as a row, the axis of its columns at y = 0."""
     return tuple(_Layout(network, domains, spacing).items)
-
-
-def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the nodes of a network from left to right."""
-    pull = dict.fromkeys(network.nodes, 0.0)
-    for part in network.parts:
-        if len(part.ends) > 1 and any(not e.node for e in part.ends):
-            for node in part.nodes:
-                pull[node] -= 0.7
-        for node in part.nodes[:1]:
-            pull[node] -= {"source": 0.6, "support": 0.1}.get(part.symbol.role, 0.0)
-    for mark in network.marks:
-        kinds = {kind for kind, *_ in mark.labels}
-        moved = mark.style in ("motion", "raise", "twist")
-        pull[mark.node] += (-2.0 if moved else -0.4) if "input" in kinds else 0.15
-    joints = [pair for p in network.parts for pair in pairwise(p.nodes)]
-    directed = {pair for p in network.parts if p.symbol.role == "member" for pair in pairwise(p.nodes)}
-    lanes = {n: domains[n] for n in network.nodes}
-    found = ordered(network.nodes, joints, pull, lanes, directed)
-    wanted = iter(network.order)
-    return tuple(next(wanted) if n in network.order else n for n in found)
 
 
 @dataclass
@@ -150,6 +125,9 @@ class _Layout:
         self._draw_bridges()
         self._draw_above()
 
+    def _column(self, node: str) -> Column:
+        return self.columns[self.at[node]]
+
     # ------------------------------------------------------------------------------------ where parts go
 
     def _sort_parts(self) -> None:
@@ -172,18 +150,15 @@ class _Layout:
             else:
                 self._sort_branch(part, columns)
         for cells in self.direct:
+            # The length of a member that is alone in its gap is a dimension, instead of in its label.
             members = [c for c in cells if isinstance(c, SymbolCell) and c.is_member]
-            if len(members) == 1:
-                self._measure_length(members[0])
-
-    def _measure_length(self, cell: SymbolCell) -> None:
-        """Show the length of a member that is alone in its gap as a dimension, instead of in its label."""
-        part, (length, rest) = cell.part, cell.part.dimension
-        nodes = tuple(next((e.node for e in side if e.node), "") for side in (cell.left, cell.right))
-        if (shown := text(length)) and shown.width <= WIDEST_LENGTH:
-            lines = () if rest else part.lines
-            self.spans.append(Distance((nodes[0], nodes[1]), part.name, length, lines, is_length=True))
-            cell.part = replace(part, label=rest)
+            length, rest = members[0].part.dimension if len(members) == 1 else ("", "")
+            if (shown := text(length)) and shown.width <= WIDEST_LENGTH:
+                cell, part = members[0], members[0].part
+                left, right = (next((e.node for e in side if e.node), "") for side in (cell.left, cell.right))
+                lines = () if rest else part.lines
+                self.spans.append(Distance((left, right), part.name, length, lines, is_length=True))
+                cell.part = replace(part, label=rest)
 
     def _sort_grounded(self, part: DrawnPart, index: int) -> None:
         """Place what lies between a node and the ground, or two components of a node."""
@@ -247,15 +222,15 @@ class _Layout:
         last = len(self.columns) - 1
         for mark in self.network.marks:
             self.columns[self.at[mark.node]].marks.append(mark)
-        for index, column in enumerate(self.columns):
-            for mark in [m for m in column.marks if m.style == "force" and index in (0, last)]:
-                column.marks.remove(mark)
-                gap = last + 1 if index == last else 0
-                self.direct[gap].insert(0, _SideArrow(mark, index))
-        ends = [e.node for cell in self.bridges for e in (*cell.left, *cell.right)]
-        for node in (*ends, *(n for span in self.spans for n in span.nodes if not span.is_length)):
-            if node:
-                self.columns[self.at[node]].has_lead_up = True
+        for index in sorted({0, last}) if self.columns else ():
+            for mark in [m for m in self.columns[index].marks if m.style == "force"]:
+                self.columns[index].marks.remove(mark)
+                self.direct[last + 1 if index == last else 0].insert(0, _SideArrow(mark, index))
+        for node in (
+            *(end.node for cell in self.bridges for end, *_ in cell.attached()),
+            *(n for span in self.spans for n in span.nodes if not span.is_length),
+        ):
+            self._column(node).has_lead_up = True
 
     def _sort_supports(self) -> None:
         """Stand walls and guides beside the first and last node, where there is room."""
@@ -278,12 +253,12 @@ class _Layout:
             if isinstance(one, SymbolCell):
                 one.is_label_below = i == len(cells) - 1 and i > 0
                 built = build(one, self.spacing)
-                above, below = built.above, built.below
+                width, above, below = built.width, built.above, built.below
             else:
                 labels = union(i.box for i in texts_of_mark(one.mark, 0.0, 0.0))
-                built, above, below = None, 5.0 + labels.height, -4.0
+                width, above, below = max(SIDE_ARROW, labels_width(one.mark)), 5.0 + labels.height, -4.0
             y -= above + SPACE if i else 0.0
-            found.append(_Level(one, built, y))
+            found.append(_Level(one, width, y))
             y += below
         middle = (found[0].y + found[-1].y) / 2 if found else 0.0
         return [replace(level, y=level.y - middle) for level in found]
@@ -291,10 +266,8 @@ class _Layout:
     def _measure(self) -> None:
         for level in (level for gap in self.gaps for level in gap):
             if isinstance(level.what, SymbolCell):
-                for side in (level.what.left, level.what.right):
-                    for end, offset in zip(side, level.what.offsets(side), strict=True):
-                        if end.node:
-                            self.columns[self.at[end.node]].levels.append(level.y + offset)
+                for end, offset, _ in level.what.attached():
+                    self._column(end.node).levels.append(level.y + offset)
             else:
                 self.columns[level.what.column].levels.append(level.y)
         for index, column in enumerate(self.columns):
@@ -306,11 +279,11 @@ class _Layout:
         edges, x = [], 0.0
         for g, levels in enumerate(self.gaps):
             bridging = (build(b, self.spacing).width for b in self.bridges if b.gap == g)
-            width = max([0.0, *bridging, *(self._width_of(level) for level in levels)])
+            width = max([0.0, *bridging, *(level.width for level in levels)])
             before = self.columns[g - 1] if g else None
             after = self.columns[g] if g < len(self.columns) else None
             if before and after:
-                width = max(width, 0.0 if levels else EMPTY_GAP)
+                width = max(width, 0.0 if levels else 14.0)
                 if self.spacing.has_room:
                     wide = max([0.0, *(flat_width(m) for m in before.marks if m not in before.upright)])
                     width = max(width, wide - before.right - after.left)
@@ -321,13 +294,6 @@ class _Layout:
                 after.x = x + after.left
                 x = after.x + after.right
         return edges
-
-    @staticmethod
-    def _width_of(level: _Level) -> float:
-        if level.built:
-            return level.built.width
-        assert isinstance(level.what, _SideArrow)
-        return max(SIDE_ARROW, labels_width(level.what.mark))
 
     # ------------------------------------------------------------------------------------------- drawing
 
@@ -355,12 +321,8 @@ class _Layout:
             return
         index = self.at[column.name]
         bare = [side for side in (-1, 1) if not self.gaps[index + (side > 0)]]
-        if (
-            bare
-            and not column.faces
-            and not column.is_flat
-            and any(m.style == "motion" for m in column.marks)
-        ):
+        is_along = not column.faces and not column.is_flat
+        if bare and is_along and any(m.style == "motion" for m in column.marks):
             self._add(Placed("ground", column.name, wall(bottom, top, bare[0], x)))
         else:
             width = LINE if column.is_electrical else BOLD if column.kind == "rotation" else 1.4
@@ -368,7 +330,7 @@ class _Layout:
         joints = len(column.levels) + len(column.hanging) + column.has_lead_up
         if (column.is_flat and joints > 1) or (column.is_electrical and joints > 2):  # noqa: PLR2004
             levels = dict.fromkeys(column.levels or [0.0]) if column.is_electrical else [0.0]
-            self._add(Placed("node", column.name, tuple(circle(x, y, DOT, fill="#000000") for y in levels)))
+            self._add(Placed("node", column.name, tuple(circle(x, y, DOT, fill=BLACK) for y in levels)))
 
     def _draw_gap(self, g: int) -> None:
         low, high = self.edges[g]
@@ -379,24 +341,20 @@ class _Layout:
             cell = level.what
             first, last = low, high
             if cell.is_member:
-                left, right = (
-                    next((self.columns[self.at[e.node]] for e in side if e.node), None)
-                    for side in (cell.left, cell.right)
-                )
-                first = left.x + left.half if left else low
-                last = right.x - right.half if right else high
+                for end, _, sign in cell.attached():
+                    column = self._column(end.node)
+                    first = column.x + column.half if sign > 0 else first
+                    last = column.x - column.half if sign < 0 else last
                 cell.margins = (low - first, last - high)
             built = build(cell, self.spacing, last - first)
             self._add(*(p.moved(first, level.y) for p in built.placed))
             if cell.is_member:
                 box = next(i.box for i in built.placed if (i.kind, i.name) == ("element", cell.part.name))
                 self.members[cell.part.name] = (cell, box.moved(first, level.y))
-            for side, edge, sign in ((cell.left, first, 1), (cell.right, last, -1)):
-                for end, offset in zip(side, cell.offsets(side), strict=True):
-                    if end.node:
-                        column = self.columns[self.at[end.node]]
-                        face, y = column.x + sign * column.half, level.y + offset
-                        self._wire(cell.part.name, (edge, y), (face, y), width=_wire_width(cell, end))
+            for end, offset, sign in cell.attached():
+                column, y = self._column(end.node), level.y + offset
+                ends = ((first if sign > 0 else last, y), (column.x + sign * column.half, y))
+                self._wire(cell.part.name, *ends, width=_wire_width(cell, end))
         self._join_walls(g)
 
     def _join_walls(self, g: int) -> None:
@@ -404,10 +362,8 @@ class _Layout:
         low, high = self.edges[g]
         if 0 < g < len(self.columns):
             return
-        inside = [
-            i for i in self.items if i.kind == "ground" and not i.name and low - HATCH - 1 <= i.box.x0 <= high
-        ]
-        walls = [i for i in inside if i.box.height > i.box.width]
+        grounds = [(i, i.box) for i in self.items if i.kind == "ground" and not i.name]
+        walls = [i for i, b in grounds if low - HATCH - 1 <= b.x0 <= high and b.height > b.width]
         if len(walls) < 2 or len({round(w.box.x0, 3) for w in walls}) > 1:  # noqa: PLR2004
             return
         box, side = union(w.box for w in walls), -1 if g == 0 else 1
@@ -419,15 +375,15 @@ class _Layout:
         column, (low, high) = self.columns[shown.column], self.edges[gap]
         if gap > shown.column:
             start = column.x + max(column.half, 1.0)
-            ends = (start, max(start + SIDE_ARROW, high))
+            end = max(start + SIDE_ARROW, high)
         else:
             end = column.x - max(column.half, 0.5)
-            ends = (min(low, end - SIDE_ARROW), end)
+            start = min(low, end - SIDE_ARROW)
         kind, name, _ = shown.mark.labels[0]
-        self._add(Placed(kind, name, arrow((ends[0], y), (ends[1], y), BOLD)))
+        self._add(Placed(kind, name, arrow((start, y), (end, y), BOLD)))
         texts = texts_of_mark(shown.mark, 0.0, 0.0)
         box = union(i.box for i in texts)
-        self._add(*(i.moved(sum(ends) / 2 - box.centre[0], y + 3.5 - box.y0) for i in texts))
+        self._add(*(i.moved((start + end) / 2 - box.centre[0], y + 3.5 - box.y0) for i in texts))
 
     # --------------------------------------------------------------------------------- below and above it
 
@@ -520,33 +476,30 @@ class _Layout:
     def _draw_bridges(self) -> None:
         """Draw what joins nodes that are not neighbours above everything between them, short ones first."""
 
-        def spanned(cell: SymbolCell) -> tuple[int, int]:
-            ends = [self.at[e.node] for e in (*cell.left, *cell.right) if e.node]
-            return min(ends), max(ends)
+        def spanned(cell: SymbolCell) -> list[Column]:
+            ends = [self.at[end.node] for end, *_ in cell.attached()]
+            return self.columns[min(ends) : max(ends) + 1]
 
-        for cell in sorted(self.bridges, key=lambda c: spanned(c)[1] - spanned(c)[0]):
+        for cell in sorted(self.bridges, key=lambda c: len(spanned(c))):
             built = build(cell, self.spacing)
             start = (sum(self.edges[cell.gap]) - built.width) / 2
-            between = self.columns[spanned(cell)[0] : spanned(cell)[1] + 1]
+            between = spanned(cell)
             ends = (min(between[0].lead_x, start), max(between[-1].lead_x, start + built.width))
             room = Extent(ends[0] - 2, built.below - SPACE, ends[1] + 2, built.above + SPACE)
             above = MARK + 1 if any(c.upright for c in between) else 3
             y = self._free(room, max(c.top for c in between) + above, is_up=True)
             self._add(*(p.moved(start, y) for p in built.placed))
             self.occupied.append(room.moved(0, y))
-            for side, edge in ((cell.left, start), (cell.right, start + built.width)):
-                for end, offset in zip(side, cell.offsets(side), strict=True):
-                    if end.node:
-                        column = self.columns[self.at[end.node]]
-                        x, level = column.lead_x, y + offset
-                        self.leads.append(Extent(x - 1, column.top, x + 1, level))
-                        route: tuple[Point, ...]
-                        route = ((edge, level), (x, level), (x, column.top), (column.x, column.top))
-                        if column.crown:  # beside the label of a disc, to the end of its shaft
-                            x = column.x - column.half
-                            shaft = (column.top - column.crown + column.bottom) / 2
-                            route = ((edge, level), (x, level), (x, shaft))
-                        self._wire(cell.part.name, *route, width=_wire_width(cell, end))
+            for end, offset, sign in cell.attached():
+                column, level = self._column(end.node), y + offset
+                x = column.lead_x
+                self.leads.append(Extent(x - 1, column.top, x + 1, level))
+                foot = [(x, column.top), (column.x, column.top)]
+                if column.crown:  # beside the label of a disc, to the end of its shaft
+                    x = column.x - column.half
+                    foot = [(x, (column.top - column.crown + column.bottom) / 2)]
+                edge = (start if sign > 0 else start + built.width, level)
+                self._wire(cell.part.name, edge, (x, level), *foot, width=_wire_width(cell, end))
 
     def _draw_above(self) -> None:
         for column in reversed(self.columns):
@@ -558,13 +511,11 @@ class _Layout:
         flat = [(c, m, c.lead_x) for c in reversed(self.columns) for m in c.marks if m not in c.upright]
         rooms = [Extent(x - 1, -2.5, x + flat_width(m), 11.0) for _, m, x in flat]
         # Datums stand at one height where that is possible.
-        level = max(
-            (
-                self._free(r, c.top + 3, is_up=True, leads=self.leads)
-                for (c, *_), r in zip(flat, rooms, strict=True)
-            ),
-            default=0.0,
+        levels = (
+            self._free(room, column.top + 3, is_up=True, leads=self.leads)
+            for (column, *_), room in zip(flat, rooms, strict=True)
         )
+        level = max(levels, default=0.0)
         for (column, mark, x), room in zip(flat, rooms, strict=True):
             y = self._free(room, level - 1.0, is_up=True, leads=self.leads)
             self._wire(mark.labels[0][1], (column.x, column.top), (x, column.top), (x, y), width=THIN)
@@ -574,7 +525,7 @@ class _Layout:
     def _end_of(self, span: Distance, i: int) -> Point:
         """Return the point from which a lead goes up to one end of a distance."""
         if span.nodes[i]:
-            column = self.columns[self.at[span.nodes[i]]]
+            column = self._column(span.nodes[i])
             if span.is_length:
                 return column.x, column.top + MARK * bool(column.upright)
             return column.lead_x, column.top
@@ -586,18 +537,18 @@ class _Layout:
         found = []
         for span in sorted(self.spans, key=lambda s: not s.is_length):
             ends = (self._end_of(span, 0), self._end_of(span, 1))
-            texts = label_texts(span.label, span.name, span.lines)
-            shown = union(t.box for t in texts)
+            label = label_of(span)
+            shown = label.box
             left, right = sorted(x for x, _ in ends)
             more = max(0.0, shown.width + 4 - (right - left)) / 2 + (0.0 if span.is_length else 1.0)
             room = Extent(left - more, -3.0, right + more, 5.0 + shown.height)
             y = self._free(room, max(y for _, y in ends) + 4, is_up=True)
-            found.append((span, ends, texts, shown, room, y))
+            found.append((span, ends, label, room, y))
         level = max((y for span, *_, y in found if span.is_length), default=0.0)
-        for span, ends, texts, shown, room, free in found:
+        for span, ends, label, room, free in found:
             y = self._free(room, (level if span.is_length else free) - 3.0, is_up=True)
             for node, (x, top) in zip(span.nodes, ends, strict=True):
-                foot = (self.columns[self.at[node]].x if node else x, top)
+                foot = (self._column(node).x if node else x, top)
                 self._wire(span.name, foot, (x, top), (x, y + 3), width=THIN)
             kind, width = ("length", THIN) if span.is_length else ("output", LINE)
             (a, _), (b, _) = ends
@@ -607,12 +558,11 @@ class _Layout:
             # Leads go up between them.
             between = sorted(c.lead_x for c in self.columns if low <= c.lead_x <= high)
             widest = max(pairwise(between), key=lambda pair: pair[1] - pair[0], default=(low, high))
-            start, end = widest if widest[1] - widest[0] > shown.width + 2 else (low, high)
-            place = ((start + end) / 2, y + 3 - shown.y0)
-            self._add(Placed("label", span.name, (), tuple(t.moved(*place) for t in texts)))
+            start, end = widest if widest[1] - widest[0] > label.box.width + 2 else (low, high)
+            self._add(label.moved((start + end) / 2, y + 3 - label.box.y0))
 
 
 def _wire_width(cell: SymbolCell, end: End) -> float:
     if cell.is_member and cell.part.type_name != "string":
-        return BLADE
+        return 2.2
     return BOLD if end.domain == "rotation" else LINE

@@ -17,16 +17,15 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.drawing.signals import whole
 from symflex.drawing.symbols import (
+    FORCE_BETWEEN,
+    MOTION_BETWEEN,
     SYMBOLS,
+    TORQUE_BETWEEN,
     TRANSFORMER_SYMBOLS,
     TRANSFORMERS,
     ElementSymbol,
     box,
-    effort_between,
-    motion_between,
-    symbol_of,
     tapered,
-    torque_between,
 )
 from symflex.expressions import (
     Attribute,
@@ -55,6 +54,7 @@ if TYPE_CHECKING:
 GROUND: Final = ""
 Domains = Mapping[str, str]
 Depths = tuple[float, ...]
+Tags = tuple[tuple[str, str, str], ...]
 Style = Literal["shift", "lift", "turn", "probe", "force", "push", "torque", "motion", "raise", "twist"]
 
 
@@ -78,7 +78,7 @@ class DrawnPart:
     ends: tuple[End, ...]
     label: str  # mathematics
     lines: tuple[str, ...] = ()  # what it is called, and values where they are asked for
-    tags: tuple[tuple[str, str, str], ...] = ()  # what shows or reads what it carries, as of a mark
+    tags: Tags = ()  # what shows or reads what it carries, as of a mark
     points: tuple[tuple[float, str, str], ...] = ()  # share of its length, output there and its label
     depths: Depths = ()  # of a member that tapers, at even stations
     # Of a body: where its mass centre lies, in mathematics, and whether that is before its node (-1).
@@ -99,7 +99,7 @@ class Mark:
     style: Style
     node: str
     # Kind (``input``, ``output``, ``element``, ``reading``), name and mathematics.
-    labels: tuple[tuple[str, str, str], ...]
+    labels: Tags
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,32 +182,22 @@ def with_readings(scheme: Scheme, readings: Sequence[str], labels: Labels) -> Sc
     networks = list(scheme.networks)
     for name in readings:
         owner, _, component = name.partition(".")
-        variable = Attribute(owner, component) if component else Name(owner)
+        end = _node(Attribute(owner, component) if component else Name(owner), scheme.domains)
+        shown = ("reading", name, labels.name(name))
         for i, net in enumerate(networks):
-            if owner in net.nodes:
-                networks[i] = _with_reading(
-                    net, name, _node(variable, scheme.domains), scheme.domains, labels
-                )
+            if owner in net.nodes and end:
+                style = _style(end, scheme.domains)
+                at = next((m for m in net.marks if (m.style, m.node) == (style, owner)), None)
+                marks = [m for m in net.marks if m is not at]
+                place = net.marks.index(at) if at else len(marks)
+                known = at.labels if at else ()
+                if all(label != shown[2] for *_, label in known):
+                    marks.insert(place, Mark(style, owner, (*known, shown)))
+                    networks[i] = replace(net, marks=tuple(marks))
             elif component and any(p.name == owner for p in net.parts):
-                shown = ("reading", name, labels.name(name))
                 parts = [replace(p, tags=(*p.tags, shown)) if p.name == owner else p for p in net.parts]
                 networks[i] = replace(net, parts=tuple(parts))
     return replace(scheme, networks=tuple(networks))
-
-
-def _with_reading(
-    net: DrawnNetwork, name: str, end: End | None, domains: Domains, labels: Labels
-) -> DrawnNetwork:
-    if end is None:
-        return net
-    style, shown = _style(end, domains), ("reading", name, labels.name(name))
-    marks = list(net.marks)
-    for i, mark in enumerate(marks):
-        if (mark.style, mark.node) == (style, end.node):
-            if all(label != shown[2] for *_, label in mark.labels):
-                marks[i] = replace(mark, labels=(*mark.labels, shown))
-            return replace(net, marks=tuple(marks))
-    return replace(net, marks=(*marks, Mark(style, end.node, (shown,))))
 
 
 @dataclass
@@ -227,43 +217,42 @@ class _Collected:
         end = None if of_signals else _node(core, domains)
         pair = None if of_signals else _difference(core, domains)
         place = _place(out.expression)
+        shown = ("output", out.name, label)
         if end:
-            self.seen.setdefault((_style(end, domains), end.node), []).append(("output", out.name, label))
+            self.seen.setdefault((_style(end, domains), end.node), []).append(shown)
         elif pair:
             self.spans.append(Distance(pair, out.name, label))
-        elif isinstance(core, Attribute) and self._tag(core.owner, out.name, label):
-            return
-        elif place and (index := self._index(place.name.partition(".")[0])) is not None:
-            share = _share(model, place)
-            points = (*self.parts[index].points, (share, out.name, label))
-            self.parts[index] = replace(self.parts[index], points=tuple(sorted(points)))
-        else:
-            self.others.append(out.name)
+        elif not (isinstance(core, Attribute) and self._tag(core.owner, shown)):
+            point = (_share(model, place), out.name, label) if place else None
+            if not (place and point and self._write(place.name.partition(".")[0], points=(point,))):
+                self.others.append(out.name)
 
-    def _index(self, name: str) -> int | None:
-        return next((i for i, p in enumerate(self.parts) if p.name == name), None)
+    def _write(self, name: str, tags: Tags = (), points: tuple[tuple[float, str, str], ...] = ()) -> bool:
+        """Add tags and points to a part; False where there is none of that name."""
+        for i, part in enumerate(self.parts):
+            if part.name == name:
+                every = tuple(sorted((*part.points, *points)))
+                self.parts[i] = replace(part, tags=(*part.tags, *tags), points=every)
+                return True
+        return False
 
-    def _tag(self, owner: str, name: str, label: str) -> bool:
+    def _tag(self, owner: str, shown: tuple[str, str, str]) -> bool:
         """Write an output at the element or input whose force, torque or current it is."""
-        for i, mark in enumerate(self.marks):
-            if mark.labels[0][1] == owner and mark.style == "motion":  # what that takes
-                self.marks.append(Mark("force", mark.node, (("output", name, label),)))
-                return True
-            if mark.labels[0][1] == owner:
-                self.marks[i] = replace(mark, labels=(*mark.labels, ("output", name, label)))
-                return True
-        index = self._index(owner)
-        if index is not None:
-            tags = (*self.parts[index].tags, ("output", name, label))
-            self.parts[index] = replace(self.parts[index], tags=tags)
-        return index is not None
+        i, mark = next(((i, m) for i, m in enumerate(self.marks) if m.labels[0][1] == owner), (0, None))
+        if mark is None:
+            return self._write(owner, (shown,))
+        if mark.style == "motion":  # what that takes
+            self.marks.append(Mark("force", mark.node, (shown,)))
+        else:
+            self.marks[i] = replace(mark, labels=(*mark.labels, shown))
+        return True
 
 
 def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     by_port = dict(use.domains)
     ends = tuple(_end(r, by_port[port], domains) for port, found in use.nodes for r in found)
     kind = use.element.type_name
-    symbol = symbol_of(kind)
+    symbol = SYMBOLS.get(kind, ElementSymbol("coupling"))  # a plain box for one that has none
     if kind == "transformer":
         first = [_end(found[0], by_port[port], domains) for port, found in use.nodes]
         pair = (first[0].domain, first[1].domain)
@@ -288,8 +277,7 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
 def _dimension(use: PlacedElement, labels: Labels, label: str) -> tuple[str, str]:
     """Return the length of a member, and its label without it; nothing of what has no length."""
     values = dict(use.values)
-    length = values.get("l", values.get("length"))
-    if length is None:
+    if not (length := values.get("l", values.get("length"))):
         return "", ""
     written = labels.quantity(length, "m")
     return written, JOINED.join(one for one in label.split(JOINED) if one not in (written, f"{{{written}}}"))
@@ -316,10 +304,8 @@ def _sections(use: PlacedElement, model: Model) -> Depths:
     if not is_tapered(model):
         return ()
     known, values = values_of(model), dict(use.values)
-    stiff, heavy = (
-        next(values[name] for name in measures if name in values)
-        for measures in TAPERS[use.element.type_name]
-    )
+    measures = TAPERS[use.element.type_name]
+    stiff, heavy = (next(values[name] for name in names if name in values) for names in measures)
     ends = (0.0, evaluate(values["l"], known) or UNKNOWN)
     return sections(stiff, heavy, ends, known, {"rod": 2, "shaft": 4}.get(use.element.type_name))
 
@@ -381,19 +367,13 @@ def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
     if isinstance(use.element, LineElement):
         by_name = dict(given)
         first, second = STIFF.get(use.element.type_name, ((), ""))
-        wanted: tuple[tuple[str, ...], ...]
-        wanted = (first, ("rho", second), ("eta",), ("l",)) if first else ()
-        wanted = tuple(("".join(g),) if "".join(g) in by_name else g for g in wanted)
-        groups = [
-            [labels.quantity(by_name[n], "") for n in g] for g in wanted if all(n in by_name for n in g)
-        ]
-        is_plain = all(isinstance(by_name[n], Name) for g in wanted for n in g if n in by_name)
-        shown = (
-            ["".join(f"{{{one}}}" for one in g) for g in groups]
-            if groups and is_plain
-            else [labels.end(use.name, use.latex)]
-        )
-        return JOINED.join(shown), ()
+        wanted = [first, ("rho", second), ("eta",), ("l",)] if first else []
+        wanted = [("".join(g),) if "".join(g) in by_name else g for g in wanted]
+        groups = [g for g in wanted if all(n in by_name for n in g)]
+        if not groups or not all(isinstance(by_name[n], Name) for g in wanted for n in g if n in by_name):
+            return labels.end(use.name, use.latex), ()
+        products = ("".join(f"{{{labels.quantity(by_name[n], '')}}}" for n in g) for g in groups)
+        return JOINED.join(products), ()
     inside = ("angle", "cg")  # drawn, not written
     shown = [labels.quantity(e, use.element.unit_of(n, by_port)) for n, e in given if n not in inside]
     seen = list(dict.fromkeys(shown))
@@ -406,15 +386,12 @@ def _input_part(one: Input, labels: Labels) -> DrawnPart:
     law = INPUT_KINDS[one.kind]
     ends = tuple(End("" if r.is_ground else r.node, law.domain, r.component) for r in one.nodes)
     ends = ends if len(ends) > 1 else (*ends, End(GROUND, law.domain))
-    if one.kind == "voltage":
-        symbol = SYMBOLS["voltage_source"]
-    elif one.kind == "current":
-        symbol = SYMBOLS["current_source"]
+    if one.kind in ("voltage", "current"):
+        symbol = SYMBOLS[f"{one.kind}_source"]
     elif law.is_imposed:
-        symbol = ElementSymbol("branch", motion_between, 26.0)
+        symbol = MOTION_BETWEEN
     else:
-        draw = torque_between if law.domain == "rotation" else effort_between
-        symbol = ElementSymbol("branch", draw, 30.0)
+        symbol = TORQUE_BETWEEN if law.domain == "rotation" else FORCE_BETWEEN
     return DrawnPart("input", one.name, one.kind, symbol, ends, labels.end(one.name, one.latex))
 
 
@@ -434,16 +411,13 @@ def without_s(expression: Expression) -> Expression:
     """Return what is differentiated in time: ``x`` of ``s^2*x``."""
     if not isinstance(expression, Product):
         return expression
-    rest = [f for f in expression.factors if not _is_power_of_s(f)]
+    s = Name("s")
+    rest = [
+        f
+        for f in expression.factors
+        if f != s and not (isinstance(f, Power) and f.base == s and isinstance(f.exponent, Number))
+    ]
     return rest[0] if len(rest) == 1 else expression
-
-
-def _is_power_of_s(factor: Expression) -> bool:
-    match factor:
-        case Name(name="s") | Power(base=Name(name="s"), exponent=Number()):
-            return True
-        case _:
-            return False
 
 
 def _node(expression: Expression, domains: Domains) -> End | None:
@@ -523,26 +497,22 @@ def depths(
     """
     a, b = ends
     guessed = {n.name: UNKNOWN for n in names(coefficient) if isinstance(n, Name)} | dict(known)
-    found = []
-    for i in range(STATIONS + 1):
-        value = evaluate(coefficient, {**guessed, COORDINATE: a + (b - a) * i / STATIONS})
-        found.append(max(0.0, value or 0.0) ** (1 / root))
-    most, least = max(found), min(found)
-    return tuple(d / most for d in found) if least < (1 - 1e-6) * most else ()
+    places = (a + (b - a) * i / STATIONS for i in range(STATIONS + 1))
+    values = [evaluate(coefficient, {**guessed, COORDINATE: x}) or 0.0 for x in places]
+    found = [max(0.0, value) ** (1 / root) for value in values]
+    most = max(found)
+    return tuple(d / most for d in found) if min(found) < (1 - 1e-6) * most else ()
 
 
 def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None:
     """Return the value of an expression of parameters, None where one is unknown."""
-
-    def power(base: float, exponent: Expression) -> float:
-        return float(base ** float(evaluate(exponent, known) or 0))
-
-    def call(node: Call, argument: float) -> float:
-        return float(getattr(math, node.name)(argument))
-
     try:
         return fold(
-            expression, number=float, name=lambda n: {"pi": math.pi, **known}[n], power=power, call=call
+            expression,
+            number=float,
+            name=lambda n: {"pi": math.pi, **known}[n],
+            power=lambda base, exponent: float(base ** float(evaluate(exponent, known) or 0)),
+            call=lambda node, argument: float(getattr(math, node.name)(argument)),
         )
     except (KeyError, ValueError, ZeroDivisionError, OverflowError, AttributeError):
         return None
@@ -552,27 +522,18 @@ def _networks(
     nodes: Sequence[str], parts: Sequence[DrawnPart], marks: Sequence[Mark], spans: Sequence[Distance]
 ) -> tuple[DrawnNetwork, ...]:
     """Return what hangs together; the reference joins nothing."""
-    home = {node: node for node in nodes}
-
-    def root(node: str) -> str:
-        while home[node] != node:
-            node = home[node]
-        return node
-
+    together = {node: frozenset((node,)) for node in nodes}
     for part in parts:
-        for other in part.nodes[1:]:
-            home[root(other)] = root(part.nodes[0])
-    roots = list(dict.fromkeys(root(n) for n in nodes))
-    found = []
-    for one in roots:
-        own = [n for n in nodes if root(n) == one]
-        found.append(
-            DrawnNetwork(
-                tuple(own),
-                tuple(p for p in parts if p.nodes and root(p.nodes[0]) == one),
-                tuple(m for m in marks if root(m.node) == one),
-                tuple(s for s in spans if all(root(n) == one for n in s.nodes)),
-            )
+        joined = frozenset[str]().union(*(together[n] for n in part.nodes))
+        together.update(dict.fromkeys(joined, joined))
+    found = [
+        DrawnNetwork(
+            tuple(n for n in nodes if n in own),
+            tuple(p for p in parts if own.intersection(p.nodes)),
+            tuple(m for m in marks if m.node in own),
+            tuple(s for s in spans if own.issuperset(s.nodes)),
         )
+        for own in dict.fromkeys(together.values())
+    ]
     loose = tuple(p for p in parts if not p.nodes)
     return (*found, DrawnNetwork((), loose, (), ())) if loose else tuple(found)

@@ -76,24 +76,21 @@ class SignalGraph:
         for use in self.model.elements:
             for parameter in use.element.parameters:
                 value = dict(use.values).get(parameter.name)
-                if parameter.signal and value is not None and self._is_diagram(value):
-                    self._end("drive", use.name, self.labels.name(use.name), value)
+                # A mere name is written at the source itself.
+                if not parameter.signal or value is None or isinstance(whole(value), Name):
+                    continue
+                if not self._is_constant(value):
+                    self._box("drive", use.name, self.labels.name(use.name), self._positive(value))
         for name in (n for n in self.free if n not in alone):
             self._once("input", name, self.labels.end(name, self.inputs[name]))
         for out in self.model.outputs:
             if out.name in outputs:
-                self._end("output", out.name, self.labels.end(out.name, out.latex), out.expression)
-
-    def _is_diagram(self, value: Expression) -> bool:
-        """Tell whether the value of a source is more than a name, which is written at the source."""
-        return not isinstance(whole(value), Name) and not self._is_constant(value)
+                origin = self._positive(out.expression)
+                self._box("output", out.name, self.labels.end(out.name, out.latex), origin)
 
     def readings(self) -> list[str]:
         """Return the names of nodes and quantities that are read."""
         return [n.name for n in self.nodes if n.kind == "reading"]
-
-    def _end(self, kind: Kind, name: str, label: str, value: Expression) -> None:
-        self._box(kind, name, label, self._positive(value))
 
     def _positive(self, value: Expression) -> int:
         """Return the node whose signal an expression is, behind a gain of -1 where it is minus that."""
@@ -117,10 +114,9 @@ class SignalGraph:
         return all(isinstance(n, Name) and n.name in self.constants for n in names(expression))
 
     def _once(self, kind: Kind, name: str, label: str) -> int:
-        key = (kind, name)
-        if key not in self.known:
-            self.known[key] = self._new(kind, name, label)
-        return self.known[key]
+        if (kind, name) not in self.known:
+            self.known[kind, name] = self._new(kind, name, label)
+        return self.known[kind, name]
 
     def _signal(self, name: str) -> int:
         if ("signal", name) in self.known:
@@ -186,10 +182,9 @@ class SignalGraph:
         if gain != number(1):
             origin = self._box("gain", "", self.labels.expression(gain), origin)
             self.nodes[origin].lines = tuple(self.labels.values([gain]))
-        for one in own:
-            assert isinstance(one, Name)
-            origin = self._box("block", one.name, self.labels.name(one.name), origin)
-            self.nodes[origin].lines = tuple(self.labels.values([e for _, e in self.blocks[one.name].values]))
+        for block in (self.blocks[f.name] for f in own):
+            origin = self._box("block", block.name, self.labels.name(block.name), origin)
+            self.nodes[origin].lines = tuple(self.labels.values([e for _, e in block.values]))
         return origin, is_minus
 
 

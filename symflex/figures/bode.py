@@ -84,15 +84,8 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     ]
     width = canvas.width or COLUMN_INCHES
     # Loss factors decide nothing about stability, and whoever gives them knows that.
-    shaky = [
-        found
-        for found in maps
-        if found.verdict.word in ("unstable", "unknown") and found.verdict != NO_STABILITY
-    ]
-    lines = [
-        *title_lines(canvas.title, width),
-        *(line for m in maps for line in title_lines(said_of_grid(m), width)),
-    ]
+    shaky = [m for m in maps if m.verdict.word in ("unstable", "unknown") and m.verdict != NO_STABILITY]
+    lines = [line for one in (canvas.title, *map(_said_of_grid, maps)) for line in title_lines(one, width)]
     said = stability_lines(shaky, width)
     units = {response.unit for response in responses}
     legend_columns = min(len(bounds), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
@@ -135,12 +128,10 @@ def set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
     root_figure(panels[0]).align_ylabels(panels)
 
 
-def said_of_grid(found: PoleZeroMap) -> str:
+def _said_of_grid(found: PoleZeroMap) -> str:
     """Return what a figure has to say where roots may be missing that its grid should know of."""
-    certificate = found.certificate
-    if not certificate.is_exceeded:
-        return ""
-    return f"{found.tf}: {certificate.reason}; drawn from its values, because not all roots are known"
+    why = f"{found.tf}: {found.certificate.reason}; drawn from its values, because not all roots are known"
+    return why if found.certificate.is_exceeded else ""
 
 
 def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Figure | None:
@@ -158,10 +149,10 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
     level = np.where(np.isfinite(level), level, np.nan)
     own = axes_of(ax)
     with nullcontext() if own else paper_style():
-        if own:
-            top, bottom = Canvas(axes=own).own_axes(2)
-        else:
-            top, bottom = magnitude_over_phase(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES, RATIO)
+        height = HEIGHT_INCHES + LINE_INCHES
+        top, bottom = (
+            Canvas(axes=own).own_axes(2) if own else magnitude_over_phase(COLUMN_INCHES, height, RATIO)
+        )
         figure = root_figure(top)
         colour = COLOURS[len(top.get_lines()) % len(COLOURS)]
         top.plot(frequency, level, color=colour, label=response.tf)
@@ -178,18 +169,12 @@ def _magnitude_limits(
     responses: Sequence[SampledResponse], maps: Sequence[PoleZeroMap]
 ) -> tuple[float, float]:
     """Return limits [dB] that hold every damped peak, and undamped ones cut off."""
-    lowest, highest = np.inf, -np.inf
-    is_cut = False
-    for response, found in zip(responses, maps, strict=True):
-        level = response.magnitude_db
-        undamped = _near_undamped(response.omega, found) | ~np.isfinite(level)
-        if undamped.all():
-            continue
-        is_cut = is_cut or bool(undamped.any())
-        lowest = min(lowest, float(level[~undamped].min()))
-        highest = max(highest, float(level[~undamped].max()))
-    if lowest > highest:
+    damped = [r.magnitude_db[~_undamped(r, m)] for r, m in zip(responses, maps, strict=True)]
+    shown = [(level, r) for level, r in zip(damped, responses, strict=True) if level.size]
+    if not shown:
         return -1.0, 1.0
+    lowest, highest = (float(end(np.concatenate([level for level, _ in shown]))) for end in (np.min, np.max))
+    is_cut = any(level.size < r.omega.size for level, r in shown)
     margin = UNDAMPED_MARGIN_DB if is_cut else max(0.05 * (highest - lowest), 1.0)
     return lowest - margin, highest + margin
 
@@ -199,9 +184,8 @@ def _magnitude_curve(
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return frequencies [Hz] and levels [dB], with a point beyond the frame at each root on the axis."""
     beyond = limits[1] - limits[0]
-    ends = [(root, limits[1] + beyond) for root in found.poles] + [
-        (root, limits[0] - beyond) for root in found.zeros
-    ]
+    ends = [(root, limits[1] + beyond) for root in found.poles]
+    ends += [(root, limits[0] - beyond) for root in found.zeros]
     added = [(root.frequency_hz(), level) for root, level in ends if root.on_imaginary_axis and root.im > 0]
     level = np.clip(response.magnitude_db, limits[0] - beyond, limits[1] + beyond)
     frequency = np.concatenate((response.frequency_hz, [f for f, _ in added]))
@@ -209,13 +193,14 @@ def _magnitude_curve(
     return frequency[order], np.concatenate((level, [end for _, end in added]))[order]
 
 
-def _near_undamped(omega: npt.NDArray[np.float64], found: PoleZeroMap) -> npt.NDArray[np.bool_]:
-    near = np.zeros(omega.shape, dtype=bool)
+def _undamped(response: SampledResponse, found: PoleZeroMap) -> npt.NDArray[np.bool_]:
+    """Tell which values lie near an undamped root, or are infinite."""
+    near = ~np.isfinite(response.magnitude_db)
     for root in (*found.poles, *found.zeros):
         damping = root.damping_ratio()
         if damping is not None and abs(damping) < UNDAMPED and root.im > 0:
             centre = float(root.im.mid())
-            near |= np.abs(omega - centre) < UNDAMPED_REACH * centre
+            near |= np.abs(response.omega - centre) < UNDAMPED_REACH * centre
     return near
 
 

@@ -46,9 +46,6 @@ if TYPE_CHECKING:
     Complex = npt.NDArray[np.complex128]
 
 
-MEASURED_INCHES: Final = 3.9
-MEASURED_RATIO: Final = 1.35
-"""Height of the panel of magnitudes over that of phases."""
 FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5
 """Heights of the panels of magnitude, phase, residual, and of coherence."""
 FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
@@ -56,11 +53,7 @@ FIT_COLUMNS: Final = 2
 FEW_RESPONSES: Final = 4
 """Responses up to which two stand side by side; more stand three to a row."""
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
-LOWEST_DB: Final = 40.0
-"""Below the median residual: what is smaller is chance."""
 DATA_COLOUR: Final = "#555555"
-PARTED_COLOUR: Final = "#F6E3D4"
-"""Ground where the phase is not that of a minimum-phase function."""
 
 
 def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128], unit: str = "") -> Figure:
@@ -70,7 +63,7 @@ def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128],
     Synthetic data are called so in the title.
     """
     with paper_style():
-        top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
+        top, bottom = magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
         phase = _unwrapped(model)
         _draw_data(top, bottom, measured, model, phase)
         top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
@@ -120,13 +113,10 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
                 axes.plot(measured.frequency_hz, measured.coherence, color=DATA_COLOUR, linewidth=0.7)
             axes.set_ylim(0, 1.1)
             axes.set_ylabel("Coherence" if not is_small else "Coh.")
-        label_magnitudes(top, measured.unit or fit.bases[r].unit)
-        set_magnitude_ticks(top)
-        _set_phase_ticks(bottom)
+        _label(top, bottom, measured.unit or fit.bases[r].unit)
         if is_small:
-            for axes, label in zip(
-                panels, ("Magnitude [dB]", "Phase [deg]", "Res. [dB]", "Coh."), strict=False
-            ):
+            short = ("Magnitude [dB]", "Phase [deg]", "Res. [dB]", "Coh.")
+            for axes, label in zip(panels, short, strict=False):
                 axes.set_ylabel(label, fontsize=SMALL_POINTS)
                 axes.tick_params(labelsize=SMALL_POINTS)
         for axes in panels:
@@ -134,19 +124,21 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
         for axes in panels[:-1]:
             axes.set_xlabel("")
             axes.tick_params(labelbottom=False)
-        title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
         if is_small:
-            top.set_title(title, fontsize=SMALL_POINTS, parse_math=False)
+            top.set_title(_title(measured), fontsize=SMALL_POINTS, parse_math=False)
         else:
             add_legend_above(top, FIT_COLUMNS, is_tight=True)
-            write_title(figure, title_lines(title, COLUMN_INCHES))
+            write_title(figure, title_lines(_title(measured), COLUMN_INCHES))
     if is_small:
         panels = [axes.get_legend_handles_labels() for cell in cells for axes in cell.get_axes()]
         named = {label: handle for one in panels for handle, label in zip(*one, strict=True)}
-        figure.legend(
-            list(named.values()), list(named), loc="outside lower center", ncols=len(named), frameon=False
-        )
+        handles, count = list(named.values()), len(named)
+        figure.legend(handles, list(named), loc="outside lower center", ncols=count, frameon=False)
     return figure
+
+
+def _title(measured: MeasuredResponse) -> str:
+    return measured.name + (" (synthetic data)" if measured.is_synthetic else "")
 
 
 def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *, is_small: bool) -> None:
@@ -158,7 +150,7 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
     start = fit.values(response, fit.candidate.start)
     for axes in (top, bottom):
         for band in () if test.is_minimum_phase else test.bands:
-            axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
+            axes.axvspan(band.low_hz, band.high_hz, color="#F6E3D4", linewidth=0, zorder=0)
     fitted = _unwrapped(model)
     _draw_data(top, bottom, measured, model, fitted)
     if not is_small:
@@ -189,14 +181,8 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
             axes.axvline(hertz, color=QUIET, linewidth=0.4, zorder=0)
         name = f"{k}" if is_small else f"{k}: {hertz:.4g} Hz"
         turn = 0 if is_small else 90
-        top.annotate(
-            name,
-            (hertz, 0.02),
-            xycoords=("data", "axes fraction"),
-            fontsize=NAME_POINTS,
-            rotation=turn,
-            ha="right",
-        )
+        place, within = (hertz, 0.02), ("data", "axes fraction")
+        top.annotate(name, place, xycoords=within, fontsize=NAME_POINTS, rotation=turn, ha="right")
     top.set_ylim(limits)
 
 
@@ -215,9 +201,8 @@ def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
         axes.plot(line.measured.frequency_hz, noise, color=COLOURS[2], linewidth=0.8, label="expected noise")
     finite = left[np.isfinite(left)]
     if finite.size:
-        axes.set_ylim(
-            max(float(np.min(finite)), float(np.median(finite)) - LOWEST_DB), float(np.max(finite)) + 6
-        )
+        lowest = max(float(np.min(finite)), float(np.median(finite)) - 40.0)  # what is smaller is chance
+        axes.set_ylim(lowest, float(np.max(finite)) + 6)
     axes.yaxis.set_major_locator(MaxNLocator(nbins=4))
     axes.set_ylabel("Residual [dB]")
 
@@ -235,13 +220,10 @@ def draw_orders(stable: Sequence[StablePoles], fit: ResonanceFit, response: int 
         level = axes.twinx()
         level.plot(measured.frequency_hz, _decibels(measured.values), color=QUIET, linewidth=0.6)
         label_magnitudes(level, measured.unit)
+        poles = [pole for one in stable for pole in zip(one.frequency_hz, one.is_stable, strict=True)]
+        orders = [one.order for one in stable for _ in one.frequency_hz]
         for mark, is_stable, label in (("x", False, "new"), ("o", True, "stable")):
-            at = [
-                (f, one.order)
-                for one in stable
-                for f, s in zip(one.frequency_hz, one.is_stable, strict=True)
-                if bool(s) == is_stable
-            ]
+            at = [(f, n) for (f, s), n in zip(poles, orders, strict=True) if bool(s) == is_stable]
             x, y = zip(*at, strict=True) if at else ((), ())
             axes.plot(x, y, mark, color=COLOURS[1] if is_stable else QUIET, markersize=3.2, label=label)
         axes.set_zorder(level.get_zorder() + 1)
@@ -274,22 +256,21 @@ def _finish(
     top: Axes, bottom: Axes, measured: MeasuredResponse, unit: str, columns: int, *, is_new: bool
 ) -> Figure:
     """Label the panels, give them a legend and a new figure a title, and return the figure."""
-    label_magnitudes(top, measured.unit or unit)
-    set_magnitude_ticks(top)
-    _set_phase_ticks(bottom)
+    _label(top, bottom, measured.unit or unit)
     set_frequency_axes((top, bottom), float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
     figure = root_figure(top)
     add_legend_above(top, columns, is_tight=True)
-    if not is_new:
-        return figure
-    title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
-    write_title(figure, title_lines(title, COLUMN_INCHES))
+    if is_new:
+        write_title(figure, title_lines(_title(measured), COLUMN_INCHES))
     return figure
 
 
-def _set_phase_ticks(axes: Axes) -> None:
-    axes.set_ylabel("Phase [deg]")
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 1.5, 3, 4.5, 9, 10]))
+def _label(top: Axes, bottom: Axes, unit: str) -> None:
+    """Label magnitudes and phases."""
+    label_magnitudes(top, unit)
+    set_magnitude_ticks(top)
+    bottom.set_ylabel("Phase [deg]")
+    bottom.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 1.5, 3, 4.5, 9, 10]))
 
 
 def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:

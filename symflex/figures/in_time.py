@@ -13,7 +13,7 @@ import numpy as np
 from flint import acb
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
-from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, write_title
+from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, root_figure, write_title
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
@@ -54,17 +54,11 @@ TICK: Final = 5
 """Percent of residual vibration that designers ask for."""
 
 
-def draw_step(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw step responses in one figure; see :func:`symflex.figures.draw`."""
-    return _drawn("step", bounds, canvas)
+def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
+    """Draw step or impulse responses in one figure, without the impulses they hold themselves.
 
-
-def draw_impulse(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw impulse responses in one figure, without the impulses they hold themselves."""
-    return _drawn("impulse", bounds, canvas)
-
-
-def _drawn(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
+    See :func:`symflex.figures.draw`.
+    """
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
         responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]
@@ -80,12 +74,10 @@ def _drawn(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Fig
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
         _draw_curve(axes, response, look, label)
-    _label(axes, responses[0], units.pop() if len(units) == 1 else "")
-    _limit(axes, responses[0], canvas.frame)
-    add_legend_above(axes, len(bounds) if len(bounds) < len(DASHES) else len(DASHES) - 1)
-    figure = axes.figure.get_figure(root=True)
-    write_title(figure, lines)
-    return figure
+    _label(axes, responses[0], units.pop() if len(units) == 1 else "", canvas.frame)
+    add_legend_above(axes, min(len(bounds), len(DASHES) - 1))
+    write_title(root_figure(axes), lines)
+    return root_figure(axes)
 
 
 def draw_in_time(
@@ -104,20 +96,9 @@ def draw_in_time(
     with paper_style(font):
         axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
         _draw_curve(axes, response, (COLOURS[0], "-"), None)
-        _label(axes, response, response.unit)
-        _limit(axes, response, frame)
-        figure = axes.figure.get_figure(root=True)
-        write_title(figure, lines)
-    return figure
-
-
-def _limit(axes: Axes, response: EnclosedResponse, frame: AxisLimits) -> None:
-    """Show the times and values that were asked for."""
-    scale, _ = _prefix(response)
-    if frame.x:
-        axes.set_xlim(frame.x[0] / scale, frame.x[1] / scale)
-    if frame.y:
-        axes.set_ylim(*frame.y)
+        _label(axes, response, response.unit, frame)
+        write_title(root_figure(axes), lines)
+    return root_figure(axes)
 
 
 def _said(responses: Sequence[EnclosedResponse], width: float) -> list[str]:
@@ -146,11 +127,15 @@ def _draw_curve(axes: Axes, response: EnclosedResponse, look: tuple[str, object]
     axes.plot(across, values, color=colour, linestyle=dash, label=label)
 
 
-def _label(axes: Axes, response: EnclosedResponse, unit: str) -> None:
+def _label(axes: Axes, response: EnclosedResponse, unit: str, frame: AxisLimits) -> None:
+    """Label axes, and show the times and values that were asked for."""
     scale, second = _prefix(response)
     axes.grid(visible=True)
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
-    axes.set_xlim(0, float(response.times[-1]) / scale)
+    start, end = frame.x or (0.0, float(response.times[-1]))
+    axes.set_xlim(start / scale, end / scale)
+    if frame.y:
+        axes.set_ylim(*frame.y)
     axes.set_xlabel(f"Time [{second}]")
     label = label_of_unit(unit)
     name = f"{response.input} response".capitalize() if response.input in INTEGRATIONS else "Response"
@@ -173,6 +158,5 @@ def draw_residual(shaper: InputShaper) -> Figure:
         axes.set_xlabel("Frequency over that of the model")
         axes.set_ylabel("Residual vibration [%]")
         add_legend_above(axes, len(DASHES))
-        figure = axes.figure.get_figure(root=True)
-        write_title(figure, title_lines(f"{shaper.tf}, {shaper.title}", COLUMN_INCHES))
-    return figure
+        write_title(root_figure(axes), title_lines(f"{shaper.tf}, {shaper.title}", COLUMN_INCHES))
+    return root_figure(axes)

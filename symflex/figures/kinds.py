@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
@@ -11,7 +12,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.figures.axes import FREE, AxisLimits, Canvas, axes_of
 from symflex.figures.bode import draw_bode
 from symflex.figures.files import MM_PER_INCH
-from symflex.figures.in_time import draw_impulse, draw_step
+from symflex.figures.in_time import draw_responses
 from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
 from symflex.figures.modes import draw_modes, draw_shapes
 from symflex.figures.poles_zeros import draw_poles_zeros
@@ -36,16 +37,12 @@ if TYPE_CHECKING:
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
-    "impulse": draw_impulse,
+    "impulse": partial(draw_responses, "impulse"),
     "modes": draw_modes,
     "nyquist": draw_nyquist,
     "poles_zeros": draw_poles_zeros,
-    "step": draw_step,
+    "step": partial(draw_responses, "step"),
 }
-
-CURVES = ("bode", "nyquist")
-"""Kinds over the logarithm of the frequency, which has no 0."""
-S_PLANES = ("locus", "poles_zeros")
 
 LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
 """Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
@@ -132,13 +129,14 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         if band is not None:
             raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
         band, xlim = xlim, None
-    is_plane = kind in S_PLANES
+    is_plane = kind in ("locus", "poles_zeros")
     frame = AxisLimits(
         axis_ends(xlim, "--xlim", is_frequency=is_plane),
         axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
         axis_ends(given.phase, "--phase"),
     )
-    return None if band is None else band_ends(band, above_zero=kind in CURVES), frame
+    is_logarithmic = kind in ("bode", "nyquist")  # without 0
+    return None if band is None else band_ends(band, above_zero=is_logarithmic), frame
 
 
 def _canvas(
@@ -163,9 +161,8 @@ def _styled(font: str, canvas: Canvas, drawing: Callable[[], Figure]) -> Figure:
         return drawing()
     with paper_style(font):
         figure = drawing()
-    for text in figure.findobj(Text):
-        family = family_of(text.get_text(), font)
-        if family and not text.get_parse_math():
+    for text in (t for t in figure.findobj(Text) if not t.get_parse_math()):
+        if family := family_of(text.get_text(), font):
             text.set_fontfamily(family)
     return figure
 

@@ -75,10 +75,6 @@ if TYPE_CHECKING:
 
 HEIGHT_INCHES: Final = 3.3
 ROOM: Final = 1.12
-ZERO_REACH: Final = 2.0
-"""Zeros are shown up to so many times the largest pole shown."""
-CURVE_REACH: Final = 1.6
-"""Curves are shown up to so many times the largest root shown."""
 ZERO: Final = "zero"
 LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
     "pole": ("x", COLOURS[1], 5),
@@ -88,8 +84,6 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
 }
 """Shape, colour and size of marks."""
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
-LEGEND_LETTERS: Final = 18.0
-"""So many letters of three labels have room in a line, per inch."""
 CLOSE: Final = 0.3
 """Narrowest width shown, over the height."""
 
@@ -107,7 +101,12 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     width = canvas.width or COLUMN_INCHES
     lines = title_lines(canvas.title, width)
     stages = _stages(locus)
-    said = _said_of_stability(locus.gain, stages)
+    name = label_of_name(locus.gain)
+    # What each gain makes of stability, then what no gain moves and nothing sees.
+    verdicts = [stage.found.verdict for stage in stages]
+    heads = [replace(verdict, hidden="").headline for verdict in verdicts]
+    said = [f"${name} = {stage.gain}$, {head}" for stage, head in zip(stages, heads, strict=True)]
+    said += dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden)
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + 1))
     marks = [
         *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
@@ -119,7 +118,6 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     seen = float(np.max(np.abs([view.re, view.im])))
     axes.axvspan(0, max(view.re[1], 0.0), color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
     draw_zero_lines(axes)
-    name = label_of_name(locus.gain)
     labels: dict[Kind, str] = {stage.kind: f"poles, ${name} = {stage.gain}$" for stage in stages}
     for kind, label in {**labels, ZERO: "zeros"}.items():
         points = [mark.s for mark in marks if mark.kind == kind]
@@ -129,24 +127,22 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         if inside or (points and kind != ZERO):
             told = f"{label} ({outside if inside else 'all'} outside)" if outside else label
             draw_points(axes, inside, LOOKS[kind], told)
-    kinds = (
-        (locus.branches, "-", None),
+    for branches, line, told_of in (
+        (locus.branches, "-", ""),
         (locus.entering, "--", "from poles not marked"),
-    )
-    for branches, line, told_of in kinds:
+    ):
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
-            axes.plot(
-                s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=None if i else told_of
-            )
+            entry = told_of if told_of and not i else None
+            axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=entry)
     _draw_holes(axes, locus)
     label_s_plane(axes)
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
     legend = canvas.legend(
         axes,
         title="\n".join(said),
-        ncols=3 if letters <= LEGEND_LETTERS * width else 2,
+        ncols=3 if letters <= 18 * width else 2,  # letters of three labels in a line, per inch
         frameon=False,
         handletextpad=0.2,
         columnspacing=1.0,
@@ -175,24 +171,11 @@ class Stage:
 def _stages(locus: RootLocus) -> list[Stage]:
     """Return the gains whose poles are marked, ascending."""
     low, high = locus.limits
-    found: list[tuple[Kind, Fraction, PoleZeroMap, Sequence[complex]]] = [
-        ("pole", low, locus.start, [point_of(root) for root in locus.start.all_poles])
-    ]
-    if locus.nominal is not None:
-        gain, poles = locus.nominal
-        found.append(("nominal", gain, poles, [point_of(root) for root in poles.all_poles]))
-    found.append(("last", high, locus.end, locus.ends))
+    proved: list[tuple[Kind, Fraction, PoleZeroMap]] = [("pole", low, locus.start)]
+    proved += [("nominal", *locus.nominal)] if locus.nominal else []
+    found = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
+    found.append(("last", high, locus.end, list(locus.ends)))
     return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in found]
-
-
-def _said_of_stability(gain: str, stages: Sequence[Stage]) -> list[str]:
-    """Return what each gain makes of stability, then what no gain moves and nothing sees."""
-    verdicts = [stage.found.verdict for stage in stages]
-    said = [
-        f"${label_of_name(gain)} = {stage.gain}$, {replace(verdict, hidden='').headline}"
-        for stage, verdict in zip(stages, verdicts, strict=True)
-    ]
-    return said + list(dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden))
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
@@ -200,19 +183,17 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
     high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
     view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
     size = max(map(abs, view.shown), default=0.0)
-    curves = (s for branch in locus.branches for s in branch if abs(s) <= CURVE_REACH * size)
+    curves = [ROOM * s for branch in locus.branches for s in branch if abs(s) <= 1.6 * size]
     reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
-    re, im = view.re, (min(view.im[0], -reach), max(view.im[1], reach))
-    for s in curves:
-        re = min(re[0], ROOM * s.real), max(re[1], ROOM * s.real)
-        im = min(im[0], ROOM * s.imag), max(im[1], ROOM * s.imag)
-    return View(
-        canvas.frame.x or re, canvas.frame.y or im, view.shown if canvas.frame == FREE else frozenset()
-    )
+    across, upwards = [s.real for s in curves], [s.imag for s in curves]
+    re = min([view.re[0], *across]), max([view.re[1], *across])
+    im = min([view.im[0], -reach, *upwards]), max([view.im[1], reach, *upwards])
+    shown = view.shown if canvas.frame == FREE else frozenset[complex]()
+    return View(canvas.frame.x or re, canvas.frame.y or im, shown)
 
 
 def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
-    """Return the poles that no gap parts from the smallest ones, and others not much further out.
+    """Return the poles that no gap parts from the smallest ones, and zeros up to twice as far out.
 
     Where these are the smaller part of all, those behind the gap are shown as well.
     """
@@ -220,7 +201,7 @@ def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
     radius = first_run(poles) or first_run(abs(m.s) for m in marks if m.s)
     while 2 * sum(size > radius for size in poles) > len(poles):
         radius = first_run(size for size in poles if size > radius)
-    return {m.s for m in marks if abs(m.s) <= radius * (ZERO_REACH if m.kind == ZERO else 1.0)}
+    return {m.s for m in marks if abs(m.s) <= radius * (2.0 if m.kind == ZERO else 1.0)}
 
 
 def _is_seen(axes: Axes, s: complex) -> bool:
@@ -231,13 +212,11 @@ def _is_seen(axes: Axes, s: complex) -> bool:
 def _draw_holes(axes: Axes, locus: RootLocus) -> None:
     """Draw what was not searched, as poles accumulate there."""
     holes = {(hole.re, side * hole.im, hole.radius) for hole in locus.end.excluded for side in (1, -1)}
-    label = "poles accumulate"
-    for re, im, radius in sorted(holes):
-        if _is_seen(axes, complex(re, im)):
-            axes.add_patch(
-                Circle((re, im), radius, fill=False, edgecolor=QUIET, linewidth=0.8, zorder=1.5, label=label)
-            )
-            label = ""
+    shown = [hole for hole in sorted(holes) if _is_seen(axes, complex(*hole[:2]))]
+    for i, (re, im, radius) in enumerate(shown):
+        ring = Circle((re, im), radius, fill=False, edgecolor=QUIET, linewidth=0.8, zorder=1.5)
+        ring.set_label("" if i else "poles accumulate")
+        axes.add_patch(ring)
 
 
 Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
@@ -248,23 +227,11 @@ REACHES: Final = (1.5, 2.5)
 """Half the side of the square shown of a loop gain, about -1."""
 OBLONG: Final = 4.0
 """Limits asked for whose ratio exceeds this have a scale each."""
-TICK_PAD: Final = 4.5
-"""Between the numbers of ticks and the frame [points]."""
-ALMOST: Final = 0.01
-"""Of its size at the end of a band, where a curve has reached the origin to the eye."""
-FARTHEST_DECADES: Final = 1e4
-"""Times the end of the band up to which a curve may go on."""
-ONWARDS: Final = 60
-"""Values on the way, which is nearly straight."""
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
 """Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
-QUANTILE: Final = 0.9
-"""Share of the values of a function that is not a loop gain for which the square is made."""
 WITHIN: Final = 0.9
 """An arrow stands in so much of what is shown."""
-SHAFT: Final = 0.01
-"""Length of an arrow without its head, in halves of the square."""
 
 
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -328,7 +295,7 @@ def _draw_curves(
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
         _point_along(axes, values, colour)
     set_round_ticks(axes, 5, 5)
-    axes.tick_params(pad=TICK_PAD)  # ends of a square may have ticks next to their corner
+    axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
     # A title of the figure would stand over a legend outside of the axes.
@@ -376,9 +343,8 @@ def _sentence_of_poles(verdicts: Sequence[StabilityVerdict], *, is_loop: bool) -
 def _columns(labels: Sequence[str], width: float) -> int:
     """Return how many columns of a legend have room in a width [inches]."""
     points = max(size_of_text(label, FontProperties(size=LEGEND_POINTS))[0] for label in labels)
-    return max(
-        1, min(len(labels), 3, int((POINTS_PER_INCH * width - LEGEND_POINTS) / (points + LINE_POINTS)))
-    )
+    fitting = int((POINTS_PER_INCH * width - LEGEND_POINTS) / (points + LINE_POINTS))
+    return max(1, min(len(labels), 3, fitting))
 
 
 def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]:
@@ -388,9 +354,9 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
     """
     last = abs(bound(2j * pi * high))
     frequency = high
-    while frequency < FARTHEST_DECADES * high and abs(bound(2j * pi * frequency)) > ALMOST * last:
+    while frequency < 1e4 * high and abs(bound(2j * pi * frequency)) > 0.01 * last:
         frequency *= 10.0
-    steps = np.geomspace(high, frequency, ONWARDS)[1:] if frequency > high else np.array([])
+    steps = np.geomspace(high, frequency, 60)[1:] if frequency > high else np.array([])  # nearly straight
     return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
 
 
@@ -400,16 +366,14 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     if band is None:
         judged = roots_if_found(bound)
         low, high = default_band(judged)
-        low, high = low / WIDENED, high * WIDENED
-    else:
-        low, high = band
+        band = low / WIDENED, high * WIDENED
+    low, high = band
     found = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and not bound.is_distributed:
         values = np.concatenate((values, _onwards(bound, high)))
-    finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
-    return finite, found.verdict
+    return values[np.isfinite(values)], found.verdict
 
 
 def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
@@ -426,20 +390,20 @@ def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
-    """Return half the side of a square that shows -1, and most of a curve that is not a loop gain."""
+    """Return half the side of a square that shows -1, and 90 % of a curve that is not a loop gain."""
     largest = float(np.max(np.abs(values))) if values.size else 1.0
     if is_loop:
         return min(max(1.1 * largest, REACHES[0]), REACHES[1])
-    return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
+    return 1.1 * float(np.quantile(np.abs(values), 0.9)) or 1.0
 
 
 def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) -> None:
     """Draw an arrow halfway along the part of a curve that is shown."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     half_width, half_height = (right - left) / 2, (high - low) / 2
-    aside = np.abs(values.real - (left + right) / 2) / half_width
-    aside = np.maximum(aside, np.abs(values.imag - (low + high) / 2) / half_height)
-    shown = np.flatnonzero(aside < WITHIN)
+    across = np.abs(values.real - (left + right) / 2) / half_width
+    upwards = np.abs(values.imag - (low + high) / 2) / half_height
+    shown = np.flatnonzero(np.maximum(across, upwards) < WITHIN)
     steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004 (two steps at least)
     if not steps.size or not float(steps.sum()) > 0:
         return
@@ -447,10 +411,6 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) ->
     i = int(shown[min(middle, shown.size - 2)])
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
-    b = a + SHAFT * min(half_width, half_height) * step / abs(step)
-    axes.annotate(
-        "",
-        (b.real, b.imag),
-        (a.real, a.imag),
-        arrowprops={"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour},
-    )
+    b = a + 0.01 * min(half_width, half_height) * step / abs(step)
+    look = {"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour}
+    axes.annotate("", (b.real, b.imag), (a.real, a.imag), arrowprops=look)

@@ -112,7 +112,9 @@ def draw_shapes(
         raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
     has_axis = any(not isinstance(panel, Plan) for panel in panels)
-    below = AXIS_INCHES + _name_inches(panels, columns) if has_axis else RIGHT
+    few = [(p, room) for p, room in zip(panels, columns, strict=True) if isinstance(p, Stems)]
+    names_below = max([0.0, *(_crowded(p, room) for p, room in few if len(p.names) <= NAMES_LIMIT)])
+    below = max(AXIS_INCHES, names_below + 0.08) if has_axis else RIGHT
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
     row = PLAN_INCHES if any(isinstance(panel, Plan) for panel in panels) else ROW_INCHES
     height = above + len(shapes) * (HEADING_INCHES + row) + below
@@ -182,17 +184,14 @@ def label_of_value(value: float, digits: int) -> str:
 
 def _widths(panels: Sequence[Panel], room: float) -> list[float]:
     """Return the panels' widths [inches]: nodes take what they need, the rest is shared."""
-    stems = [
-        max(NARROWEST_STEMS, STEM_INCHES * min(len(p.names), NAMES_LIMIT)) if isinstance(p, Stems) else 0.0
-        for p in panels
-    ]
-    runs = sum(isinstance(p, Run | Plan) for p in panels)
+    counts = [min(len(p.names), NAMES_LIMIT) if isinstance(p, Stems) else 0 for p in panels]
+    stems = [max(NARROWEST_STEMS, STEM_INCHES * count) if count else 0.0 for count in counts]
+    runs = stems.count(0.0)
     if not runs:
         return [room * s / sum(stems) for s in stems]
     most = max(room - NARROWEST_RUN * runs, NARROWEST_STEMS)
     shrink = min(1.0, most / sum(stems)) if any(stems) else 1.0
-    left = (room - shrink * sum(stems)) / runs
-    return [s * shrink if isinstance(p, Stems) else left for p, s in zip(panels, stems, strict=True)]
+    return [s * shrink or (room - shrink * sum(stems)) / runs for s in stems]
 
 
 def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
@@ -272,15 +271,7 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
         axes.plot(*(place + scale * moved.real), color=COLOURS[0], zorder=3, solid_capstyle="round")
     for node, x, y in panel.loaded:
         right, up = (complex(shape.motion(f"{node}.{c}").value.mid()).real for c in ("x", "y"))
-        axes.plot(
-            [x + scale * right],
-            [y + scale * up],
-            "o",
-            color=COLOURS[0],
-            markersize=4.2,
-            clip_on=False,
-            zorder=4,
-        )
+        _draw_inertia(axes, x + scale * right, y + scale * up)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.03)  # beyond the moved members, which count for the limits
     axes.set_axis_off()
@@ -288,19 +279,18 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
 
 def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> None:
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
-    values = _amplitudes(panel, shape)
+    values, is_lagging = _amplitudes(panel, shape), _lags(panel, shape)
     if isinstance(panel, Run):
-        _draw_run(axes, panel, shape, is_lagging=_lags(panel, shape))
+        _draw_run(axes, panel, shape, is_lagging=is_lagging)
     else:
-        _draw_stems(axes, values, is_lagging=_lags(panel, shape))
-    largest = float(np.abs(values).max())
+        _draw_stems(axes, values, is_lagging=is_lagging)
     axes.tick_params(top=False, right=False)
     if _is_normalised(panel, shape):
         axes.set_ylim(-MARGIN, MARGIN)
         axes.yaxis.set_major_locator(FixedLocator([-1, 0, 1]))
     else:
-        largest = largest or 1.0
-        axes.set_ylim(-MARGIN * largest, MARGIN * largest)
+        limit = MARGIN * (float(np.abs(values).max()) or 1.0)
+        axes.set_ylim(-limit, limit)
         axes.yaxis.set_major_locator(MaxNLocator(nbins=3, symmetric=True, steps=[1, 2, 3, 4, 5, 10]))
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
         axes.yaxis.get_offset_text().set_fontsize(6)
@@ -334,10 +324,13 @@ def _draw_run(axes: Axes, panel: Run, shape: EnclosedModeShape, *, is_lagging: b
         axes.plot(x, values.real, color=COLOURS[0], zorder=3, solid_capstyle="round")
     for node, place in panel.loaded:
         name = node if any(m.name == node for m in shape.motions) else f"{node}.y"
-        height = complex(shape.motion(name).value.mid()).real
-        axes.plot([place], [height], "o", color=COLOURS[0], markersize=4.2, clip_on=False, zorder=4)
+        _draw_inertia(axes, place, complex(shape.motion(name).value.mid()).real)
     span = panel.ends[-1] - panel.ends[0]
     axes.set_xlim(panel.ends[0] - 0.02 * span, panel.ends[-1] + 0.02 * span)
+
+
+def _draw_inertia(axes: Axes, x: float, y: float) -> None:
+    axes.plot([x], [y], "o", color=COLOURS[0], markersize=4.2, clip_on=False, zorder=4)
 
 
 def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: bool) -> None:
@@ -348,16 +341,9 @@ def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: b
     axes.vlines(places, 0, values.real, color=COLOURS[0], linewidth=0.5 if is_crowded else 1.1, zorder=3)
     axes.plot(places, values.real, "o", color=COLOURS[0], markersize=1.8 if is_crowded else 3.6, zorder=4)
     if is_lagging:
-        axes.plot(
-            places,
-            values.imag,
-            "D",
-            color=COLOURS[1],
-            markersize=1.4 if is_crowded else 2.8,
-            markerfacecolor="none",
-            markeredgewidth=0.8,
-            zorder=5,
-        )
+        size = 1.4 if is_crowded else 2.8
+        (marks,) = axes.plot(places, values.imag, "D", color=COLOURS[1], markersize=size, zorder=5)
+        marks.set(markerfacecolor="none", markeredgewidth=0.8)
     axes.set_xlim(0.5, len(values) + 0.5)
 
 
@@ -371,10 +357,8 @@ def _set_x_axis(axes: Axes, panel: Run | Stems, room: float, *, is_last: bool, i
         axes.xaxis.set_major_locator(FixedLocator(range(1, len(panel.names) + 1)))
         axes.tick_params(axis="x", length=0)
         if is_last:
-            rotation = 90 if _is_crowded(panel, room) else 0
-            axes.set_xticks(
-                range(1, len(panel.names) + 1), [_label(n) for n in panel.names], rotation=rotation
-            )
+            rotation = 90 if _crowded(panel, room) else 0
+            axes.set_xticklabels([_label(n) for n in panel.names], rotation=rotation)
     else:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=max(2, int(room / 0.42))))
         if is_last:
@@ -390,23 +374,10 @@ def _label(name: str) -> str:
     return f"${label_of_name(owner)}$"
 
 
-def _is_crowded(panel: Stems, room: float) -> bool:
-    return _longest(panel) * NAME_INCHES > room / len(panel.names)
-
-
-def _longest(panel: Stems) -> int:
-    """Return how many letters wide the longest name is."""
-    return max(len(name.partition(".")[0]) + (name.endswith(".theta")) for name in panel.names)
-
-
-def _name_inches(panels: Sequence[Panel], columns: Sequence[float]) -> float:
-    """Return how much room upright names need below the lowest row, beyond that of an axis."""
-    crowded = [
-        _longest(p) * NAME_INCHES
-        for p, room in zip(panels, columns, strict=True)
-        if isinstance(p, Stems) and len(p.names) <= NAMES_LIMIT and _is_crowded(p, room)
-    ]
-    return max(0.0, max(crowded, default=0.0) + 0.08 - AXIS_INCHES)
+def _crowded(panel: Stems, room: float) -> float:
+    """Return how long the longest name is [inches], 0 where names have room side by side."""
+    longest = max(len(name.partition(".")[0]) + name.endswith(".theta") for name in panel.names)
+    return NAME_INCHES * longest if NAME_INCHES * longest > room / len(panel.names) else 0.0
 
 
 def _label_columns(
@@ -418,32 +389,18 @@ def _label_columns(
     for label, room, gap in zip(labels, columns, gaps, strict=True):
         left += gap
         if label != before:
-            text = label[0].upper() + label[1:]
-            figure.text(
-                (left - LABEL_OFFSET) / width, middle, text, rotation=90, ha="center", va="center", fontsize=8
-            )
+            place, text = (left - LABEL_OFFSET) / width, label[0].upper() + label[1:]
+            figure.text(place, middle, text, rotation=90, ha="center", va="center", fontsize=8)
         left, before = left + room, label
 
 
 def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:
-    marker = "D" if any(isinstance(panel, Stems) for panel in panels) else ""
-    lines = [
-        Line2D([], [], color=COLOURS[0], label="in phase"),
-        Line2D(
-            [],
-            [],
-            color=COLOURS[1],
-            linestyle="" if all(isinstance(panel, Stems) for panel in panels) else LAGGING,
-            linewidth=0.9,
-            marker=marker,
-            markersize=2.8,
-            markerfacecolor="none",
-            markeredgewidth=0.8,
-            label="in quadrature",
-        ),
-    ]
+    are_stems = [isinstance(panel, Stems) for panel in panels]
+    style, mark = "" if all(are_stems) else LAGGING, "D" if any(are_stems) else ""
+    lagging = Line2D([], [], linewidth=0.9, color=COLOURS[1], label="in quadrature")
+    lagging.set(linestyle=style, marker=mark, markersize=2.8, markerfacecolor="none", markeredgewidth=0.8)
     figure.legend(
-        handles=lines,
+        handles=[Line2D([], [], color=COLOURS[0], label="in phase"), lagging],
         loc="upper right",
         bbox_to_anchor=(1 - RIGHT / figure.get_figwidth(), top),
         ncols=2,

@@ -7,15 +7,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Final
 
 from symflex.figures.axes import FREE, draw_points, draw_zero_lines, root_figure, set_round_ticks
-from symflex.figures.s_plane import (
-    GLYPHS,
-    Panel,
-    View,
-    choose_view,
-    inches_of,
-    marks_of,
-    write_notes,
-)
+from symflex.figures.s_plane import GLYPHS, Panel, View, choose_view, inches_of, marks_of, write_notes
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -78,7 +70,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     view = choose_view(
         [mark for marks in panels for mark in marks],
         _highest_pole(maps) if band_hz is None else band_hz[1],
-        (_shape_of(own[0]),) * 2 if own else (narrowest, WIDEST),
+        (inches_of(own[0])[0] / inches_of(own[0])[1],) * 2 if own else (narrowest, WIDEST),
     )
     is_asked = frame != FREE
     if is_asked:
@@ -124,11 +116,6 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     return figure
 
 
-def _shape_of(axes: Axes) -> float:
-    width, height = inches_of(axes)
-    return width / height
-
-
 def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
     found = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
@@ -150,9 +137,7 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
 
 def _said_of_rest(found: PoleZeroMap, view: View) -> str:
     """Return how many of the roots found lie outside the limits that were asked for."""
-    counts = {
-        kind: sum(m.multiplicity for m in marks_of(found) if m.kind == kind and not view.shows(m))
-        for kind in GLYPHS
-    }
+    outside = [mark for mark in marks_of(found) if not view.shows(mark)]
+    counts = {kind: sum(m.multiplicity for m in outside if m.kind == kind) for kind in GLYPHS}
     said = [f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n]
     return f"{found.tf}: {' and '.join(said)} outside" if said else ""

@@ -75,30 +75,24 @@ def panels_of(model: Model, shapes: Sequence[EnclosedModeShape]) -> tuple[Panel,
     if not shapes:
         return ()
     parts = {part.name: part for part in shapes[0].distributed}
-    runs: list[Panel] = [
-        *_plan(model, parts),
-        *_runs_of_elements(model, parts),
-        *_runs_of_fields(model, parts),
-    ]
+    runs: list[Panel] = [*_plan(model, parts), *_runs_of_elements(model, parts)]
+    runs += _runs_of_fields(model, parts)
     shown = _nodes_on(model)
     stems = []
     for unit in ("m", "rad"):
         names = [
             m.name
             for m in shapes[0].motions
-            if m.unit == unit and m.variable.kind == "node" and m.name not in shown and _moves(m.name, shapes)
+            if m.unit == unit and m.variable.kind == "node" and m.name not in shown
+            if any(abs(complex(shape.motion(m.name).value.mid())) > AT_REST for shape in shapes)
         ]
         if names:
             stems.append(Stems(tuple(names), unit))
     if not runs and not stems:
         rest = [m for m in shapes[0].motions if m.variable.kind in ("node", "signal")]
-        for unit in dict.fromkeys(m.unit for m in rest):
-            stems.append(Stems(tuple(m.name for m in rest if m.unit == unit), unit))
+        units = dict.fromkeys(m.unit for m in rest)
+        stems = [Stems(tuple(m.name for m in rest if m.unit == unit), unit) for unit in units]
     return (*runs, *stems)
-
-
-def _moves(name: str, shapes: Sequence[EnclosedModeShape]) -> bool:
-    return any(abs(complex(shape.motion(name).value.mid())) > AT_REST for shape in shapes)
 
 
 def _ends(use: PlacedElement) -> tuple[str, str]:
@@ -123,13 +117,8 @@ def _nodes_on(model: Model) -> set[str]:
 
 def _carrying(model: Model) -> set[str]:
     """Return the nodes that inertia moves with."""
-    return {
-        reference.node
-        for use in model.elements
-        if use.element.is_inertia
-        for _, references in use.nodes
-        for reference in references
-    }
+    heavy = [use for use in model.elements if use.element.is_inertia]
+    return {reference.node for use in heavy for _, found in use.nodes for reference in found}
 
 
 def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
@@ -138,14 +127,9 @@ def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
     What pins, joints and links join is drawn at one place. Each end at ground is a place of its own.
     """
     lines = [use for use in _lines(model) if parts[use.name].direction]
-    joined = {
-        r.node: references[0].node
-        for use in model.elements
-        if use.element.carries_x
-        for _, references in use.nodes
-        for r in references[1:]
-        if not (r.is_ground or references[0].is_ground)
-    }
+    joints = [found for use in model.elements if use.element.carries_x for _, found in use.nodes]
+    pairs = [(found[0], other) for found in joints for other in found[1:]]
+    joined = {b.node: a.node for a, b in pairs if not (a.is_ground or b.is_ground)}
 
     def joint(node: str) -> str:
         while node in joined:
@@ -157,20 +141,12 @@ def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
         return x, y
 
     nodes = {use.name: _ends(use) for use in lines}
-    joints = {name: (joint(a), joint(b)) for name, (a, b) in nodes.items()}
-    ends = places_of_members({name: (*both, reach(parts[name])) for name, both in joints.items()})
+    ends = places_of_members({n: (joint(a), joint(b), reach(parts[n])) for n, (a, b) in nodes.items()})
     if lines:
         carrying = _carrying(model)
-        at = {
-            node: place
-            for name, both in nodes.items()
-            for node, place in zip(both, ends[name], strict=True)
-            if node in carrying
-        }
-        yield Plan(
-            tuple((name, *start) for name, (start, _) in ends.items()),
-            tuple((node, *place) for node, place in at.items()),
-        )
+        at = {node: place for n, both in nodes.items() for node, place in zip(both, ends[n], strict=True)}
+        loaded = tuple((node, *place) for node, place in at.items() if node in carrying)
+        yield Plan(tuple((name, *start) for name, (start, _) in ends.items()), loaded)
 
 
 def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[str, tuple[Vector, Vector]]:
@@ -189,9 +165,8 @@ def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[st
     ends: dict[str, tuple[Vector, Vector]] = {}
     waiting = dict(members)
     while waiting:
-        name = next(
-            (n for n, (a, b, _) in waiting.items() if a in places or b in places), next(iter(waiting))
-        )
+        beside = (n for n, (a, b, _) in waiting.items() if a in places or b in places)
+        name = next(beside, next(iter(waiting)))
         a, b, (dx, dy) = waiting.pop(name)
         far = max((x for pair in ends.values() for x, _ in pair), default=0.0)
         right = far + bool(ends) * APART * hypot(dx, dy) - min(dx, 0.0)
@@ -246,17 +221,15 @@ def _chain(first: PlacedElement, lines: Sequence[PlacedElement]) -> list[tuple[P
         seen.add(before.name)
         a, b = _ends(before)
         start, node = before, a if b == node else b
-    chain: list[tuple[PlacedElement, bool]] = []
+    chain: dict[str, tuple[PlacedElement, bool]] = {}
     here: PlacedElement | None = start
-    used: set[str] = set()
-    while here is not None and here.name not in used:
-        used.add(here.name)
+    while here is not None and here.name not in chain:
         a, b = _ends(here)
         is_reversed = node == b != a
-        chain.append((here, is_reversed))
+        chain[here.name] = here, is_reversed
         node = a if is_reversed else b
         here = beyond(node, here)
-    return chain
+    return list(chain.values())
 
 
 def _runs_of_fields(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
@@ -266,16 +239,11 @@ def _runs_of_fields(model: Model, parts: dict[str, DistributedShape]) -> Iterato
     unit = ""
     for found in model.fields:
         part = parts[found.name]
-        start, end = float(part.start.mid()), float((part.start + part.length).mid())
-        unit = next(
-            (units[e.name] for e in (found.end, found.start) if isinstance(e, Name) and e.name in units), unit
-        )
-        low, high = min(start, end), max(start, end)
-        fitting = next(
-            (run for run in runs if all(high <= a + AT_REST or low >= b - AT_REST for a, b, _ in run)), None
-        )
-        if fitting is None:
-            fitting = []
+        low, high = sorted((float(part.start.mid()), float((part.start + part.length).mid())))
+        named = [e.name for e in (found.end, found.start) if isinstance(e, Name) and e.name in units]
+        unit = units[named[0]] if named else unit
+        free = (run for run in runs if all(high <= a + AT_REST or low >= b - AT_REST for a, b, _ in run))
+        if not (fitting := next(free, [])):
             runs.append(fitting)
         fitting.append((low, high, found.name))
     for run in runs:

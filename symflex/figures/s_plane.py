@@ -9,8 +9,9 @@ left corner:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import atan2, isclose, pi
+from cmath import phase
+from dataclasses import dataclass, field, replace
+from math import isclose, pi
 from typing import TYPE_CHECKING, Final, Literal
 
 from matplotlib.font_manager import FontProperties
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from symflex.roots import PoleZeroMap
+    from symflex.roots import PoleZeroMap, Root
 
 
 GAP_RATIO: Final = 5.0
@@ -36,15 +37,11 @@ MARGIN: Final = 0.2
 """Room around the roots shown, over their size."""
 MARGIN_FOR_NOTES: Final = 0.5
 """The same at a side where notes name the roots outside."""
-LEFT_SHARE: Final = 0.65
-"""Of room that is to be added, how much goes to the left, where stable poles lie."""
 RIM: Final = (0.95, 1.03)
 """A root so near the frame, relative to its distance from the origin, would be cut by it."""
 WIDER: Final = 1.085
 WIDENINGS: Final = 8
 """Times the view may be widened so that no root is cut by its frame."""
-SAME_DIRECTION: Final = pi / 30
-"""Roots outside within six degrees share an arrow."""
 PLAIN_LIMIT: Final = 1e5
 ROUNDING: Final = 1e-12
 """Of a root's size: what four operations in doubles may leave, with room."""
@@ -110,18 +107,15 @@ class View:
 
     def border(self, s: complex) -> complex:
         """Return where the ray from the origin to a point outside leaves the view."""
-        scales = []
-        if s.real:
-            scales.append(self.re[s.real > 0] / s.real)
-        if s.imag:
-            scales.append(self.im[s.imag > 0] / s.imag)
-        return s * min(scales)
+        parts = ((self.re, s.real), (self.im, s.imag))
+        return s * min(ends[part > 0] / part for ends, part in parts if part)
 
 
 def marks_of(found: PoleZeroMap) -> tuple[RootMark, ...]:
     """Return the poles and zeros of a transfer function in double precision."""
-    poles = tuple(RootMark("pole", point_of(root), root.multiplicity) for root in found.all_poles)
-    return poles + tuple(RootMark("zero", point_of(root), root.multiplicity) for root in found.zeros)
+    roots: list[tuple[Kind, Root]] = [("pole", root) for root in found.all_poles]
+    roots += [("zero", root) for root in found.zeros]
+    return tuple(RootMark(kind, point_of(root), root.multiplicity) for kind, root in roots)
 
 
 def choose_view(
@@ -155,16 +149,13 @@ def choose_view(
     outside = points - shown
     has_notes_above = any(abs(s.imag) > abs(s.real) for s in outside)
     half = (1 + (MARGIN_FOR_NOTES if has_notes_above else MARGIN)) * tallest or size / 2
-    left = min((s.real for s in shown), default=0.0)
-    right = max((s.real for s in shown), default=0.0)
-    sideways = [s for s in outside if abs(s.real) >= abs(s.imag)]
-    beyond_left, beyond_right = (
-        MARGIN_FOR_NOTES if any(sign * s.real > 0 for s in sideways) else MARGIN for sign in (-1, 1)
-    )
-    left, right = min(left, 0.0) - beyond_left * size, max(right, 0.0) + beyond_right * size
+    sideways = {s.real > 0 for s in outside if s.real and abs(s.real) >= abs(s.imag)}
+    beyond = [size * (MARGIN_FOR_NOTES if is_right in sideways else MARGIN) for is_right in (False, True)]
+    left = min([0.0, *(s.real for s in shown)]) - beyond[0]
+    right = max([0.0, *(s.real for s in shown)]) + beyond[1]
     missing = ratios[0] * 2 * half - (right - left)
     if missing > 0:
-        share = 0.5 if any(s.real > 0 for s in points) else LEFT_SHARE
+        share = 0.5 if any(s.real > 0 for s in points) else 0.65  # more to the left, where stable poles lie
         left, right = left - share * missing, right + (1 - share) * missing
     half = max(half, (right - left) / ratios[1] / 2)
     view = View((left, right), (-half, half), frozenset(shown))
@@ -177,16 +168,14 @@ def choose_view(
 
 
 def leaving(marks: Iterable[RootMark], view: View) -> list[list[RootMark]]:
-    """Return the roots outside the view in groups of about one direction, the nearest first."""
+    """Return the roots outside the view in groups within six degrees, the nearest first."""
     groups: list[list[RootMark]] = []
     for mark in sorted((m for m in marks if not view.shows(m)), key=lambda m: abs(m.s)):
-        angle = atan2(mark.s.imag, mark.s.real)
-        for group in groups:
-            if isclose(angle, atan2(group[0].s.imag, group[0].s.real), abs_tol=SAME_DIRECTION):
-                group.append(mark)
-                break
-        else:
-            groups.append([mark])
+        angle = phase(mark.s)
+        alike = (g for g in groups if isclose(angle, phase(g[0].s), abs_tol=pi / 30))
+        if not (group := next(alike, [])):
+            groups.append(group)
+        group.append(mark)
     return groups
 
 
@@ -228,14 +217,10 @@ ARROW: Final = 0.13
 """Length of an arrow over the smaller side of its panel."""
 SHIFTS: Final = 8
 """How many heights of a note it may be moved from its arrow to where nothing stands."""
-SMALLER: Final = (1.0, 0.9, 0.8, 0.7)
-"""Shares of its type in which a note may be written where it has little room."""
 TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
 """To cover another text, to be shifted, smaller by a step, or far away weighs as much as so many roots."""
 GRID: Final = 3.0
 """Distance of places far from an arrow that are tried where nothing near is free [points]."""
-DIGIT_POINTS: Final = 7.5
-"""Height of the box of a number."""
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Of roots that are named at an arrow; to poles at the last gain of a locus its curves lead."""
 
@@ -296,16 +281,12 @@ class Panel:
 
     def cost(self, box: Box, texts: Sequence[Box], arrows: Sequence[Box]) -> float:
         """Return what a rectangle covers, as a number of roots; what leaves the panel counts as a text."""
-        covered = sum(_overlap(box, other) for other in texts) + (box != self.held(*_sizes(box)))
-        return self._covered(box) + sum(_overlap(box, other) for other in arrows) + TEXT_COST * covered
-
-    def _covered(self, box: Box) -> int:
         left, bottom, right, top = box
-        places = map(self.at, self.roots)
-        return sum(
-            left - MARK_POINTS < x < right + MARK_POINTS and bottom - MARK_POINTS < y < top + MARK_POINTS
-            for x, y in places
-        )
+        is_beyond = box != self.held(left, bottom, right - left, top - bottom)
+        covered = sum(_overlap(box, other) for other in texts) + is_beyond
+        near = (left - MARK_POINTS, bottom - MARK_POINTS, right + MARK_POINTS, top + MARK_POINTS)
+        roots = sum(_overlap(near, (x, y, x, y)) for x, y in map(self.at, self.roots))
+        return roots + sum(_overlap(box, other) for other in arrows) + TEXT_COST * covered
 
     def held(self, left: float, bottom: float, wide: float, high: float) -> Box:
         """Return a rectangle of a size, moved into the panel."""
@@ -357,25 +338,19 @@ def write_notes(
     """
     groups = leaving((mark for mark in marks if mark.kind in GLYPHS), panel.view)
     shafts = [_draw_arrow(axes, group[0].s, panel) for group in groups]
-    arrows = [_around(*shaft) for shaft in shafts]
-    taken: list[Box] = []
+    notes = _Notes(axes, panel, colours, [_around(*shaft) for shaft in shafts])
     for mark in numbered:
         if mark.multiplicity > 1 and panel.view.shows(mark):
-            taken.append(_write_number(axes, mark, panel, taken, arrows, colours))
+            notes.number(mark)
     for group, shaft in zip(groups, shafts, strict=True):
         if not group[0].s.imag < 0:
-            taken.append(_name_roots(axes, group, shaft, panel, taken, arrows, colours))
+            notes.name(group, shaft)
 
 
 def _around(tail: complex, tip: complex) -> Box:
     """Return the rectangle around an arrow with its head."""
     (left, right), (low, top) = sorted((tail.real, tip.real)), sorted((tail.imag, tip.imag))
     return left - 2, low - 2, right + 2, top + 2
-
-
-def _sizes(box: Box) -> Box:
-    """Return left, bottom, width and height."""
-    return box[0], box[1], box[2] - box[0], box[3] - box[1]
 
 
 def _draw_arrow(axes: Axes, s: complex, panel: Panel) -> tuple[complex, complex]:
@@ -386,82 +361,72 @@ def _draw_arrow(axes: Axes, s: complex, panel: Panel) -> tuple[complex, complex]
     start = end - panel.free_length(tip, ARROW * min(panel.size)) * ray / abs(ray)
     tail = panel.s_at(start)
     look = {"arrowstyle": "-|>", "mutation_scale": 6, "linewidth": 0.7, "color": "black"}
-    axes.annotate(
-        "",
-        (tip.real, tip.imag),
-        (tail.real, tail.imag),
-        arrowprops={**look, "shrinkA": 0, "shrinkB": 0},
-    ).set_in_layout(False)
+    look |= {"shrinkA": 0, "shrinkB": 0}
+    drawn = axes.annotate("", (tip.real, tip.imag), (tail.real, tail.imag), arrowprops=look)
+    drawn.set_in_layout(False)
     return start, end
 
 
-def _write_number(
-    axes: Axes,
-    mark: RootMark,
-    panel: Panel,
-    taken: Sequence[Box],
-    arrows: Sequence[Box],
-    colours: Mapping[Kind, str],
-) -> Box:
-    """Write a multiplicity beside its mark, at a corner where it covers nothing if there is one."""
-    x, y = panel.at(mark.s)
-    wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), DIGIT_POINTS
-    others = replace(panel, roots=tuple(s for s in panel.roots if s != mark.s))
-    boxes = [
-        (x + dx, y + dy, x + dx + wide, y + dy + high)
-        for away in (0.0, wide, 2 * wide)
-        for dy in (1.5 + away, -1.5 - high - away, -high / 2)
-        for dx in (3.6 + away, -3.6 - wide - away)
-    ]
-    chosen = boxes[others.clearest(boxes, taken, arrows, SHIFT_COST)]
-    _write(axes, str(mark.multiplicity), chosen, NOTE_POINTS, colours[mark.kind])
-    return chosen
+@dataclass
+class _Notes:
+    """Notes on a panel, each where it covers as little as it can."""
 
+    axes: Axes
+    panel: Panel
+    colours: Mapping[Kind, str]
+    arrows: Sequence[Box]
+    taken: list[Box] = field(default_factory=list)  # by notes
 
-def _write(axes: Axes, text: str, box: Box, size: float, colour: str) -> None:
-    """Write a line below the top of a rectangle; in the right half, from its right side leftwards."""
-    is_right = box[0] + box[2] > inches_of(axes)[0] * POINTS_PER_INCH
-    place, side = (box[2 if is_right else 0], box[3]), "right" if is_right else "left"
-    written = axes.annotate(
-        text, place, xycoords="axes points", ha=side, va="top", fontsize=size, color=colour
-    )
-    written.set_in_layout(False)
+    def number(self, mark: RootMark) -> None:
+        """Write a multiplicity beside its mark, at a corner where it covers nothing if there is one."""
+        x, y = self.panel.at(mark.s)
+        wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), NOTE_LINE_POINTS
+        others = replace(self.panel, roots=tuple(s for s in self.panel.roots if s != mark.s))
+        boxes = [
+            (x + dx, y + dy, x + dx + wide, y + dy + high)
+            for away in (0.0, wide, 2 * wide)
+            for dy in (1.5 + away, -1.5 - high - away, -high / 2)
+            for dx in (3.6 + away, -3.6 - wide - away)
+        ]
+        chosen = boxes[others.clearest(boxes, self.taken, self.arrows, SHIFT_COST)]
+        self._write(str(mark.multiplicity), chosen, NOTE_POINTS, self.colours[mark.kind])
+        self.taken.append(chosen)
 
+    def _write(self, text: str, box: Box, size: float, colour: str) -> None:
+        """Write a line below the top of a rectangle; in the right half, from its right side leftwards."""
+        is_right = box[0] + box[2] > inches_of(self.axes)[0] * POINTS_PER_INCH
+        place, side = (box[2 if is_right else 0], box[3]), "right" if is_right else "left"
+        written = self.axes.annotate(text, place, xycoords="axes points", ha=side, va="top", fontsize=size)
+        written.set_color(colour)
+        written.set_in_layout(False)
 
-def _name_roots(
-    axes: Axes,
-    group: Sequence[RootMark],
-    shaft: tuple[complex, complex],
-    panel: Panel,
-    taken: Sequence[Box],
-    arrows: Sequence[Box],
-    colours: Mapping[Kind, str],
-) -> Box:
-    """Write which roots lie where an arrow points: beside it if there is room, else where there is."""
-    notes = [(f"{GLYPHS[m.kind]} {m.value}", colours[m.kind]) for m in group[:LISTED]]
-    if len(group) > LISTED:
-        notes.append((f"and {len(group) - LISTED} more", "black"))
-    wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
-    largest = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
-    found: list[tuple[float, float, Box]] = []
-    for step, share in enumerate(SMALLER):
-        size = largest * share
-        scale = size / NOTE_POINTS
-        across, high = wide * scale, NOTE_LINE_POINTS * scale * len(notes)
-        near, price = _beside(shaft, across, high, panel), SMALLER_COST * step
-        best = near[panel.clearest(near, taken, arrows, SHIFT_COST)]
-        found.append((panel.cost(best, taken, arrows) + SHIFT_COST * near.index(best) + price, size, best))
-        if found[-1][0] >= 1 and size >= LEAST_NOTE_POINTS:
-            far = _anywhere(shaft[1], across, high, panel)
-            best = far[panel.clearest(far, taken, arrows)]
-            found.append((panel.cost(best, taken, arrows) + FAR_COST + price, size, best))
-        if found[0][0] < SMALLER_COST or size < LEAST_NOTE_POINTS:
-            break
-    _, size, chosen = min(found, key=lambda one: one[0])
-    for i, (text, colour) in enumerate(notes):
-        top = chosen[3] - NOTE_LINE_POINTS * size / NOTE_POINTS * i
-        _write(axes, text, (*chosen[:3], top), size, colour)
-    return chosen
+    def name(self, group: Sequence[RootMark], shaft: tuple[complex, complex]) -> None:
+        """Write which roots lie where an arrow points: beside it if there is room, else where there is."""
+        panel, covered = self.panel, (self.taken, self.arrows)
+        notes = [(f"{GLYPHS[m.kind]} {m.value}", self.colours[m.kind]) for m in group[:LISTED]]
+        if len(group) > LISTED:
+            notes.append((f"and {len(group) - LISTED} more", "black"))
+        wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
+        largest = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
+        found: list[tuple[float, float, Box]] = []
+        for step, share in enumerate((1.0, 0.9, 0.8, 0.7)):  # of its type, where it has little room
+            size = largest * share
+            scale = size / NOTE_POINTS
+            across, high = wide * scale, NOTE_LINE_POINTS * scale * len(notes)
+            near, price = _beside(shaft, across, high, panel), SMALLER_COST * step
+            best = near[panel.clearest(near, *covered, SHIFT_COST)]
+            found.append((panel.cost(best, *covered) + SHIFT_COST * near.index(best) + price, size, best))
+            if found[-1][0] >= 1 and size >= LEAST_NOTE_POINTS:
+                far = _anywhere(shaft[1], across, high, panel)
+                best = far[panel.clearest(far, *covered)]
+                found.append((panel.cost(best, *covered) + FAR_COST + price, size, best))
+            if found[0][0] < SMALLER_COST or size < LEAST_NOTE_POINTS:
+                break
+        _, size, chosen = min(found, key=lambda one: one[0])
+        for i, (text, colour) in enumerate(notes):
+            top = chosen[3] - NOTE_LINE_POINTS * size / NOTE_POINTS * i
+            self._write(text, (*chosen[:3], top), size, colour)
+        self.taken.append(chosen)
 
 
 def _beside(shaft: tuple[complex, complex], wide: float, high: float, panel: Panel) -> list[Box]:
@@ -484,8 +449,6 @@ def _beside(shaft: tuple[complex, complex], wide: float, high: float, panel: Pan
 
 def _anywhere(tip: complex, wide: float, high: float, panel: Panel) -> list[Box]:
     """Return places for a note all over a panel, the nearest to its arrow first."""
-    columns, rows = (
-        max(1, int((room - own) / GRID)) for room, own in zip(panel.size, (wide, high), strict=True)
-    )
+    columns, rows = (max(1, int((panel.size[i] - own) / GRID)) for i, own in enumerate((wide, high)))
     boxes = {panel.held(GRID * i, GRID * j, wide, high) for i in range(columns + 1) for j in range(rows + 1)}
     return sorted(boxes, key=lambda b: (abs(complex(b[0] + b[2], b[1] + b[3]) / 2 - tip), b))

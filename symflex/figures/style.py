@@ -38,10 +38,6 @@ LINE_INCHES: Final = 0.13
 TITLE_SPACING: Final = 0.95
 DOTS_SHOWN: Final = 120
 """Of a page, per inch of a figure in a notebook: a column is then as wide as its lines of text."""
-SHARPNESS: Final = 2
-"""Dots of a screen per dot of a page."""
-LETTERS_PER_INCH: Final = 18
-"""Of a title in eight points, so that lines are broken before they are too long."""
 
 # Okabe and Ito (2008), told apart with every kind of colour blindness; their yellow is too pale for a line.
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -149,7 +145,7 @@ class ShownFigure(Figure):
 def raster_of(figure: Figure) -> Raster:
     """Return a figure as a notebook takes it: a PNG, and how large it is to be shown."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=SHARPNESS * DOTS_SHOWN)
+    figure.savefig(buffer, format="png", dpi=2 * DOTS_SHOWN)  # sharp on fine screens
     across, upwards = (round(inches * DOTS_SHOWN) for inches in figure.get_size_inches())
     return buffer.getvalue(), {"width": across, "height": upwards}
 
@@ -173,16 +169,8 @@ def write_titles(figure: Figure, titles: Sequence[Sequence[str]], above: float, 
     """Write groups of lines below each other at the top of a figure that leaves room for them [inches]."""
     for group in titles:
         if group:
-            figure.text(
-                0.5,
-                1 - above / height,
-                "\n".join(group),
-                ha="center",
-                va="top",
-                fontsize=TITLE_POINTS,
-                linespacing=TITLE_SPACING,
-                parse_math=False,
-            )
+            title = figure.text(0.5, 1 - above / height, "\n".join(group), ha="center", va="top")
+            title.set(fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
         above += LINE_INCHES * len(group)
 
 
@@ -196,7 +184,8 @@ def title_lines(title: str | None, width: float) -> list[str]:
     """
     words = " ".join((title or "").split())
     printed = "".join(c for c in words if c.isprintable()).replace(" = ", "\xa0=\xa0")
-    lines = textwrap.wrap(printed, max(8, int(width * LETTERS_PER_INCH)), max_lines=4, placeholder=" ...")
+    # So many letters in eight points are never too wide.
+    lines = textwrap.wrap(printed, max(8, int(18 * width)), max_lines=4, placeholder=" ...")
     return [line.replace("\xa0", " ") for line in lines]
 
 
@@ -220,9 +209,13 @@ def label_of(end: Output | Input) -> str:
     name.
     """
     label = end.latex.strip()
-    if label and read_label(label) is not None and _is_typeset(label):
-        return f"{{{label}}}"
-    return label_of_name(end.name)
+    if not label or read_label(label) is None:
+        return label_of_name(end.name)
+    try:
+        _PARSER.parse(f"${{{label}}}$")
+    except ValueError:
+        return label_of_name(end.name)
+    return f"{{{label}}}"
 
 
 def label_of_name(name: str) -> str:
@@ -251,22 +244,18 @@ def _word(word: str) -> str:
     return word if len(word) == 1 or word.isdigit() else rf"\mathrm{{{word}}}"
 
 
-def _is_typeset(label: str) -> bool:
-    try:
-        _PARSER.parse(f"${{{label}}}$")
-    except ValueError:
-        return False
-    return True
-
-
 def size_of_text(text: str, font: FontProperties) -> tuple[float, float]:
     """Return how wide and high a line of a figure is [points], mathematics between dollar signs in it."""
     width, height, *_ = _PARSER.parse(text, 72, font)
     return float(width), float(height)
 
 
-def _unit_symbol(name: str) -> str:
-    """Return a unit in mathematics: ohms and micro with their Greek letters."""
+def _unit_part(token: re.Match[str]) -> str:
+    """Return a part of a unit in mathematics: ohms and micro with their Greek letters."""
+    if power := token["fraction"] or token["power"]:
+        return f"^{{{power}}}"
+    if not (name := token["name"]):
+        return r"\," if token["other"] == "*" else token["other"]
     prefix = rf"\mu {name[1:]}" if name[0] == "u" and name[1:] else name
     return rf"{prefix[:-3]}\Omega" if name.endswith(("Ohm", "ohm")) else prefix
 
@@ -279,18 +268,7 @@ def label_of_unit(unit: str) -> str:
     >>> print(label_of_unit("m/(N*s^2)"), label_of_unit("uA/kOhm"))
     $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega}$
     """
-    if unit in ("", "1"):
-        return ""
-    parts = []
-    for token in _UNIT_TOKEN.finditer(unit):
-        power = token["fraction"] or token["power"]
-        if power:
-            parts.append(f"^{{{power}}}")
-        elif token["name"]:
-            parts.append(_unit_symbol(token["name"]))
-        else:
-            parts.append(r"\," if token["other"] == "*" else token["other"])
-    return rf"$\mathrm{{{''.join(parts)}}}$"
+    return "" if unit in ("", "1") else rf"$\mathrm{{{_UNIT_TOKEN.sub(_unit_part, unit)}}}$"
 
 
 TIGHT_DOT: Final = r"\!\cdot\!"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -51,12 +52,10 @@ if TYPE_CHECKING:
     from symflex.sweep import Labelled, Sweep
 
     Doubles = npt.NDArray[np.float64]
-    Panel = Callable[[Axes, Sweep, int | None], None]
+    Panel = Callable[[Axes], None]
+    Family = tuple[Labelled, int]  # the parameter that lines run along, and its axis
 
 PANEL_INCHES: Final = 2.1
-MAP: Final = "viridis"
-MAP_END: Final = 0.92
-"""The yellow at the end of the map is too pale for a line."""
 DECADES: Final = 15.0
 """Values that span more than this factor stand on a logarithmic axis."""
 BAND: Final = (5, 95)
@@ -101,7 +100,7 @@ def draw_sweep(
     if ax is not None:
         own = Canvas(axes=axes_of(ax)).own_axes(len(panels))
         for axes, panel in zip(own, panels, strict=True):
-            PANELS[panel](axes, sweep, modes)
+            panel(axes)
         return root_figure(own[0])
     with paper_style(font):
         width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
@@ -110,45 +109,34 @@ def draw_sweep(
         figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
         every = figure.subplots(len(panels), squeeze=False)[:, 0]
         for axes, panel in zip(every, panels, strict=True):
-            PANELS[panel](axes, sweep, modes)
+            panel(axes)
         write_title(figure, lines)
         return figure
 
 
-def _panels(sweep: Sweep, modes: int | None) -> list[str]:
-    line = _line(sweep) is not None
-    if sweep.of == "response":
-        if not np.isfinite(sweep["re"]).any():
-            raise _nothing()
-        return ["magnitude lines" if line else "magnitude band"]
+def _panels(sweep: Sweep, modes: int | None) -> list[Panel]:
+    """Return what draws the panels of a sweep."""
+    family = _family(sweep)
+    line = family[0] if family and len(sweep["point_status"].shape) == 1 else None
+    if sweep.of == "response" and np.isfinite(sweep["re"]).any():
+        return [partial(_magnitude_lines, sweep, line) if line else partial(_magnitude_band, sweep)]
     if sweep.of == "margins":
-        shown = [name for name in ("phase_margin", "gain_margin_up") if np.isfinite(sweep[name]).any()]
-        if not shown:
-            raise _nothing()
-        return [f"{name} {'line' if line else 'histogram'}" for name in shown]
-    there = sweep["status"][..., :modes] > 0
-    if not there.any():
-        raise _nothing()
-    line = _family(sweep) is not None
-    damped = bool(np.max(np.abs(sweep["damping_ratio"][..., :modes][there])) > UNDAMPED)
-    first = ["frequency lines"] if line else ["frequency bands"]
-    if line and damped:
-        first.append("damping lines")
-    return [*first, "loci"] if damped else first
+        shown = [name for name in MARGIN_LABELS if np.isfinite(sweep[name]).any()]
+        if shown:
+            return [
+                partial(_margin_line, sweep, n, line) if line else partial(_margins, sweep, n) for n in shown
+            ]
+    elif sweep.of != "response" and (there := sweep["status"][..., :modes] > 0).any():
+        is_damped = np.max(np.abs(sweep["damping_ratio"][..., :modes][there])) > UNDAMPED
+        first = partial(_mode_lines, sweep, modes, family, "frequency_hz") if family else None
+        found: list[Panel] = [first or partial(_frequency_bands, sweep, modes)]
+        if family and is_damped:
+            found.append(partial(_mode_lines, sweep, modes, family, "damping_ratio"))
+        return [*found, partial(_loci, sweep, modes, line)] if is_damped else found
+    raise ModelError(Diagnostic("SF402", "the sweep found nothing that could be drawn"))
 
 
-def _nothing() -> ModelError:
-    return ModelError(Diagnostic("SF402", "the sweep found nothing that could be drawn"))
-
-
-def _line(sweep: Sweep) -> Labelled | None:
-    """Return the parameter of a sweep along one axis."""
-    shape = sweep["point_status"].shape
-    only = [p for p in sweep.parameters if p.dims != ("draw",)]
-    return only[0] if len(shape) == 1 and len(only) == 1 == len(sweep.parameters) else None
-
-
-def _family(sweep: Sweep) -> tuple[Labelled, int] | None:
+def _family(sweep: Sweep) -> Family | None:
     """Return the parameter that lines run along, and its axis: the others, if any, have few values."""
     shape = sweep["point_status"].shape
     if any(p.dims == ("draw",) for p in sweep.parameters) or len(sweep.parameters) != len(shape):
@@ -156,8 +144,11 @@ def _family(sweep: Sweep) -> tuple[Labelled, int] | None:
     axis = int(np.argmax(shape))
     if np.prod(shape) > FEW_LINES * shape[axis]:
         return None
-    dims = next(v.dims for v in sweep.variables if v.name == "point_status")
-    return next(p for p in sweep.parameters if p.dims == (dims[axis],)), axis
+    return next(p for p in sweep.parameters if p.dims == (_dims(sweep)[axis],)), axis
+
+
+def _dims(sweep: Sweep) -> tuple[str, ...]:
+    return next(v.dims for v in sweep.variables if v.name == "point_status")
 
 
 def _others(sweep: Sweep, parameter: Labelled) -> str:
@@ -202,66 +193,45 @@ def _set_plain_ticks(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def _mode_lines(axes: Axes, sweep: Sweep, modes: int | None, values: Doubles) -> None:
-    found = _family(sweep)
-    if found is None:
-        return
-    parameter, axis = found
-    values = np.moveaxis(values, axis, 0).reshape(parameter.values.size, -1, values.shape[-1])
+MODE_LABELS: Final = {"frequency_hz": "natural frequency [Hz]", "damping_ratio": "damping ratio"}
+
+
+def _mode_lines(sweep: Sweep, modes: int | None, family: Family, name: str, axes: Axes) -> None:
+    """Draw a quantity of all modes over a parameter."""
+    parameter, axis = family
+    values = np.moveaxis(sweep[name][..., :modes], axis, 0)
+    values = values.reshape(parameter.values.size, -1, values.shape[-1])
     mark = "." if parameter.values.size <= MARKS else "None"
     order = np.argsort(parameter.values, kind="stable")
+    across, values = parameter.values[order], values[order]
     members = values.shape[1]
     axes.set_title(_others(sweep, parameter), fontsize=7, loc="right", pad=2)
-    for k in range(values.shape[-1] if modes is None else min(modes, values.shape[-1])):
+    for k in range(values.shape[-1]):
         style = DASHES[(k // len(COLOURS)) % len(DASHES)]
         colour = COLOURS[k % len(COLOURS)]
         for member in range(members):
-            axes.plot(
-                parameter.values[order],
-                values[order, member, k],
-                marker=mark,
-                linestyle=style,
-                color=colour,
-                alpha=1.0 if members == 1 else PALEST + (1 - PALEST) * member / (members - 1),
-                markersize=2.5,
-                linewidth=1.0,
-            )
-        there = np.nonzero(np.isfinite(values[order, -1, k]))[0]
+            (line,) = axes.plot(across, values[:, member, k], color=colour, linestyle=style, linewidth=1.0)
+            line.set(marker=mark, markersize=2.5)
+            line.set_alpha(1.0 if members == 1 else PALEST + (1 - PALEST) * member / (members - 1))
+        there = np.nonzero(np.isfinite(values[:, -1, k]))[0]
         if there.size:
-            last = order[there[-1]]
-            axes.annotate(
-                str(k + 1),
-                (float(parameter.values[last]), float(values[last, -1, k])),
-                xytext=(2, 0),
-                textcoords="offset points",
-                fontsize=6,
-                color=colour,
-                va="center",
-                annotation_clip=False,
-            )
+            end = (float(across[there[-1]]), float(values[there[-1], -1, k]))
+            note = axes.annotate(str(k + 1), end, (2, 0), textcoords="offset points", fontsize=6)
+            note.set_color(colour)
+            note.set_verticalalignment("center")
+            note.set_annotation_clip(False)
     _set_parameter_axis(axes, parameter)
+    if _spans_decades(values):
+        axes.set_yscale("log")
+        _set_plain_ticks(axes.yaxis)
+    elif name == "frequency_hz":
+        axes.set_ylim(bottom=0)
+    axes.set_ylabel(MODE_LABELS[name])
 
 
-def _lines_of(name: str, label: str) -> Panel:
-    """Return what draws a quantity of all modes over a parameter."""
-
-    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-        values = sweep[name]
-        _mode_lines(axes, sweep, modes, values)
-        if _spans_decades(values[..., :modes]):
-            axes.set_yscale("log")
-            _set_plain_ticks(axes.yaxis)
-        elif name == "frequency_hz":
-            axes.set_ylim(bottom=0)
-        axes.set_ylabel(label)
-
-    return draw
-
-
-def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+def _frequency_bands(sweep: Sweep, modes: int | None, axes: Axes) -> None:
     """Draw how far each mode's frequency spreads about its median [%]."""
     values = sweep["frequency_hz"].reshape(-1, sweep["frequency_hz"].shape[-1])[:, :modes]
-    numbers: list[int] = []
     labels: list[str] = []
     for k in range(values.shape[1]):
         own = values[np.isfinite(values[:, k]), k]
@@ -270,16 +240,15 @@ def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
         median = float(np.median(own))
         low, high = np.percentile(own, BAND)
         spread = [100 * (x / median - 1) for x in (own.min(), low, high, own.max())]
-        at = len(numbers)
+        at = len(labels)
         axes.plot([at, at], [spread[0], spread[3]], "-", color=QUIET, linewidth=0.8, zorder=2)
         axes.plot([at, at], [spread[1], spread[2]], "-", color=COLOURS[0], linewidth=4, zorder=3)
         axes.plot([at], [0], "_", color="black", markersize=6, markeredgewidth=0.8, zorder=4)
-        numbers.append(at)
         labels.append(f"{k + 1}\n{_short(median)}")
-    axes.set_xticks(numbers, labels)
+    axes.set_xticks(range(len(labels)), labels)
     axes.set_xlabel("mode, median of its natural frequency [Hz]")
     axes.set_ylabel("spread [%]")
-    axes.set_xlim(-0.6, len(numbers) - 0.4)
+    axes.set_xlim(-0.6, len(labels) - 0.4)
     axes.grid(visible=True, axis="y")
     axes.set_title("bars: 5 to 95 %, lines: all", fontsize=7, loc="right", pad=2)
 
@@ -294,58 +263,40 @@ def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
     low, high = float(np.min(values)), float(np.max(values))
     is_log = _spans_decades(values) and not _is_evenly_spaced(values)
     norm = LogNorm(low, high) if is_log else Normalize(low, high)
-    whole = colormaps[MAP]
-    return norm, ListedColormap([whole(x) for x in np.linspace(0, MAP_END, 256)])
+    # The yellow at the end of the map is too pale for a line.
+    return norm, ListedColormap([colormaps["viridis"](x) for x in np.linspace(0, 0.92, 256)])
 
 
-def _loci(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+def _loci(sweep: Sweep, modes: int | None, line: Labelled | None, axes: Axes) -> None:
     """Draw the roots in the upper half plane, coloured by the first parameter."""
     parameter = sweep.parameters[0]
-    shape = sweep["point_status"].shape
-    dims = next(v.dims for v in sweep.variables if v.name == "point_status")
-    axis = dims.index(parameter.dims[0])
-    value = np.broadcast_to(
-        parameter.values.reshape([-1 if i == axis else 1 for i in range(len(shape))]), shape
-    ).reshape(-1)
+    along = [-1 if dim == parameter.dims[0] else 1 for dim in _dims(sweep)]
+    value = np.broadcast_to(parameter.values.reshape(along), sweep["point_status"].shape).reshape(-1)
     re, im = (sweep[name].reshape(value.size, -1)[:, :modes] for name in ("re", "im"))
     norm, colours = _colours(parameter.values)
-    if _line(sweep) is not None:
-        for k in range(re.shape[1]):
-            points = np.column_stack([re[:, k], im[:, k]])
-            segments = np.stack([points[:-1], points[1:]], axis=1)
-            kept = np.isfinite(segments).all(axis=(1, 2))
-            axes.add_collection(
-                LineCollection(
-                    list(segments[kept]),
-                    cmap=colours,
-                    norm=norm,
-                    array=((value[:-1] + value[1:]) / 2)[kept],
-                    linewidths=1.0,
-                )
-            )
+    for k in range(re.shape[1]) if line else ():
+        points = np.column_stack([re[:, k], im[:, k]])
+        segments = np.stack([points[:-1], points[1:]], axis=1)
+        kept = np.isfinite(segments).all(axis=(1, 2))
+        middles = ((value[:-1] + value[1:]) / 2)[kept]
+        pieces = LineCollection(list(segments[kept]), cmap=colours, norm=norm, array=middles, linewidths=1.0)
+        axes.add_collection(pieces)
     spread = np.repeat(value[:, None], re.shape[1], axis=1)
     there = np.isfinite(re)
     few = int(there.sum()) <= CROWD
-    marks = axes.scatter(
-        re[there],
-        im[there],
-        c=spread[there],
-        cmap=colours,
-        norm=norm,
-        s=5 if few else 1,
-        marker="." if few else ",",
-        linewidths=0,
-        rasterized=not few,
-    )
+    size, mark = (5, ".") if few else (1, ",")
+    x, y, shade = re[there], im[there], spread[there]
+    marks = axes.scatter(x, y, size, shade, marker=mark, cmap=colours, norm=norm, linewidths=0)
+    marks.set_rasterized(not few)
     axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
     right = axes.get_xlim()[1]
-    if right > 0 and np.max(re[there]) > 0:
+    if right > 0 and np.max(x) > 0:
         axes.axvspan(0, right, color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
         axes.set_xlim(right=right)
     axes.set_ylim(bottom=0)
-    farthest = -OVERDAMPED * float(np.max(im[there]))
-    if farthest < 0 and float(np.min(re[there])) < farthest:
-        rightmost = max(float(np.max(re[there])), 0.0)
+    farthest = -OVERDAMPED * float(np.max(y))
+    if farthest < 0 and float(np.min(x)) < farthest:
+        rightmost = max(float(np.max(x)), 0.0)
         axes.set_xlim(farthest, rightmost - 0.06 * farthest)
     label_s_plane(axes)
     _add_scale(axes, marks, parameter)
@@ -358,20 +309,11 @@ def _magnitudes(sweep: Sweep) -> tuple[Doubles, Doubles]:
     return np.asarray(sweep["frequency"]), np.where(np.isfinite(decibels), decibels, np.nan)
 
 
-def _magnitude_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-    del modes
-    parameter = _line(sweep)
-    if parameter is None:
-        return
+def _magnitude_lines(sweep: Sweep, parameter: Labelled, axes: Axes) -> None:
     frequency, decibels = _magnitudes(sweep)
     norm, colours = _colours(parameter.values)
-    lines = LineCollection(
-        [np.column_stack([frequency, row]) for row in decibels],
-        cmap=colours,
-        norm=norm,
-        array=parameter.values,
-        linewidths=0.8,
-    )
+    curves = [np.column_stack([frequency, row]) for row in decibels]
+    lines = LineCollection(curves, cmap=colours, norm=norm, array=parameter.values, linewidths=0.8)
     axes.add_collection(lines)
     axes.autoscale_view()
     _set_magnitude_axes(axes, frequency, sweep)
@@ -384,8 +326,7 @@ def _add_scale(axes: Axes, coloured: ScalarMappable, parameter: Labelled) -> Non
     bar.set_label(_label(parameter), fontsize=7)
 
 
-def _magnitude_band(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-    del modes
+def _magnitude_band(sweep: Sweep, axes: Axes) -> None:
     frequency, decibels = _magnitudes(sweep)
     decibels = decibels[np.isfinite(decibels).any(axis=1)]
     low, middle, high = np.nanpercentile(decibels, (BAND[0], MEDIAN, BAND[1]), axis=0)
@@ -405,45 +346,19 @@ def _set_magnitude_axes(axes: Axes, frequency: Doubles, sweep: Sweep) -> None:
 MARGIN_LABELS: Final = {"phase_margin": "phase margin [deg]", "gain_margin_up": "gain margin, factor"}
 
 
-def _margin_line(name: str) -> Panel:
-    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-        del modes
-        parameter = _line(sweep)
-        if parameter is None:
-            return
-        order = np.argsort(parameter.values, kind="stable")
-        values = np.where(np.isfinite(sweep[name]), sweep[name], np.nan)
-        axes.plot(parameter.values[order], values[order], ".-", color=COLOURS[0], markersize=2.5)
-        _set_parameter_axis(axes, parameter)
-        axes.set_ylabel(MARGIN_LABELS[name])
-
-    return draw
+def _margin_line(sweep: Sweep, name: str, parameter: Labelled, axes: Axes) -> None:
+    order = np.argsort(parameter.values, kind="stable")
+    values = np.where(np.isfinite(sweep[name]), sweep[name], np.nan)
+    axes.plot(parameter.values[order], values[order], ".-", color=COLOURS[0], markersize=2.5)
+    _set_parameter_axis(axes, parameter)
+    axes.set_ylabel(MARGIN_LABELS[name])
 
 
-def _margin_histogram(name: str) -> Panel:
-    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-        del modes
-        values = sweep[name][np.isfinite(sweep[name])]
-        axes.hist(values, bins=30, color=COLOURS[0], alpha=0.6)
-        for share in (BAND[0], MEDIAN, BAND[1]):
-            axes.axvline(
-                float(np.percentile(values, share)),
-                color=COLOURS[1],
-                linewidth=1.0 if share == MEDIAN else 0.6,
-            )
-        axes.set_xlabel(f"{MARGIN_LABELS[name]}; lines: 5, 50, 95 %")
-        axes.set_ylabel("points")
-
-    return draw
-
-
-PANELS: Final = {
-    "frequency lines": _lines_of("frequency_hz", "natural frequency [Hz]"),
-    "damping lines": _lines_of("damping_ratio", "damping ratio"),
-    "frequency bands": _frequency_bands,
-    "loci": _loci,
-    "magnitude lines": _magnitude_lines,
-    "magnitude band": _magnitude_band,
-    **{f"{name} line": _margin_line(name) for name in MARGIN_LABELS},
-    **{f"{name} histogram": _margin_histogram(name) for name in MARGIN_LABELS},
-}
+def _margins(sweep: Sweep, name: str, axes: Axes) -> None:
+    """Draw how often margins are how large."""
+    values = sweep[name][np.isfinite(sweep[name])]
+    axes.hist(values, bins=30, color=COLOURS[0], alpha=0.6)
+    for share, width in ((BAND[0], 0.6), (MEDIAN, 1.0), (BAND[1], 0.6)):
+        axes.axvline(float(np.percentile(values, share)), color=COLOURS[1], linewidth=width)
+    axes.set_xlabel(f"{MARGIN_LABELS[name]}; lines: 5, 50, 95 %")
+    axes.set_ylabel("points")
