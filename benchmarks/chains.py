@@ -121,7 +121,7 @@ SYMENGINE_WAYS = {
     "SymEngine `DenseMatrix.det()`, then `expand`": """
 for a in minors:
     a.det().expand()
-""",
+"""
 }
 
 LCAPY = """

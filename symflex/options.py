@@ -676,10 +676,10 @@ def duration(given: str, flag: str, *, or_zero: bool = False) -> Fraction:
     quantity = _quantity(given, flag, wrong)
     if quantity.unit and quantity.dimension != SECOND:
         raise wrong
-    found = in_limits(quantity)
-    if not (found > 0 or (or_zero and found == 0)):
+    seconds = in_limits(quantity)
+    if not (seconds > 0 or (or_zero and seconds == 0)):
         raise wrong
-    return found
+    return seconds
 
 
 def highest_frequency(given: Stated) -> float:

@@ -58,14 +58,7 @@ OLD = b"as it was\n"
 UNPRIVILEGED = 65534
 TRANSIENT = (".tmp", ".lock")
 WATCHED = {"open", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.scandir", "os.utime"}
-FAULTS = (
-    "kill at an instant",
-    "kill at an operation",
-    "failing",
-    "full",
-    "read-only",
-    "two at once",
-)
+FAULTS = ("kill at an instant", "kill at an operation", "failing", "full", "read-only", "two at once")
 
 
 @dataclass

@@ -11,15 +11,7 @@ from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
 from symflex.api.plots import Plotted
 from symflex.api.response import FrequencyResponse, TimeResponse
-from symflex.api.root import (
-    Mode,
-    PoleZeroMap,
-    Residue,
-    ResidueTable,
-    Root,
-    RootTable,
-    plain_mode,
-)
+from symflex.api.root import Mode, PoleZeroMap, Residue, ResidueTable, Root, RootTable, plain_mode
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions, band_ends, checked_digits

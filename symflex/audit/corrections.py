@@ -91,14 +91,14 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     lines = _mended_lines(reading, numbers), _other_lines(reading, numbers)
     inside = _mended_calls(reading, tf, numbers), _exchanged_names(reading, numbers)
     last = lines[1], _derived_lines(reading, tf, numbers), _slipped_twice(reading, numbers)
-    for found in chain(lines[0], inside[0], _in_expression(reading), inside[1], _both_sums(reading), *last):
-        corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
+    for change in chain(lines[0], inside[0], _in_expression(reading), inside[1], _both_sums(reading), *last):
+        corrected = Formula(change.expression, change.scale, change.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
         except (UnreadError, SpecError, BudgetError):
             continue
         if again.field.equal(again.printed, again.derived):
-            return found
+            return change
     return None
 
 

@@ -88,11 +88,11 @@ def _has_roots(field: Arithmetic, part: fmpz_mpoly) -> bool:
 
 def _varying(field: Arithmetic) -> list[int]:
     """Return the positions of the generators that depend on s."""
-    found = [field.ring.index[LAPLACE]]
+    indices = [field.ring.index[LAPLACE]]
     for i, wave in enumerate(field.ground.waves):
         if any(name == LAPLACE or name.startswith("sum(") for name, _ in wave.key):
-            found += [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
-    return found
+            indices += [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
+    return indices
 
 
 def _vanishes(field: Arithmetic, ring: Ring, factor: fmpz_mpoly, varying: list[int]) -> bool:
@@ -145,11 +145,11 @@ def behaviour_at_zero(field: Arithmetic, value: Factored) -> tuple[Factored, Fra
     """Return ``c`` and ``n`` with ``value ~ c s^n`` as s tends to 0, c free of s; ``None`` if not found."""
     coefficient, order = field.number(value.unit), Fraction(0)
     for factor, exponent in value.factors:
-        found = _leading(field, field.reduce(factor))
-        if found is None:
+        leading = _leading(field, field.reduce(factor))
+        if leading is None:
             return None
-        coefficient = coefficient * found[0] ** exponent
-        order += found[1] * exponent
+        coefficient = coefficient * leading[0] ** exponent
+        order += leading[1] * exponent
     return field.reduced(coefficient), order / field.ground.order
 
 
@@ -172,9 +172,9 @@ def _leading(field: Arithmetic, factor: fmpz_mpoly) -> tuple[Factored, Fraction]
             argument = context.gen(places[0]) * context.gen(0) ** step
             images[places[0]], images[places[1]], images[places[2]] = _series(argument, terms)
             highest = min(highest or step * terms, step * terms)
-        found = _lowest(field, rational.compose(*images, ctx=context), used, highest)
-        if found is not None or highest is None:
-            return found
+        lowest = _lowest(field, rational.compose(*images, ctx=context), used, highest)
+        if lowest is not None or highest is None:
+            return lowest
     return None
 
 

@@ -439,13 +439,13 @@ class Arithmetic:
         g, index = self.ground, self.ring.index
         # A sum may hold roots of earlier ones, and all hold roots of primes.
         sums = reversed(list(enumerate(g.sums)))
-        found = [(index[f"sum({i})"], g.order, self.from_recipe(recipe)) for i, recipe in sums]
-        found += [(index[f"root({p})"], g.order, self.number(p)) for p in g.primes]
-        found.append((index[UNIT], 2, self.number(-1)))
+        relations = [(index[f"sum({i})"], g.order, self.from_recipe(recipe)) for i, recipe in sums]
+        relations += [(index[f"root({p})"], g.order, self.number(p)) for p in g.primes]
+        relations.append((index[UNIT], 2, self.number(-1)))
         for i in range(len(g.waves)):
             c = self.ring.generator(f"cos({i})")
-            found.append((index[f"sin({i})"], 2, Factored.polynomial(self.ring, 1 - c * c)))
-        return tuple(found)
+            relations.append((index[f"sin({i})"], 2, Factored.polynomial(self.ring, 1 - c * c)))
+        return tuple(relations)
 
     def reduce(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the normal form of a polynomial."""
@@ -519,14 +519,14 @@ def _common_unit(left: Fraction, right: Fraction) -> Fraction:
 
 def _primes(number: int) -> list[tuple[int, int]]:
     """Return the prime factors of a number; what has no small ones stays together."""
-    found, rest, candidate = [], number, 2
+    primes, rest, candidate = [], number, 2
     while candidate <= LARGEST_PRIME and candidate * candidate <= rest:
         times = 0
         while rest % candidate == 0:
             rest, times = rest // candidate, times + 1
         if times:
-            found.append((candidate, times))
+            primes.append((candidate, times))
         candidate += 1
     if rest.bit_length() > LARGEST_COFACTOR_BITS:
         raise UnreadError("it takes the root of a large number")
-    return [*found, (rest, 1)] if rest > 1 else found
+    return [*primes, (rest, 1)] if rest > 1 else primes

@@ -110,12 +110,12 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
         spend()
         unread, reading = "it exceeds the size limits when it is expanded", None
     numbers = numbers_of(formula, tf, tf.model)
-    found = compare_anywhere(numbers, tf)
-    if not found.differs:
-        verdict: Verdict = "agrees" if found.agreed else "undecided"
+    seen = compare_anywhere(numbers, tf)
+    if not seen.differs:
+        verdict: Verdict = "agrees" if seen.agreed else "undecided"
         unread = unread or "its roots or functions may satisfy a relation that was not found"
-        return Audit(tf, published, formula, verdict, unread, comparison=found)
-    return _difference(Audit(tf, published, formula, "differs", unread, comparison=found), reading, numbers)
+        return Audit(tf, published, formula, verdict, unread, comparison=seen)
+    return _difference(Audit(tf, published, formula, "differs", unread, comparison=seen), reading, numbers)
 
 
 def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) -> Audit:

@@ -52,15 +52,15 @@ def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple
     ``reading`` holds both functions exactly, None when they could not be read; ``numbers`` both with the
     model's own values, None where a parameter has none.
     """
-    found: list[LawCheck | None] = []
+    checks: list[LawCheck | None] = []
     if reading is not None:
         printed, derived = (lowest_terms(reading.field, v) for v in (reading.printed, reading.derived))
         if printed is not None and derived is not None:
-            found += [_poles(reading, printed, derived), _double_zeros(reading, printed, derived)]
-        found.append(_limit(reading))
+            checks += [_poles(reading, printed, derived), _double_zeros(reading, printed, derived)]
+        checks.append(_limit(reading))
     if numbers is not None:
-        found += [_phase(numbers), _interlacing(numbers)]
-    return tuple(check for check in found if check is not None)
+        checks += [_phase(numbers), _interlacing(numbers)]
+    return tuple(check for check in checks if check is not None)
 
 
 # ------------------------------------------------------------------------------------- exactly, by factors
@@ -106,10 +106,10 @@ def _shown(reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[
 
 
 def _limit(reading: FormulaReading) -> LawCheck | None:
-    found = behaviour_at_zero(reading.field, reading.printed / reading.derived)
-    if found is None:
+    leading = behaviour_at_zero(reading.field, reading.printed / reading.derived)
+    if leading is None:
         return None
-    coefficient, order = found
+    coefficient, order = leading
     law = "limit at zero"
     if order == 0 and reading.field.equal(coefficient, reading.field.number(1)):
         return LawCheck(law, True, "proved", "printed/derived tends to 1 as s tends to 0")
@@ -122,9 +122,9 @@ def _limit(reading: FormulaReading) -> LawCheck | None:
 
 
 def _expression_of(reading: FormulaReading, value: Factored) -> Expression | None:
-    found = monomial_expression(reading.field, value)
-    if found is not None:
-        return found
+    monomial = monomial_expression(reading.field, value)
+    if monomial is not None:
+        return monomial
     above = polynomial_expression(reading.field, value.numerator())
     below = polynomial_expression(reading.field, value.denominator())
     return None if above is None or below is None else quotient(above, below)
@@ -230,13 +230,13 @@ def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]
             return _Value(frequency, bool(part > 0), float(abs(part).log().mid()))
 
     values = [at(frequency) for frequency in grid]
-    found = []
+    events = []
     for left, right in pairwise(values):
         if left is None or right is None:
             return None
         if left.is_positive != right.is_positive:
-            found.append(_settled(at, left, right))
-    return found
+            events.append(_settled(at, left, right))
+    return events
 
 
 def _settled(at: Callable[[float], _Value | None], left: _Value, right: _Value) -> _Event:

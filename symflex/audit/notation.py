@@ -47,18 +47,18 @@ class Symbol:
 
 def symbols_of(reading: FormulaReading) -> tuple[Symbol, ...]:
     """Return the transcendental symbols of the printed expression, in order of appearance."""
-    found: dict[Expression, Symbol] = {}
+    symbols: dict[Expression, Symbol] = {}
     pending = [reading.formula.expression]
     while pending:
         node = pending.pop()
         is_symbol = (isinstance(node, Name) and node.name in reading.lines) or isinstance(node, Call)
-        if is_symbol and node not in found:
+        if is_symbol and node not in symbols:
             value = reading.value(node)
             if reading.field.depends_on_functions(value):
-                found[node] = Symbol(node, value)
+                symbols[node] = Symbol(node, value)
                 continue
         pending.extend(reversed(node.children))
-    return tuple(found.values())
+    return tuple(symbols.values())
 
 
 def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
@@ -164,10 +164,10 @@ def factor_expression(reading: FormulaReading, value: Factored) -> Expression | 
     """Return a value, up to a factor without zeros, in the printed symbols or with functions of s."""
     field = reading.field
     symbols = symbols_of(reading)
-    found = _in_symbols(field, value, symbols)
-    if found is None:
+    written = _in_symbols(field, value, symbols)
+    if written is None:
         return polynomial_expression(field, value)
-    return _negated(found[0]) if _begins_negative(found[0]) else found[0]
+    return _negated(written[0]) if _begins_negative(written[0]) else written[0]
 
 
 def _begins_negative(expression: Expression) -> bool:
@@ -235,10 +235,10 @@ def derived_in_symbols(reading: FormulaReading) -> Expression | None:
     for factors in (terms.zeros, terms.poles):
         product = prod((factor**times for factor, times in factors), start=terms.ring.constant(1))
         value = full_angles(field, terms.ring, product)
-        found = None if value is None else _in_symbols(field, value, symbols)
-        if found is None:
+        written = None if value is None else _in_symbols(field, value, symbols)
+        if written is None:
             return None
-        parts.append(found)
+        parts.append(written)
     (above, num), (below, den) = parts
     if _begins_negative(below):
         below, den = _negated(below), -den
@@ -252,7 +252,7 @@ def _in_symbols(
 ) -> tuple[Expression, Factored] | None:
     """Return a value, up to powers of exponentials, in symbols."""
     for shift in _shifts(field, value):
-        found = in_symbols(field, value * shift, symbols)
-        if found is not None:
-            return found, value * shift
+        written = in_symbols(field, value * shift, symbols)
+        if written is not None:
+            return written, value * shift
     return None

@@ -111,13 +111,13 @@ def numbers_of(formula: Formula, tf: TransferFunction, model: Model) -> Numbers:
 def comparison_points(band: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, Fraction], ...]:
     """Return the complex frequencies [rad/s] at which functions are compared."""
     low, high = float(band[0]) * 6.3, float(band[1]) * 6.3
-    found = []
+    points = []
     for i in range(POINTS):
         radius = Fraction(f"{low * (high / low) ** (i / (POINTS - 1)):.3g}")
         # On the positive real axis no root has two readings, so these come first.
         re, im, over = (1, 0, 1) if i % 4 == 0 else _DIRECTIONS[i % len(_DIRECTIONS)]
-        found.append((radius * re / over, radius * im / over))
-    return tuple(sorted(found, key=lambda s: s[1] != 0))
+        points.append((radius * re / over, radius * im / over))
+    return tuple(sorted(points, key=lambda s: s[1] != 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,13 +157,13 @@ def compare(numbers: Numbers) -> Comparison:
 
 def compare_anywhere(numbers: Numbers, tf: TransferFunction) -> Comparison:
     """Compare both functions, also with other values than the declared ones: 1 kg hides a factor."""
-    found = compare(numbers)
-    for setting in () if found.differs else dict.fromkeys(setting for setting, _ in tf.probes.points):
+    comparison = compare(numbers)
+    for setting in () if comparison.differs else dict.fromkeys(setting for setting, _ in tf.probes.points):
         bound = bind(tf, {name: v.rational for name, v in setting.values.items() if not v.pi_power})
         other = compare(replace(numbers, bound=bound, values=setting.values, _enclosed={}))
         if other.differs:
             return replace(other, values=tuple(setting.values.items()))
-    return found
+    return comparison
 
 
 def _value(expression: Expression, known: Mapping[str, acb]) -> acb:
@@ -211,9 +211,9 @@ def _largest(
     highest = sorted(sorted(peaks, key=lambda i: -sizes[i])[:MOST_PEAKS])
     best: tuple[float, float] | None = None
     for i in highest:
-        found = _refined(numbers, (grid[max(i - 1, 0)], grid[i], grid[min(i + 1, last)]), which)
-        if found is not None and (best is None or abs(found[0]) > abs(best[0]) + NEGLIGIBLE):
-            best = found
+        refined = _refined(numbers, (grid[max(i - 1, 0)], grid[i], grid[min(i + 1, last)]), which)
+        if refined is not None and (best is None or abs(refined[0]) > abs(best[0]) + NEGLIGIBLE):
+            best = refined
         if best is not None and abs(best[0]) > UNBOUNDED:
             break
     return best

@@ -83,9 +83,9 @@ def _derived(audit: Audit, width: int) -> list[str]:
 def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], width: int) -> list[str]:
     """Return an expression in lines, with the parts that differ underlined where they can be told."""
     lines = wrapped(expression, width - 2 * len(INDENT))
-    found = []
+    marked = []
     for i, line in enumerate(lines):
-        found.append(2 * INDENT + line)
+        marked.append(2 * INDENT + line)
         marks = [" "] * len(line)
         for place, part in parts:
             text = format_expression(part)
@@ -100,8 +100,8 @@ def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], wid
                 ):
                     marks[places[0] : places[0] + len(shown)] = "^" * len(shown)
         if "^" in marks:
-            found.append((2 * INDENT + "".join(marks)).rstrip())
-    return found
+            marked.append((2 * INDENT + "".join(marks)).rstrip())
+    return marked
 
 
 def _places(line: str, text: str) -> list[int]:
@@ -111,13 +111,13 @@ def _places(line: str, text: str) -> list[int]:
 
 
 def _where(lines: Sequence[tuple[str, Expression]], scale: Expression | None, width: int) -> list[str]:
-    found = []
+    hanging_lines = []
     if scale is not None:
-        found += [2 * INDENT + line for line in hanging("times ", scale, width - 2 * len(INDENT))]
+        hanging_lines += [2 * INDENT + line for line in hanging("times ", scale, width - 2 * len(INDENT))]
     for i, (name, expression) in enumerate(lines):
         head = f"{'where' if i == 0 else '':<6}{name} = "
-        found += [2 * INDENT + line for line in hanging(head, expression, width - 2 * len(INDENT))]
-    return found
+        hanging_lines += [2 * INDENT + line for line in hanging(head, expression, width - 2 * len(INDENT))]
+    return hanging_lines
 
 
 def _changes(audit: Audit) -> list[str]:
@@ -237,14 +237,14 @@ def _lines(lines: Sequence[tuple[str, Expression]]) -> list[list[str]]:
     return [[name, format_expression(expression)] for name, expression in lines]
 
 
-def _counterexample(found: Comparison | None) -> dict[str, object] | None:
-    if found is None or found.point is None or found.printed is None or found.derived is None:
+def _counterexample(shown: Comparison | None) -> dict[str, object] | None:
+    if shown is None or shown.point is None or shown.printed is None or shown.derived is None:
         return None
     return {
-        "s": {"re": str(found.point[0]), "im": str(found.point[1])},
-        "values": {name: float(value.nearly) for name, value in found.values} or None,
-        "printed": _complex_json(found.printed),
-        "derived": _complex_json(found.derived),
+        "s": {"re": str(shown.point[0]), "im": str(shown.point[1])},
+        "values": {name: float(value.nearly) for name, value in shown.values} or None,
+        "printed": _complex_json(shown.printed),
+        "derived": _complex_json(shown.derived),
     }
 
 
@@ -253,9 +253,9 @@ def _complex_json(value: complex) -> dict[str, float] | None:
     return {"re": value.real, "im": value.imag} if isfinite(value.real) and isfinite(value.imag) else None
 
 
-def _deviation(found: Deviation | None) -> dict[str, object] | None:
-    if found is None:
+def _deviation(deviation: Deviation | None) -> dict[str, object] | None:
+    if deviation is None:
         return None
-    plain = asdict(found)
+    plain = asdict(deviation)
     band = [float(limit) for limit in plain.pop("band")]
-    return {"band_hz": band, **plain, "magnitude_db": None if found.unbounded else found.magnitude_db}
+    return {"band_hz": band, **plain, "magnitude_db": None if deviation.unbounded else deviation.magnitude_db}

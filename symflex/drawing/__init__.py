@@ -155,11 +155,11 @@ def _legend(model: Model, labels: Labels) -> list[Placed]:
     return [Placed("values", "", (), lines)] if lines else []
 
 
-def _laid_out(content: _Content, found: list[_Row], width: float, bands: list[list[Placed]]) -> Drawing:
+def _laid_out(content: _Content, drawn_rows: list[_Row], width: float, bands: list[list[Placed]]) -> Drawing:
     model, graph = content.model, content.graph
-    rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
+    rows = [*(items for items, _ in drawn_rows), *(f.items for f in content.fields)]
     rows += [*bands, statements(graph), _legend(model, graph.labels)]
-    gone = tuple(name for _, left_out in found for name in left_out)
+    gone = tuple(name for _, left_out in drawn_rows for name in left_out)
     at = content.at_sources
     named = [
         [replace(i, kind="input", name=at[i.name]) if i.kind == "label" and i.name in at else i for i in row]
@@ -176,8 +176,8 @@ def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
         boxes.setdefault((item.kind, item.name), []).append(item.box)
     bodies: dict[str, list[Extent]] = {}
     for part in (p for net in content.scheme.networks for p in net.parts if p.symbol.role == "body"):
-        found = boxes.get(("element", part.name), ())
-        bodies.setdefault(part.nodes[0], []).extend(c for b in found for c in _faces(part, b))
+        part_boxes = boxes.get(("element", part.name), ())
+        bodies.setdefault(part.nodes[0], []).extend(c for b in part_boxes for c in _faces(part, b))
     joins = []
     for name in content.graph.readings():
         node = name.partition(".")[0]

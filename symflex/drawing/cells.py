@@ -137,16 +137,16 @@ def tags_of(part: DrawnPart) -> list[Built]:
 
     What a support is called, if it is called something, stands before them without an arrow.
     """
-    found = []
+    tags = []
     if part.symbol.role == "support" and len(part.ends) == 1 and (called := text(part.label, SMALL)):
         own = Placed("label", part.name, (), (called,))
-        found.append(Built(called.width + 10, (own.moved(-5, 0),), -called.depth, called.height))
+        tags.append(Built(called.width + 10, (own.moved(-5, 0),), -called.depth, called.height))
     for kind, name, label in part.tags:
         if shown := text(label, SMALL):
             pointer = Placed(kind, name, arrow((-10, shown.height / 2), (-2, shown.height / 2), THIN))
             placed = (pointer, Placed("label", name, (), (shown,)))
-            found.append(Built(shown.width + 10, placed, -shown.depth, shown.height))
-    return found
+            tags.append(Built(shown.width + 10, placed, -shown.depth, shown.height))
+    return tags
 
 
 def strokes_of(part: DrawnPart, length: float, *, is_reversed: bool) -> tuple[Stroke, ...]:
@@ -210,7 +210,7 @@ def _casing(cell: SymbolCell, length: float) -> tuple[Stroke, ...]:
 
 def _signs(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     """Return the signs of an amplifier's inputs, the first of which is not inverted."""
-    found = []
+    signs = []
     x = start + length * (0.73 if cell.is_reversed else 0.27)
     for end, sign in zip(cell.part.ends, ("+", "-"), strict=False):
         side = cell.left if any(e is end for e in cell.left) else cell.right
@@ -218,15 +218,15 @@ def _signs(cell: SymbolCell, start: float, length: float) -> list[Placed]:
         y = max(-USUAL_PITCH / 2, min(USUAL_PITCH / 2, cell.offsets(side)[place]))
         if written := text(sign, SMALL):
             low = y - (written.height - written.depth) / 2
-            found.append(Placed("label", cell.part.name, (), (written.moved(x - written.width / 2, low),)))
-    return found
+            signs.append(Placed("label", cell.part.name, (), (written.moved(x - written.width / 2, low),)))
+    return signs
 
 
 def _wires(
     cell: SymbolCell, left: tuple[float, float, float], right: tuple[float, float, float]
 ) -> list[Placed]:
     """Draw what leads to a symbol: from the edge of its place, or from the ground."""
-    part, found = cell.part, []
+    part, wires = cell.part, []
     insets = (0.0, 0.2) if cell.is_boxed else INSET.get(part.type_name, (0.0, 0.2))
     amplifier = part.type_name == "op_amp" and not cell.is_boxed
     for side, (edge, ground, inner), sign in ((cell.left, left, 1), (cell.right, right, -1)):
@@ -239,7 +239,7 @@ def _wires(
                 back = (right if sign > 0 else left)[2]
                 into = (back - sign * 0.2 * (right[2] - left[2]), USUAL_PITCH / 2)
                 around = ((at, y), (back, y), (back, USUAL_PITCH / 2), into)
-                found.append(Placed("wire", part.name, (line(*around),)))
+                wires.append(Placed("wire", part.name, (line(*around),)))
                 continue
             if at != reach:
                 bold = BOLD if one.domain == "rotation" else LINE
@@ -251,12 +251,12 @@ def _wires(
                 ):
                     level = USUAL_PITCH / 2 if y > 0 else -USUAL_PITCH / 2
                     route = [(at, y), (inner, y), (inner, level), (reach, level)]
-                found.append(Placed("wire", part.name, (line(*route, width=bold),)))
+                wires.append(Placed("wire", part.name, (line(*route, width=bold),)))
             if not one.node:
                 is_wall = one.domain not in CIRCUITS
                 strokes = wall(y - WALL, y + WALL, -sign, at) if is_wall else earth(at, y)
-                found.append(Placed("ground", "", strokes))
-    return found
+                wires.append(Placed("ground", "", strokes))
+    return wires
 
 
 def _kept(middle: float, width: float, low: float, high: float) -> float:
@@ -276,7 +276,7 @@ def coordinate(y: float = 0.0) -> list[Placed]:
 def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     """Mark outputs along a member, beside what stands at the nodes at its ends."""
     part, ends = cell.part, (start + cell.margins[0], start + length - cell.margins[1])
-    found: list[Placed] = []
+    marks: list[Placed] = []
     taken: list[tuple[float, float, int]] = []  # from where to where texts reach, and at which level
     beyond = 1e9
     for share, name, label in reversed(part.points):
@@ -293,8 +293,8 @@ def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
         arrow_down = (line((x, tip + 0.8), (x, y), width=THIN), head((x, tip), (0, -1), 3.0))
         place = shown.moved(low, y + 1.5 + shown.depth)
         if beyond - x > SPACE:
-            found += [Placed("output", name, arrow_down), Placed("label", name, (), (place,))]
+            marks += [Placed("output", name, arrow_down), Placed("label", name, (), (place,))]
             beyond = x
         else:
-            found.append(Placed("output", name, (), (place,)))  # at the arrow of the one beside it
-    return found
+            marks.append(Placed("output", name, (), (place,)))  # at the arrow of the one beside it
+    return marks

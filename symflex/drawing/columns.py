@@ -143,27 +143,27 @@ def body_size(part: DrawnPart, kind: str, size: float) -> tuple[float, float]:
 
 def bodies(column: Column, size: float) -> list[Placed]:
     """Draw masses as boxes one above the other, and moments of inertia as discs on the shaft."""
-    found: list[Placed] = []
+    drawn: list[Placed] = []
     sizes = [body_size(p, column.kind, size) for p in column.bodies]
     if column.kind == "rotation":
         x = column.x - column.half
         middle = (column.top - column.crown + column.bottom) / 2
         if len(sizes) > 1 or column.half > DISC_WIDTH / 2:
             axis = line((x, middle), (x + 2 * column.half, middle), width=BOLD)
-            found.append(Placed("wire", column.name, (axis,)))
+            drawn.append(Placed("wire", column.name, (axis,)))
         for part, (width, _) in zip(column.bodies, sizes, strict=True):
             label, at, top = label_of(part), x + width / 2, column.top - column.crown
             disc = rectangle(at - DISC_WIDTH / 2, column.bottom, at + DISC_WIDTH / 2, top, FILLED)
-            found.append(Placed(part.kind, part.name, (disc,)))
-            found.append(label.moved(at, top + SPACE - label.box.y0))
+            drawn.append(Placed(part.kind, part.name, (disc,)))
+            drawn.append(label.moved(at, top + SPACE - label.box.y0))
             x += width
-        return found
+        return drawn
     y = column.top
     spare = (column.top - column.bottom - sum(h for _, h in sizes)) / max(1, len(sizes))
     for part, (_, height) in zip(column.bodies, sizes, strict=True):
-        found += _mass(part, column, y - height - spare, y)
+        drawn += _mass(part, column, y - height - spare, y)
         y -= height + spare
-    return found
+    return drawn
 
 
 def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]:
@@ -208,12 +208,12 @@ def support_width(part: DrawnPart) -> float:
 
 def tags_below(part: DrawnPart, x: float, y: float) -> list[Placed]:
     """Write what outputs show of a support below it, centred."""
-    found = []
+    tags = []
     for one in tags_of(part):
         y -= one.above + SPACE
-        found += [i.moved(x - one.width / 2 + 10, y) for i in one.placed]
+        tags += [i.moved(x - one.width / 2 + 10, y) for i in one.placed]
         y += one.below
-    return found
+    return tags
 
 
 def hanging_length(part: DrawnPart) -> float:
@@ -233,12 +233,12 @@ def hanging_texts(part: DrawnPart, x: float, y: float) -> list[Placed]:
     blocks = [*([(label,)] if label.texts else []), *(one.placed for one in tags_of(part))]
     boxes = [union(i.box for i in block) for block in blocks]
     y += sum(b.height + 3 for b in boxes) / 2
-    found = []
+    hanging = []
     for block, box in zip(blocks, boxes, strict=True):
         y -= box.height + 1.5
-        found += [i.moved(x - box.x0, y - box.y0) for i in block]
+        hanging += [i.moved(x - box.x0, y - box.y0) for i in block]
         y -= 1.5
-    return found
+    return hanging
 
 
 def hanging_width(part: DrawnPart) -> float:
@@ -291,14 +291,14 @@ def upright_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
 
 def texts_of_mark(mark: Mark, x: float, y: float) -> list[Placed]:
     """Write the labels of a mark side by side from x on; those after the first stand for themselves."""
-    found = []
+    texts = []
     for i, (kind, name, label) in enumerate(mark.labels):
         shown = text(label if i == len(mark.labels) - 1 else f"{label},")
         if shown is None:
             continue
-        found.append(Placed(kind if i else "label", name, (), (shown.moved(x, y),)))
+        texts.append(Placed(kind if i else "label", name, (), (shown.moved(x, y),)))
         x += shown.width + 2
-    return found
+    return texts
 
 
 def flat_mark(mark: Mark, x: float, foot: float) -> list[Placed]:

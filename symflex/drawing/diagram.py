@@ -199,7 +199,7 @@ class _Band:
 
     def _branches(self, nodes: list[int] | tuple[int, ...]) -> list[_Branch]:
         """Return what leads to the sums among nodes and is not joined yet."""
-        found = []
+        branches = []
         for target in nodes:
             for one, is_minus in self.graph.nodes[target].before:
                 if (one, target) in self.joined:
@@ -219,8 +219,8 @@ class _Band:
                 is_wired = is_met and self._kind(node) == "signal" and {node, target} <= {*self.path}
                 is_tag = is_met and not is_wired
                 nodes_drawn = (*chain, node) if is_tag else tuple(chain)
-                found.append(_Branch(target, nodes_drawn, node if is_wired else None, is_minus, is_tag))
-        return found
+                branches.append(_Branch(target, nodes_drawn, node if is_wired else None, is_minus, is_tag))
+        return branches
 
     # ------------------------------------------------------------------------------------------- drawing
 
@@ -332,18 +332,18 @@ class _Band:
         is_loose, sign = branch.origin is None, 1.0 if spare >= 0 else -1.0
 
         def met(slack: float) -> int:
-            x, found = place[0] + sign * (slack + WIRE), 0
+            x, count = place[0] + sign * (slack + WIRE), 0
             for node, one in zip(branch.nodes, shown, strict=True):
                 low, high = sorted((x, x + sign * one.width))
                 box = Extent(low, place[1] + one.below, high, place[1] + one.above)
                 if len(self.graph.nodes[node].before) == MOST_AT_SUM:  # a sum with wires up and down
                     line_up = Extent(low + RADIUS - 1, -1e4, high - RADIUS + 1, 1e4)
-                    found += sum(b.overlaps(line_up) for b in self.solid)
+                    count += sum(b.overlaps(line_up) for b in self.solid)
                 elif not is_loose:
-                    found += sum(low - 1 < riser < high + 1 for riser in self.risers)
-                found += is_loose and slack > 0 and any(b.overlaps(box) for b in self.occupied)
+                    count += sum(low - 1 < riser < high + 1 for riser in self.risers)
+                count += is_loose and slack > 0 and any(b.overlaps(box) for b in self.occupied)
                 x += sign * (one.width + WIRE)
-            return found
+            return count
 
         shares = [abs(spare) * share for share in (0.5, 0.3, 0.7, 0.1, 0.9)]
         return min([6.0 * i for i in range(8)] if is_loose else shares, key=met)
@@ -382,8 +382,8 @@ class _Band:
                 return self._tag(one, is_tag=is_tag)
 
     def _box(self, one: SignalNode) -> Built:
-        found = formula(self.graph.blocks[one.name]) if one.kind == "block" else None
-        shown = text(self.graph.labels.fraction(found), SIZE) if found is not None else None
+        fraction = formula(self.graph.blocks[one.name]) if one.kind == "block" else None
+        shown = text(self.graph.labels.fraction(fraction), SIZE) if fraction is not None else None
         if shown and shown.width <= WIDEST:
             return _boxed(one, shown, _fitting(one.label, SMALL))
         return _boxed(one, _fitting(one.label, SIZE) or text(r"\cdots", SIZE), None)
@@ -451,12 +451,12 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
 def statements(graph: SignalGraph) -> list[Placed]:
     """Return equations, and the formulas of blocks that stand in no diagram, one below the other."""
     drawn = {n.name for n in graph.nodes if n.kind == "block"}
-    y, found = 0.0, []
+    y, lines_drawn = 0.0, []
     for equation in graph.equations:
         sides = " = ".join(graph.labels.expression(side) for side in equation.children)
         if shown := text(sides, SMALL):
             lines, y = downwards([shown], y, BETWEEN_FORMULAS)
-            found.append(Placed("condition", "", (), tuple(lines)))
+            lines_drawn.append(Placed("condition", "", (), tuple(lines)))
     for block in (b for b in graph.blocks.values() if b.name not in drawn):
         value = formula(block)
         name = graph.labels.name(block.name)
@@ -464,5 +464,5 @@ def statements(graph: SignalGraph) -> list[Placed]:
         written = written if written and written.width <= WIDEST_FORMULA else text(name, SMALL)
         values = filled(graph.labels.values([e for _, e in block.values]), WIDEST_FORMULA)
         lines, y = downwards((written, *values) if written else (), y, BETWEEN_FORMULAS)
-        found.append(Placed("block", block.name, (), tuple(lines)))
-    return found
+        lines_drawn.append(Placed("block", block.name, (), tuple(lines)))
+    return lines_drawn

@@ -132,12 +132,12 @@ class _Row:
         sizes = [abs(b - a) if a is not None and b is not None else 0.0 for a, b in spans]
         total = sum(sizes)
         shares = [max(SHORTEST, s / total) if all(sizes) else 1.0 for s in sizes]
-        found, x = {}, 0.0
+        starts, x = {}, 0.0
         for one, share in zip(self.fields, shares, strict=True):
             wide = LENGTH * share / sum(shares)
-            found[one.name] = (x, x + wide)
+            starts[one.name] = (x, x + wide)
             x += wide
-        return found
+        return starts
 
     def _x(self, one: FieldProblem, point: Expression) -> float:
         """Return where a point of a field is drawn."""
@@ -156,9 +156,9 @@ class _Row:
         a, b = (evaluate(e, self.known) for e in (one.start, one.end))
         ends = (0.0 if a is None else a, UNKNOWN if b is None else b)
         for equation in one.equations:
-            if not (found := _derivatives(equation)):
+            if not (derivatives := _derivatives(equation)):
                 continue  # an unknown that follows another
-            highest = found[0]
+            highest = derivatives[0]
             stiff, others = _stiffness(equation, one.unknowns)
             moved = {**others, Name(highest.name): number(1)}
             inert, still = (_coefficient(equation, {**moved, Name("s"): number(n)}) for n in (1, 0))
@@ -176,21 +176,21 @@ class _Row:
         return [n for n in names(equation) if isinstance(n, Call) and n.name in self.unknowns]
 
     def _collect_inputs(self) -> list[str]:
-        found: list[str] = []
+        inputs: list[str] = []
         for one in self.fields:
             is_beam = self._is_beam(one)
             for condition in one.conditions:
                 calls = self._values(condition)
                 driving = [n.name for n in names(condition) if isinstance(n, Name)] if calls else []
-                for name in (n for n in driving if n in self.free and n not in found):
+                for name in (n for n in driving if n in self.free and n not in inputs):
                     at = max(calls, key=lambda c: c.order)
                     style: Style = "push" if at.order else "raise"
                     style = OF_BEAMS.get(at.order, style) if is_beam else style
                     x = self._x(self.unknowns[at.name], at.argument)
                     self.marks.setdefault((style, x), []).append(("input", name, self._label(name)))
-                    found.append(name)
-            found += [name for name in self._loads(one) if name not in found]
-        return found
+                    inputs.append(name)
+            inputs += [name for name in self._loads(one) if name not in inputs]
+        return inputs
 
     def _label(self, name: str) -> str:
         latex = next((i.latex for i in self.model.inputs if i.name == name), "")
@@ -202,7 +202,7 @@ class _Row:
         return [n for n in self.free if n in held]
 
     def _collect_outputs(self) -> list[str]:
-        found = []
+        outputs = []
         for out in self.model.outputs:
             call = self._single(out.expression) if out.name in self.wanted else None
             if call:
@@ -212,8 +212,8 @@ class _Row:
                 style = style if call.order else "lift"
                 label = self.labels.end(out.name, out.latex)
                 self.marks.setdefault((style, x), []).append(("output", out.name, label))
-                found.append(out.name)
-        return found
+                outputs.append(out.name)
+        return outputs
 
     @staticmethod
     def _is_beam(one: FieldProblem) -> bool:
@@ -224,8 +224,8 @@ class _Row:
         if self._is_beam(one) or len(one.unknowns) > 1 or not _derivatives(one.equations[0]):
             return False
         held = {n.name for n in names(_stiffness(one.equations[0], one.unknowns)[0]) if isinstance(n, Name)}
-        found = {unit_of(p.unit).dimension for p in self.model.parameters if p.name in held and p.unit}
-        return bool(found) and not found & STIFF_SECTIONS
+        dimensions = {unit_of(p.unit).dimension for p in self.model.parameters if p.name in held and p.unit}
+        return bool(dimensions) and not dimensions & STIFF_SECTIONS
 
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
@@ -337,17 +337,17 @@ class _Row:
 
 def _derivatives(equation: Equation) -> list[Derivative]:
     """Return the derivatives in an equation, the highest first."""
-    found = [n for n in names(equation) if isinstance(n, Derivative)]
-    return sorted(found, key=lambda d: -d.order)
+    derivatives = [n for n in names(equation) if isinstance(n, Derivative)]
+    return sorted(derivatives, key=lambda d: -d.order)
 
 
 def _stiffness(
     equation: Equation, unknowns: Sequence[str]
 ) -> tuple[Expression, dict[Expression, Expression]]:
     """Return the coefficient of the highest derivative, and noughts for all unknowns and derivatives."""
-    found = _derivatives(equation)
-    others: dict[Expression, Expression] = {n: number(0) for n in (*found, *map(Name, unknowns))}
-    return _coefficient(equation, {**others, found[0]: number(1)}), others
+    derivatives = _derivatives(equation)
+    others: dict[Expression, Expression] = {n: number(0) for n in (*derivatives, *map(Name, unknowns))}
+    return _coefficient(equation, {**others, derivatives[0]: number(1)}), others
 
 
 def _coefficient(equation: Equation, values: Mapping[Expression, Expression]) -> Expression:

@@ -124,13 +124,13 @@ class _Plan:
     def _vectors(self) -> dict[str, tuple[float, float]]:
         known = values_of(self.model)
         values = {use.name: dict(use.values) for use in self.model.elements}
-        found = {}
+        vectors = {}
         for part in self.members:
             given = values[part.name]
             length = evaluate(given["l" if "l" in given else "length"], known) or 1.0
             angle = evaluate(given["angle"], known) or 0.0
-            found[part.name] = (length * cos(angle), length * sin(angle))
-        return found
+            vectors[part.name] = (length * cos(angle), length * sin(angle))
+        return vectors
 
     def _place(self) -> dict[str, tuple[Point, Point]]:
         """Return where both ends of each member are, at the scale of the drawing."""

@@ -166,16 +166,16 @@ class Placed:
         >>> any(e.overlaps(Extent(20, 0, 30, 10)) for e in slanted.extents)
         False
         """
-        found = [t.box for t in self.texts]
+        boxes = [t.box for t in self.texts]
         for stroke in self.strokes:
             box, is_simple = around(stroke.points), len(stroke.points) <= MOST_CORNERS
             if not is_simple and box.width > LARGE:
-                found += [around(ends) for ends in pairwise(stroke.points)]
+                boxes += [around(ends) for ends in pairwise(stroke.points)]
             elif not (is_simple and any(_is_slanted(*ends) for ends in pairwise(stroke.points))):
-                found.append(box)
+                boxes.append(box)
             else:
-                found += [piece for ends in pairwise(stroke.points) for piece in _pieces(*ends)]
-        return tuple(found)
+                boxes += [piece for ends in pairwise(stroke.points) for piece in _pieces(*ends)]
+        return tuple(boxes)
 
     def rotated(self, dx: float, dy: float) -> Placed:
         """Return a part turned about the origin, so that x runs in a direction; its texts stay upright.

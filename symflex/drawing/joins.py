@@ -127,13 +127,13 @@ def _covered(box: Extent, by: float) -> Iterator[Cell]:
 
 def _beside(box: Extent) -> dict[Cell, Point]:
     """Return the cells straight beside a rectangle, each with the point of its border that is nearest."""
-    found = {}
+    beside = {}
     for cell in set(_covered(box, CLEAR + CELL)) - set(_covered(box, CLEAR)):
         x, y = _centre(cell)
         nearest = (min(max(x, box.x0), box.x1), min(max(y, box.y0), box.y1))
         if (nearest[0] == x) is not (nearest[1] == y):
-            found[cell] = nearest
-    return found
+            beside[cell] = nearest
+    return beside
 
 
 def _way(

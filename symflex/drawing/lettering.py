@@ -62,8 +62,8 @@ def text(latex: str, size: float = SIZE) -> Lettering | None:
     """Return a text at the origin, None where matplotlib cannot typeset it."""
     # Matplotlib makes small raised marks of apostrophes; fonts have primes of their own.
     markup = f"${_PRIMES.sub(lambda m: PRIMES[m[0]], latex)}$"
-    found = _measured(markup, size, str(rcParams["mathtext.fontset"])) if latex else None
-    return None if found is None else Lettering(markup, 0.0, 0.0, *found, size)
+    measured = _measured(markup, size, str(rcParams["mathtext.fontset"])) if latex else None
+    return None if measured is None else Lettering(markup, 0.0, 0.0, *measured, size)
 
 
 def column_of(lines: Sequence[Lettering]) -> tuple[Lettering, ...]:
@@ -176,11 +176,11 @@ class Labels:
     def quantity(self, expression: Expression, unit: str) -> str:
         """Return the value of an element: as it is written, a number with its unit."""
         if expression.span and looks_like_quantity(shown := expression.span.text):
-            found = parse_quantity(Text(shown, expression.span))
-            if found.unit:
-                one = unit_of(found.unit)
-                value = ExactValue(found.magnitude / one.scale, found.pi_power - one.pi_power)
-                return with_unit(power_of_ten(decimal_text(value), r"\cdot "), found.unit)
+            parsed = parse_quantity(Text(shown, expression.span))
+            if parsed.unit:
+                one = unit_of(parsed.unit)
+                value = ExactValue(parsed.magnitude / one.scale, parsed.pi_power - one.pi_power)
+                return with_unit(power_of_ten(decimal_text(value), r"\cdot "), parsed.unit)
         written = self.expression(expression)
         written = written.removeprefix(r"1 \cdot ")  # of a power of ten
         is_named = any(isinstance(n, Name | Attribute | Call) for n in parts_of(expression))

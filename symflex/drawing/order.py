@@ -116,18 +116,18 @@ def _walked(beside: Mapping[str, Sequence[str]], start: str) -> list[str]:
     reach: dict[str, int] = {}  # how far one gets from a node without turning back
     for node in reversed(reached):
         reach[node] = max([far[node], *(reach[n] for n in beside[node] if far[n] > far[node])])
-    found: dict[str, None] = {}
+    order: dict[str, None] = {}
     pending = [start]
     while pending:
         node = pending.pop()
-        if node in found:
+        if node in order:
             continue
-        found[node] = None
+        order[node] = None
         # The one that is reached last leads farthest: it is put at the bottom of the pile. Of those that lead
         # as far the one that is written first stands on top.
-        ahead = [n for n in reversed(beside[node]) if n not in found]
+        ahead = [n for n in reversed(beside[node]) if n not in order]
         pending += sorted(ahead, key=lambda n: -reach[n])
-    return list(found | dict.fromkeys(beside))
+    return list(order | dict.fromkeys(beside))
 
 
 def abbreviated(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[DrawnNetwork, tuple[str, ...]]:

@@ -247,7 +247,7 @@ class _Layout:
 
     def _stacked(self, cells: Sequence[SymbolCell | _SideArrow]) -> list[_Level]:
         """Return what stands in a gap, one below the other and about the axis."""
-        found: list[_Level] = []
+        levels: list[_Level] = []
         y = 0.0
         for i, one in enumerate(cells):
             if isinstance(one, SymbolCell):
@@ -258,10 +258,10 @@ class _Layout:
                 labels = union(i.box for i in texts_of_mark(one.mark, 0.0, 0.0))
                 width, above, below = max(SIDE_ARROW, labels_width(one.mark)), 5.0 + labels.height, -4.0
             y -= above + SPACE if i else 0.0
-            found.append(_Level(one, width, y))
+            levels.append(_Level(one, width, y))
             y += below
-        middle = (found[0].y + found[-1].y) / 2 if found else 0.0
-        return [replace(level, y=level.y - middle) for level in found]
+        middle = (levels[0].y + levels[-1].y) / 2 if levels else 0.0
+        return [replace(level, y=level.y - middle) for level in levels]
 
     def _measure(self) -> None:
         for level in (level for gap in self.gaps for level in gap):
@@ -430,7 +430,7 @@ class _Layout:
         """Draw supports side by side with the leads to what hangs, and return where these lead to."""
         middle, bottom = column.x - (LANE if column.stubs and column.below else 0.0), column.bottom
         feet = [column.x]
-        found = []
+        supports = []
         for part, (start, end) in zip((*column.supports, *column.hanging), column.below, strict=True):
             if part in column.supports:
                 foot = middle + (start + end) / 2
@@ -438,12 +438,12 @@ class _Layout:
                 self._add(support, *tags_below(part, foot, support.box.y0))
             else:
                 foot = middle + start + 2 + hanging_reach(part)[0]
-                found.append((part, column, foot))
+                supports.append((part, column, foot))
             feet.append(foot)
         if max(feet) - min(feet) > 2 * column.half:
             width = LINE if column.is_electrical else 1.4
             self._wire(column.name, (min(feet), bottom), (max(feet), bottom), width=width)
-        return found
+        return supports
 
     def _draw_hanging(self, part: DrawnPart, column: Column, x: float) -> None:
         """Draw a part from a node down to the ground, or to another component of the node."""
@@ -534,7 +534,7 @@ class _Layout:
 
     def _draw_spans(self) -> None:
         """Draw distances between two nodes; lengths, with an arrow at both ends, stand at one height."""
-        found = []
+        drawn = []
         for span in sorted(self.spans, key=lambda s: not s.is_length):
             ends = (self._end_of(span, 0), self._end_of(span, 1))
             label = label_of(span)
@@ -543,9 +543,9 @@ class _Layout:
             more = max(0.0, shown.width + 4 - (right - left)) / 2 + (0.0 if span.is_length else 1.0)
             room = Extent(left - more, -3.0, right + more, 5.0 + shown.height)
             y = self._free(room, max(y for _, y in ends) + 4, is_up=True)
-            found.append((span, ends, label, room, y))
-        level = max((y for span, *_, y in found if span.is_length), default=0.0)
-        for span, ends, label, room, free in found:
+            drawn.append((span, ends, label, room, y))
+        level = max((y for span, *_, y in drawn if span.is_length), default=0.0)
+        for span, ends, label, room, free in drawn:
             y = self._free(room, (level if span.is_length else free) - 3.0, is_up=True)
             for node, (x, top) in zip(span.nodes, ends, strict=True):
                 foot = (self._column(node).x if node else x, top)

@@ -137,28 +137,28 @@ class Scheme:
 def scheme_of(model: Model, labels: Labels) -> Scheme:
     """Return what is drawn of a model's elements, nodes, inputs and outputs."""
     domains = _domains(model)
-    found = _Collected([_part(use, labels, domains) for use in model.elements])
+    collected = _Collected([_part(use, labels, domains) for use in model.elements])
     for one in model.inputs:
         if len(one.nodes) > 1 or (one.nodes and INPUT_KINDS[one.kind].domain in CIRCUITS):
-            found.parts.append(_input_part(one, labels))
+            collected.parts.append(_input_part(one, labels))
         elif one.nodes:
-            found.marks.append(_input_mark(one, labels, domains))
+            collected.marks.append(_input_mark(one, labels, domains))
     signals = frozenset(x.name for x in model.signals)
     for out in model.outputs:
-        found.show(model, out, labels.end(out.name, out.latex), domains, signals)
-    seen = [Mark(style, node, tuple(shown)) for (style, node), shown in found.seen.items()]
-    networks = _networks(tuple(domains), found.parts, [*found.marks, *seen], found.spans)
+        collected.show(model, out, labels.end(out.name, out.latex), domains, signals)
+    seen = [Mark(style, node, tuple(shown)) for (style, node), shown in collected.seen.items()]
+    networks = _networks(tuple(domains), collected.parts, [*collected.marks, *seen], collected.spans)
     together = {node: i for i, net in enumerate(networks) for node in net.nodes}
-    apart = [s.name for s in found.spans if together[s.nodes[0]] != together[s.nodes[1]]]
+    apart = [s.name for s in collected.spans if together[s.nodes[0]] != together[s.nodes[1]]]
     networks = tuple(_as_wanted(net, domains, model.drawing) for net in networks)
-    return Scheme(networks, domains, (*found.others, *apart))
+    return Scheme(networks, domains, (*collected.others, *apart))
 
 
 def _domains(model: Model) -> dict[str, str]:
     """Return how nodes move: what holds a string moves across it, as the end of a beam does."""
     held: dict[str, set[str]] = {"string": set(), "rod": set()}
     for use in model.elements:
-        ends = (r.node for _, found in use.nodes for r in found if not r.is_ground)
+        ends = (r.node for _, references in use.nodes for r in references if not r.is_ground)
         held.get(use.element.type_name, set()).update(ends)
     across = held["string"] - held["rod"]
     return {n.name: "planar" if n.name in across else n.domain for n in model.nodes}
@@ -250,11 +250,11 @@ class _Collected:
 
 def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     by_port = dict(use.domains)
-    ends = tuple(_end(r, by_port[port], domains) for port, found in use.nodes for r in found)
+    ends = tuple(_end(r, by_port[port], domains) for port, references in use.nodes for r in references)
     kind = use.element.type_name
     symbol = SYMBOLS.get(kind, ElementSymbol("coupling"))  # a plain box for one that has none
     if kind == "transformer":
-        first = [_end(found[0], by_port[port], domains) for port, found in use.nodes]
+        first = [_end(references[0], by_port[port], domains) for port, references in use.nodes]
         pair = (first[0].domain, first[1].domain)
         drawn = TRANSFORMERS.get(pair, box) if len(ends) == len(pair) else box
         symbol = ElementSymbol("coupling", drawn, 34.0)
@@ -330,11 +330,11 @@ def sections(
 def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
     if reference.is_ground:
         return End(GROUND, "translation" if domain in COMPONENTS else domain)
-    found = domains[reference.node]
+    own = domains[reference.node]
     component = reference.component
     if domain in COMPONENTS:
         return End(reference.node, "translation", component)
-    if found in COMPONENTS and not component:
+    if own in COMPONENTS and not component:
         component = "theta" if domain == "rotation" else "y"
     return End(reference.node, COMPONENT_DOMAIN[component] if component else domain, component)
 
@@ -450,12 +450,12 @@ def _difference(expression: Expression, domains: Domains) -> tuple[str, str] | N
 
 def _place(expression: Expression) -> Call | None:
     """Return the one value along x that an expression is, but for factors."""
-    found = [n for n in names(expression) if isinstance(n, Call) and "." in n.name]
+    calls = [n for n in names(expression) if isinstance(n, Call) and "." in n.name]
     varying = [n for n in names(expression) if isinstance(n, Attribute)]
     inner: Expression = expression
     while isinstance(inner, Negative | Quotient | Product):
-        inner = next((c for c in inner.children if any(n in found for n in names(c))), Name("s"))
-    return found[0] if len(found) == 1 and not varying and inner == found[0] else None
+        inner = next((c for c in inner.children if any(n in calls for n in names(c))), Name("s"))
+    return calls[0] if len(calls) == 1 and not varying and inner == calls[0] else None
 
 
 def _share(model: Model, place: Call) -> float:
@@ -499,9 +499,9 @@ def depths(
     guessed = {n.name: UNKNOWN for n in names(coefficient) if isinstance(n, Name)} | dict(known)
     places = (a + (b - a) * i / STATIONS for i in range(STATIONS + 1))
     values = [evaluate(coefficient, {**guessed, COORDINATE: x}) or 0.0 for x in places]
-    found = [max(0.0, value) ** (1 / root) for value in values]
-    most = max(found)
-    return tuple(d / most for d in found) if min(found) < (1 - 1e-6) * most else ()
+    roots = [max(0.0, value) ** (1 / root) for value in values]
+    most = max(roots)
+    return tuple(d / most for d in roots) if min(roots) < (1 - 1e-6) * most else ()
 
 
 def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None:
@@ -526,7 +526,7 @@ def _networks(
     for part in parts:
         joined = frozenset[str]().union(*(together[n] for n in part.nodes))
         together.update(dict.fromkeys(joined, joined))
-    found = [
+    networks = [
         DrawnNetwork(
             tuple(n for n in nodes if n in own),
             tuple(p for p in parts if own.intersection(p.nodes)),
@@ -536,4 +536,4 @@ def _networks(
         for own in dict.fromkeys(together.values())
     ]
     loose = tuple(p for p in parts if not p.nodes)
-    return (*found, DrawnNetwork((), loose, (), ())) if loose else tuple(found)
+    return (*networks, DrawnNetwork((), loose, (), ())) if loose else tuple(networks)

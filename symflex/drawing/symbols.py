@@ -128,8 +128,8 @@ def drawn(strokes: str) -> Callable[[float], Strokes]:
 
 
 def _stroke(kind: str, written: Sequence[str], length: float) -> Strokes:
-    found = (m.groups() for m in map(_POINT.fullmatch, written) if m)
-    points = [(float(share) * length + float(more or 0), float(y)) for share, more, y in found]
+    groups = (m.groups() for m in map(_POINT.fullmatch, written) if m)
+    points = [(float(share) * length + float(more or 0), float(y)) for share, more, y in groups]
     numbers = [float(one) for one in written[len(points) :]]
     match kind:
         case "box" | "body":
@@ -375,8 +375,7 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
     "op_amp": coupling(34.0, "shape .2,-9 .85,0 .2,9; line .85,0 1,0"),
     # A box with the diamond of a source that something controls.
     **dict.fromkeys(
-        ("vcvs", "vccs", "ccvs", "cccs"),
-        coupling(34.0, "box .2,-8 .8,8; shape .5-6,0 .5,6 .5+6,0 .5,-6"),
+        ("vcvs", "vccs", "ccvs", "cccs"), coupling(34.0, "box .2,-8 .8,8; shape .5-6,0 .5,6 .5+6,0 .5,-6")
     ),
     # A piston in a cylinder.
     "piston": coupling(
@@ -392,8 +391,7 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
 MOTION_BETWEEN: Final = branch(26.0, "span 0,0 1,0")
 FORCE_BETWEEN: Final = branch(30.0, "push .42,0 0,0; push .58,0 1,0")
 TORQUE_BETWEEN: Final = branch(
-    30.0,
-    "bold 0,0 .5-5,0; bold .5+5,0 1,0; disc .5,0 5; turn .5,0 2.8 -30 200; head .5-2.8,-.6 .2 -.97 2.8",
+    30.0, "bold 0,0 .5-5,0; bold .5+5,0 1,0; disc .5,0 5; turn .5,0 2.8 -30 200; head .5-2.8,-.6 .2 -.97 2.8"
 )
 DOTS: Final = branch(26.0, "line 0,0 .5-8,0; line .5+8,0 1,0; dot .5-4,0 .9; dot .5,0 .9; dot .5+4,0 .9")
 """For what is left out."""

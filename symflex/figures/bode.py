@@ -79,8 +79,8 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     band = Band(Fraction(low), Fraction(high))
     maps = [roots_if_found(bound, band, known) for bound, known in zip(bounds, judged, strict=True)]
     responses = [
-        respond(bound, adaptive_grid(bound, low, high, roots=found), found)
-        for bound, found in zip(bounds, maps, strict=True)
+        respond(bound, adaptive_grid(bound, low, high, roots=located), located)
+        for bound, located in zip(bounds, maps, strict=True)
     ]
     width = canvas.width or COLUMN_INCHES
     # Loss factors decide nothing about stability, and whoever gives them knows that.
@@ -96,13 +96,13 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     if drawn and canvas.frame.y is None:
         limits = min(limits[0], top.get_ylim()[0]), max(limits[1], top.get_ylim()[1])
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
-    for bound, response, found, (colour, dash) in zip(
+    for bound, response, located, (colour, dash) in zip(
         bounds, responses, maps, islice(looks, drawn, None), strict=False
     ):
         label = label_of_tf(bound.source)
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
-        top.plot(*_magnitude_curve(response, found, limits), color=colour, linestyle=dash, label=label)
+        top.plot(*_magnitude_curve(response, located, limits), color=colour, linestyle=dash, label=label)
         for axes in below:
             axes.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
     top.set_ylim(*limits)
@@ -180,12 +180,12 @@ def _magnitude_limits(
 
 
 def _magnitude_curve(
-    response: SampledResponse, found: PoleZeroMap, limits: tuple[float, float]
+    response: SampledResponse, located: PoleZeroMap, limits: tuple[float, float]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return frequencies [Hz] and levels [dB], with a point beyond the frame at each root on the axis."""
     beyond = limits[1] - limits[0]
-    ends = [(root, limits[1] + beyond) for root in found.poles]
-    ends += [(root, limits[0] - beyond) for root in found.zeros]
+    ends = [(root, limits[1] + beyond) for root in located.poles]
+    ends += [(root, limits[0] - beyond) for root in located.zeros]
     added = [(root.frequency_hz(), level) for root, level in ends if root.on_imaginary_axis and root.im > 0]
     level = np.clip(response.magnitude_db, limits[0] - beyond, limits[1] + beyond)
     frequency = np.concatenate((response.frequency_hz, [f for f, _ in added]))

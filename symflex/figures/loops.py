@@ -49,14 +49,7 @@ from symflex.figures.style import (
     size_of_text,
     title_lines,
 )
-from symflex.loops import (
-    NetworkLoop,
-    closed_loop,
-    closed_loop_roots,
-    loop_gain,
-    nominal_gain,
-    poles_apart,
-)
+from symflex.loops import NetworkLoop, closed_loop, closed_loop_roots, loop_gain, nominal_gain, poles_apart
 from symflex.roots import Band
 
 if TYPE_CHECKING:
@@ -173,9 +166,9 @@ def _stages(locus: RootLocus) -> list[Stage]:
     low, high = locus.limits
     proved: list[tuple[Kind, Fraction, PoleZeroMap]] = [("pole", low, locus.start)]
     proved += [("nominal", *locus.nominal)] if locus.nominal else []
-    found = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
-    found.append(("last", high, locus.end, list(locus.ends)))
-    return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in found]
+    stages = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
+    stages.append(("last", high, locus.end, list(locus.ends)))
+    return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in stages]
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
@@ -263,22 +256,22 @@ def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
 
 
 def _draw_curves(
-    found: Sequence[Curve], told: Sequence[str], canvas: Canvas, verdict: str | None = None
+    followed: Sequence[Curve], told: Sequence[str], canvas: Canvas, verdict: str | None = None
 ) -> Figure:
     """Draw curves with what they are told by; with a verdict, of a closed loop, these are loop gains."""
     width = canvas.width or COLUMN_INCHES
     is_loop = verdict is not None
-    if len(found) > 1:
-        told = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in zip(told, found, strict=True)]
+    if len(followed) > 1:
+        told = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in zip(told, followed, strict=True)]
     columns = _columns(told, width)
-    counted = _sentence_of_poles([poles for _, poles in found], is_loop=is_loop)
+    counted = _sentence_of_poles([poles for _, poles in followed], is_loop=is_loop)
     lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
     rows = -(-len(told) // columns)
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + rows))
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    curves = [curve for curve, _ in found]
+    curves = [curve for curve, _ in followed]
     reach = _reach(np.concatenate(curves), is_loop=is_loop)
     across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
@@ -368,25 +361,25 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
         low, high = default_band(judged)
         band = low / WIDENED, high * WIDENED
     low, high = band
-    found = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
-    response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
+    located = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
+    response = respond(bound, adaptive_grid(bound, low, high, roots=located), located)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and not bound.is_distributed:
         values = np.concatenate((values, _onwards(bound, high)))
-    return values[np.isfinite(values)], found.verdict
+    return values[np.isfinite(values)], located.verdict
 
 
 def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
     """Return the loop gain of a network along the axis, and what is known of the open loop's poles."""
     still = Fraction(0)
     low, high = canvas.band_of(loop.model) or default_band(closed_loop_roots(loop, still))
-    found = closed_loop_roots(loop, still, Band(Fraction(low), Fraction(high)))
+    located = closed_loop_roots(loop, still, Band(Fraction(low), Fraction(high)))
 
     def values(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
         return np.array(loop.gains(gain, omega.tolist()), dtype=np.complex128)
 
-    curve = values(grid_about(found, values, low, high))
-    return curve[np.isfinite(curve)], found.verdict
+    curve = values(grid_about(located, values, low, high))
+    return curve[np.isfinite(curve)], located.verdict
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:

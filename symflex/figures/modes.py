@@ -82,7 +82,7 @@ def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
     count = min(model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
     numbered, verdict = lowest_modes(bounds[0], count, band)
-    shapes = [found.shape for found in numbered]
+    shapes = [mode.shape for mode in numbered]
     if not panels_of(model, shapes):
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
@@ -196,7 +196,7 @@ def _widths(panels: Sequence[Panel], room: float) -> list[float]:
 
 def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
     """Return the displacement along each part of a run."""
-    found = []
+    curves = []
     for segment in panel.segments:
         part = shape.along(segment.name)
         share, (moved,) = _smooth(part, (0,))
@@ -204,8 +204,8 @@ def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
         # From a tip at its second end x falls.
         if segment.is_reversed != (length < 0):
             share = 1 - share
-        found.append((segment.offset + abs(length) * share, moved))
-    return found
+        curves.append((segment.offset + abs(length) * share, moved))
+    return curves
 
 
 def _smooth(

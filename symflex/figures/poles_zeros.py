@@ -59,7 +59,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
     maps = [locate(bound, region if bound.is_distributed else None) for bound in bounds]
-    panels = [marks_of(found) for found in maps]
+    panels = [marks_of(located) for located in maps]
     count = len(panels)
     width = canvas.width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
@@ -78,7 +78,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     shape = min(max(view.ratio, narrowest), WIDEST) if is_asked else view.ratio
     panel_width = min(room, TALLEST_INCHES * shape)
     panel_height = panel_width / shape
-    outside = [_said_of_rest(found, view) for found in maps] if is_asked else []
+    outside = [_said_of_rest(located, view) for located in maps] if is_asked else []
     titles = (
         title_lines(canvas.title, width),
         stability_lines(maps, width),
@@ -118,10 +118,10 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
 
 def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
-    found = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
+    poles = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
     # Poles in the right half plane are known wherever they lie; zeros and others only as far as the rest.
-    found = [root for root in found if not root.re > 0] or found
-    return max((root.frequency_hz() for root in found), default=None)
+    poles = [root for root in poles if not root.re > 0] or poles
+    return max((root.frequency_hz() for root in poles), default=None)
 
 
 def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float, height: float) -> None:
@@ -135,9 +135,9 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
         draw_points(axes, [mark.s for mark in inside if mark.kind == kind], look, is_cut=False)
 
 
-def _said_of_rest(found: PoleZeroMap, view: View) -> str:
+def _said_of_rest(located: PoleZeroMap, view: View) -> str:
     """Return how many of the roots found lie outside the limits that were asked for."""
-    outside = [mark for mark in marks_of(found) if not view.shows(mark)]
+    outside = [mark for mark in marks_of(located) if not view.shows(mark)]
     counts = {kind: sum(m.multiplicity for m in outside if m.kind == kind) for kind in GLYPHS}
     said = [f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n]
-    return f"{found.tf}: {' and '.join(said)} outside" if said else ""
+    return f"{located.tf}: {' and '.join(said)} outside" if said else ""

@@ -106,13 +106,13 @@ def _lines(model: Model) -> Iterator[PlacedElement]:
 
 def _nodes_on(model: Model) -> set[str]:
     """Return the names of motions that distributed elements show."""
-    found: set[str] = set()
+    nodes: set[str] = set()
     for use in _lines(model):
         for node in _ends(use):
-            found |= {node, f"{node}.y", f"{node}.theta"}
+            nodes |= {node, f"{node}.y", f"{node}.theta"}
             if isinstance(use.element, LineElement) and "x" in use.element.ends:
-                found.add(f"{node}.x")
-    return found
+                nodes.add(f"{node}.x")
+    return nodes
 
 
 def _carrying(model: Model) -> set[str]:
@@ -237,15 +237,15 @@ def _runs_of_fields(model: Model, parts: dict[str, DistributedShape]) -> Iterato
     units = {p.name: p.unit for p in model.parameters}
     runs: list[list[tuple[float, float, str]]] = []
     unit = ""
-    for found in model.fields:
-        part = parts[found.name]
+    for field in model.fields:
+        part = parts[field.name]
         low, high = sorted((float(part.start.mid()), float((part.start + part.length).mid())))
-        named = [e.name for e in (found.end, found.start) if isinstance(e, Name) and e.name in units]
+        named = [e.name for e in (field.end, field.start) if isinstance(e, Name) and e.name in units]
         unit = units[named[0]] if named else unit
         free = (run for run in runs if all(high <= a + AT_REST or low >= b - AT_REST for a, b, _ in run))
         if not (fitting := next(free, [])):
             runs.append(fitting)
-        fitting.append((low, high, found.name))
+        fitting.append((low, high, field.name))
     for run in runs:
         run.sort()
         segments = tuple(Segment(name, low) for low, _, name in run)

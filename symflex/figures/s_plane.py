@@ -111,10 +111,10 @@ class View:
         return s * min(ends[part > 0] / part for ends, part in parts if part)
 
 
-def marks_of(found: PoleZeroMap) -> tuple[RootMark, ...]:
+def marks_of(located: PoleZeroMap) -> tuple[RootMark, ...]:
     """Return the poles and zeros of a transfer function in double precision."""
-    roots: list[tuple[Kind, Root]] = [("pole", root) for root in found.all_poles]
-    roots += [("zero", root) for root in found.zeros]
+    roots: list[tuple[Kind, Root]] = [("pole", root) for root in located.all_poles]
+    roots += [("zero", root) for root in located.zeros]
     return tuple(RootMark(kind, point_of(root), root.multiplicity) for kind, root in roots)
 
 

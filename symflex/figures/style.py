@@ -159,9 +159,9 @@ def new_figure(width: float, height: float) -> ShownFigure:
 
 def stability_lines(maps: Sequence[PoleZeroMap], width: float) -> list[str]:
     """Return what stands below a title: whether what is drawn is stable, broken to a width [inches]."""
-    said = list(dict.fromkeys(found.verdict.headline for found in maps))
+    said = list(dict.fromkeys(located.verdict.headline for located in maps))
     if len(said) > 1:
-        said = [f"{found.tf}: {found.verdict.headline}" for found in maps]
+        said = [f"{located.tf}: {located.verdict.headline}" for located in maps]
     return title_lines("; ".join(said), width)
 
 

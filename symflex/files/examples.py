@@ -43,11 +43,11 @@ def examples() -> dict[str, Path]:
     ['frames', 'frames/l_frame', 'frames/pin_ended_cross']
     """
     top = examples_folder()
-    found: dict[str, Path] = {}
+    by_name: dict[str, Path] = {}
     for name in FOLDERS:
         models = sorted(p for p in (top / name).glob("*.toml") if p.name != CLAIMS)
-        found |= {name: top / name, **{f"{name}/{p.stem}": p for p in models}}
-    return found
+        by_name |= {name: top / name, **{f"{name}/{p.stem}": p for p in models}}
+    return by_name
 
 
 def title_of(name: str, path: Path) -> str:

@@ -61,8 +61,8 @@ def _locked(path: Path, lock: Path, *, waits: bool) -> int:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB))
             except BlockingIOError:
                 raise _taken(path, os.pread(descriptor, SHOWN, 0)) from None
-            found = os.pread(descriptor, SHOWN, 0)
-            if found and not found.startswith(MARK):
+            mark = os.pread(descriptor, SHOWN, 0)
+            if mark and not mark.startswith(MARK):
                 raise _foreign(lock)
             if _is_at(lock, descriptor):
                 now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")

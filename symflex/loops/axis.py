@@ -107,10 +107,7 @@ def pieces(low: float, high: float, ratio: float) -> list[tuple[float, float]]:
 
 
 def _refined(
-    function: LoopFunction,
-    equation: Callable[[LoopValue], tuple[arb, arb]],
-    ball: arb,
-    digits: int,
+    function: LoopFunction, equation: Callable[[LoopValue], tuple[arb, arb]], ball: arb, digits: int
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 

@@ -81,9 +81,7 @@ class Loop:
 
 
 def characteristic_loop(
-    tf: TransferFunction,
-    gain: ModelParameter,
-    values: Mapping[str, Given] | None = None,
+    tf: TransferFunction, gain: ModelParameter, values: Mapping[str, Given] | None = None
 ) -> Loop:
     """Return the characteristic function of the model a transfer function is of.
 

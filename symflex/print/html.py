@@ -178,22 +178,22 @@ DIGITS: Final = 10
 """Significant digits shown at most; fewer where the enclosure does not certify them."""
 
 
-def roots_html(found: PoleZeroMap) -> str:
+def roots_html(located: PoleZeroMap) -> str:
     """Return poles, zeros and hidden modes as a table with the certificate above it."""
-    certificate = found.certificate
+    certificate = located.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     count = f"{certificate.found} of {certificate.counted} roots enclosed"
-    caption = f"<strong>{escape_html(found.tf)}</strong>, {escape_html(status)}: {count}"
-    for said in filter(None, (found.verdict.sentence, found.verdict.hidden_motion)):
+    caption = f"<strong>{escape_html(located.tf)}</strong>, {escape_html(status)}: {count}"
+    for said in filter(None, (located.verdict.sentence, located.verdict.hidden_motion)):
         caption += f"<br>{escape_html(said)}"
-    if shown := region_text(found.region):
+    if shown := region_text(located.region):
         caption += f"<br>shown: {escape_html(shown)}"
-    if found.excluded:
-        caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
-    columns = columns_for(PAGE_COLUMNS, found.all_poles + found.zeros)
+    if located.excluded:
+        caption += f"<br>{len(located.excluded)} neighbourhoods where roots accumulate are left out"
+    columns = columns_for(PAGE_COLUMNS, located.all_poles + located.zeros)
     rows = []
     for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden")):
-        for entry in one_of_each_pair(roots_of(found, kind)):
+        for entry in one_of_each_pair(roots_of(located, kind)):
             mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
             cells = entry.cells(columns, DIGITS, "&pm;")
             rows.append((f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in cells)))

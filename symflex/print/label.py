@@ -317,7 +317,7 @@ def _read_list(latex: str, start: int, font: _Font, depth: int) -> tuple[_Found,
     """Read atoms up to the closing brace, or to the end at depth 0; return them and where reading goes on."""
     if depth > _DEEPEST:
         raise _UnsoundError
-    found, position = _Found(), start
+    parsed, position = _Found(), start
     # The scripts that the last atom bears; without an atom there is nothing to bear one.
     scripts: set[str] | None = None
     while position < len(latex):
@@ -326,67 +326,67 @@ def _read_list(latex: str, start: int, font: _Font, depth: int) -> tuple[_Found,
             raise _UnsoundError
         command, space, sign = match.groups()
         if sign and sign.isalpha() and font.style:
-            found.word += sign
-            found.add_sign(sign, font.letters)
+            parsed.word += sign
+            parsed.add_sign(sign, font.letters)
             scripts, position = set(), match.end()
             continue
-        found.end_word(font.style)
+        parsed.end_word(font.style)
         if number := _NUMBER.match(latex, position):
             for digit in number[0]:
-                found.add_sign(digit, font.letters)
-            found.mark(numeral(number[0]))
+                parsed.add_sign(digit, font.letters)
+            parsed.mark(numeral(number[0]))
             scripts, position = set(), number.end()
             continue
         position = match.end()
         if space:
-            found.size += THIN_SIZES * 2
-            found.subscript, found.last = NOTHING, ""
-            found.mark('<mspace width="0.2em"></mspace>')
+            parsed.size += THIN_SIZES * 2
+            parsed.subscript, parsed.last = NOTHING, ""
+            parsed.mark('<mspace width="0.2em"></mspace>')
             scripts = None
         elif command or sign == "{":
             if command:
                 inner, position = _read_command(latex, command, position, font, depth)
             else:
                 inner, position = _read_list(latex, position, font, depth + 1)
-            found.merge(inner)
+            parsed.merge(inner)
             scripts = set()
         elif sign == "}":
             if not depth:
                 raise _UnsoundError
-            return found, position
+            return parsed, position
         elif sign in "_^'":
-            position = _read_script(latex, sign, position, found, scripts, font, depth)
+            position = _read_script(latex, sign, position, parsed, scripts, font, depth)
         elif sign != " ":
-            found.add_sign(sign, font.letters)
-            found.mark(_mark_of(sign, font.style))
+            parsed.add_sign(sign, font.letters)
+            parsed.mark(_mark_of(sign, font.style))
             scripts = set()
     if depth:
         raise _UnsoundError
-    found.end_word(font.style)
-    return found, position
+    parsed.end_word(font.style)
+    return parsed, position
 
 
 def _read_script(
-    latex: str, sign: str, position: int, found: _Found, scripts: set[str] | None, font: _Font, depth: int
+    latex: str, sign: str, position: int, parsed: _Found, scripts: set[str] | None, font: _Font, depth: int
 ) -> int:
     """Read what a script sign raises or lowers; a prime is a superscript and may be repeated."""
     if scripts is None or (sign in scripts and sign != "'") or {sign, *scripts} >= {"^", "'"}:
         raise _UnsoundError
     scripts.add(sign)
-    found.has_superscript |= sign != "_"
+    parsed.has_superscript |= sign != "_"
     if sign == "'":
         # More primes stand beside the first, wherever a subscript ends.
-        found.size += PRIME_SIZES + SCRIPT_SPACE
-        found.subscript = NOTHING
-        found.parts[-1][2] += "′"
+        parsed.size += PRIME_SIZES + SCRIPT_SPACE
+        parsed.subscript = NOTHING
+        parsed.parts[-1][2] += "′"
         return position
     inner, position = _read_argument(latex, position, font, depth)
     size = inner.size.raised + SCRIPT_SPACE
     # Above or below the script that the atom bears already.
-    found.size += size.beyond(found.subscript)
-    found.subscript = size if sign == "_" else NOTHING
-    found.is_wordy |= inner.is_wordy or inner.letters > 1
-    found.parts[-1][1 if sign == "_" else 2] = inner.mathml()
+    parsed.size += size.beyond(parsed.subscript)
+    parsed.subscript = size if sign == "_" else NOTHING
+    parsed.is_wordy |= inner.is_wordy or inner.letters > 1
+    parsed.parts[-1][1 if sign == "_" else 2] = inner.mathml()
     return position
 
 
@@ -396,39 +396,39 @@ def _read_argument(latex: str, start: int, font: _Font, depth: int) -> tuple[_Fo
     if match is None:
         raise _UnsoundError
     command, _, sign = match.groups()
-    found, position = _Found(), match.end()
+    parsed, position = _Found(), match.end()
     if sign == "{":
-        found, position = _read_list(latex, position, font, depth + 1)
+        parsed, position = _read_list(latex, position, font, depth + 1)
     elif command in _GREEK or command in _SYMBOLS:
-        found, position = _read_command(latex, command, position, font, depth)
+        parsed, position = _read_command(latex, command, position, font, depth)
     elif sign and (sign.isalnum() or sign in "*+-"):
-        found.add_sign(sign, font.letters)
-        found.mark(_mark_of(sign, font.style))
-    if not found.atoms:
+        parsed.add_sign(sign, font.letters)
+        parsed.mark(_mark_of(sign, font.style))
+    if not parsed.atoms:
         raise _UnsoundError
-    return found, position
+    return parsed, position
 
 
 def _read_command(latex: str, command: str, position: int, font: _Font, depth: int) -> tuple[_Found, int]:
-    found = _Found()
+    parsed = _Found()
     if command in _GREEK:
-        found.add(greek_width(command))
-        found.mark(identifier(_GREEK[command], "rm" if _GREEK[command].isupper() else ""))
-        return found, position
+        parsed.add(greek_width(command))
+        parsed.mark(identifier(_GREEK[command], "rm" if _GREEK[command].isupper() else ""))
+        return parsed, position
     if command in _SYMBOLS:
-        found.add(OPERATOR_SIZES)
-        found.is_sum = command in ("pm", "mp")
-        found.is_product = command in ("cdot", "times")
-        found.mark((identifier if command in _NAMES else operator)(_SYMBOLS[command]))
-        return found, position
+        parsed.add(OPERATOR_SIZES)
+        parsed.is_sum = command in ("pm", "mp")
+        parsed.is_product = command in ("cdot", "times")
+        parsed.mark((identifier if command in _NAMES else operator)(_SYMBOLS[command]))
+        return parsed, position
     if command in _ACCENTS:
         inner, position = _read_argument(latex, position, font, depth)
-        found.add(inner.size + THIN_SIZES)
-        found.is_wordy = inner.is_wordy
+        parsed.add(inner.size + THIN_SIZES)
+        parsed.is_wordy = inner.is_wordy
         over, accent = ("under" if command == "underline" else "over"), operator(_ACCENTS[command])
         attribute = 'accentunder="true"' if over == "under" else 'accent="true"'
-        found.mark(f"<m{over} {attribute}>{inner.mathml()}{accent}</m{over}>")
-        return found, position
+        parsed.mark(f"<m{over} {attribute}>{inner.mathml()}{accent}</m{over}>")
+        return parsed, position
     if command not in (*_FONTS, *_TEXT_FONTS) or latex[position : position + 1] != "{":
         raise _UnsoundError
     if command in _TEXT_FONTS:
@@ -439,18 +439,18 @@ def _read_command(latex: str, command: str, position: int, font: _Font, depth: i
         italic = TEXT_ITALIC.widths
         em = sum(max(ROMAN[c], italic[c].text if c in italic else 0.0) for c in match[0])
         em += TEXT_ITALIC.kern.text
-        found.add(Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em))
-        found.is_wordy = True
-        found.mark(words(match[0], _TEXT_FONTS[command]))
-        return found, match.end() + 1
+        parsed.add(Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em))
+        parsed.is_wordy = True
+        parsed.mark(words(match[0], _TEXT_FONTS[command]))
+        return parsed, match.end() + 1
     inner, position = _read_list(latex, position + 1, _FONTS[command], depth + 1)
     if not inner.atoms:
         raise _UnsoundError
-    found.add(inner.size)
-    found.letters = inner.letters
-    found.is_wordy = inner.letters > 1
-    found.mark(inner.mathml())
-    return found, position
+    parsed.add(inner.size)
+    parsed.letters = inner.letters
+    parsed.is_wordy = inner.letters > 1
+    parsed.mark(inner.mathml())
+    return parsed, position
 
 
 _FONTS: Final[dict[str, _Font]] = {

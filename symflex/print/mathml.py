@@ -154,26 +154,26 @@ class MathmlWriter(ExpressionWriter):
 
         What is not wider than ``width`` [em] stays whole, and so does what has no place to be parted.
         """
-        found: list[str] = []
+        markups: list[str] = []
         # A sign or parenthesis beside a node stays with its first or last piece.
         pending: list[tuple[str, Expression, str]] = [("", expression, "")]
         while pending:
             before, node, after = pending.pop()
             parts = self._parts(node) if self.width(node) > width else None
             if parts is None:
-                found.append(f"{before}{self.piece(node).markup}{after}")
+                markups.append(f"{before}{self.piece(node).markup}{after}")
                 continue
             parts[0] = (before + parts[0][0], *parts[0][1:])
             parts[-1] = (*parts[-1][:2], parts[-1][2] + after)
             pending.extend(reversed(parts))
-        return tuple(found)
+        return tuple(markups)
 
     def _parts(self, node: Expression) -> list[tuple[str, Expression, str]] | None:
         """Return the parts of a node, each with what stands before and after it; None of what has none."""
         if isinstance(node, Power) and isinstance(node.base, Sum) and not is_half(node.exponent):
             opening, closing = fence_signs(self.piece(node.base).nesting)
             return [(opening, node.base, f"<msup>{closing}{self.exponent(node.exponent).markup}</msup>")]
-        found = []
+        parts = []
         for i, (sign, part) in enumerate(parts_of(node)):
             spelt = operator(sign, "" if sign == "/" else "infix" if i else "prefix") if sign else ""
             looser = (Product, Quotient) if sign == "/" else ()
@@ -181,8 +181,8 @@ class MathmlWriter(ExpressionWriter):
             fences = ("", "")
             if isinstance(part, (Sum, Negative, *looser)):
                 fences = fence_signs(self.piece(part).nesting)
-            found.append((spelt + fences[0], part, fences[1]))
-        return _joined(found, self) if isinstance(node, Product) else found or None
+            parts.append((spelt + fences[0], part, fences[1]))
+        return _joined(parts, self) if isinstance(node, Product) else parts or None
 
 
 def _joined(

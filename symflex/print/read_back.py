@@ -201,12 +201,12 @@ class _Reader:
     @cached_property
     def laws(self) -> Mapping[str, tuple[Equation, int]]:
         """The differential equations of functions of x, with their orders."""
-        found = {}
+        laws = {}
         for name, law in self.form.laws:
             if not isinstance(law.left, Derivative | Call):
                 orders = (n.order for n in names(law) if isinstance(n, Derivative) and n.name == name)
-                found[name] = law, max(orders, default=0)
-        return found
+                laws[name] = law, max(orders, default=0)
+        return laws
 
     @property
     def kernels(self) -> Sequence[Kernel]:
@@ -274,7 +274,7 @@ class _Points:
             key = call.name, call.argument
             if key not in self._functions:
                 self._functions[key] = self._solutions(call.name, argument)
-            return [at_centre(found[call.order]) for found in self._functions[key]]
+            return [at_centre(solutions[call.order]) for solutions in self._functions[key]]
         if call.name in self._reader.entries:
             return self._entry(call.name, argument)
         message = f"nothing says what {call.name} is a function of"
@@ -289,10 +289,10 @@ class _Points:
         opened = replace_values(law.left, {Derivative(name, k): state for k, state in enumerate(states)})
         count = len(argument)
         parts = [self.value(opened, {x.name: [acb(int(x is own))] * count for x in states}) for own in states]
-        found = []
+        solutions = []
         for *coefficients, leading, x in zip(*parts, argument, strict=True):
-            found.append(fundamental_functions([c / leading for c in coefficients], x))
-        return found
+            solutions.append(fundamental_functions([c / leading for c in coefficients], x))
+        return solutions
 
     def _entry(self, name: str, place: list[acb]) -> list[acb]:
         """Return an entry of a fundamental matrix."""

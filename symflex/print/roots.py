@@ -65,11 +65,11 @@ class RootColumn:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-def roots_of(found: PoleZeroMap, kind: str) -> tuple[Root, ...]:
+def roots_of(located: PoleZeroMap, kind: str) -> tuple[Root, ...]:
     """Return the roots that a table of one kind lists: poles in the right half plane wherever they lie."""
     if kind == "hidden":
-        return tuple(h.root for h in found.hidden)
-    return found.all_poles if kind == "poles" else found.zeros
+        return tuple(h.root for h in located.hidden)
+    return located.all_poles if kind == "poles" else located.zeros
 
 
 def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
@@ -195,39 +195,39 @@ CAUSES: Final = {
 }
 
 
-def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
+def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """Return poles and zeros as tables, with the certificate.
 
     Where a line per root is longer than ``width`` columns, the imaginary part stands below the real part.
     """
-    certificate = found.certificate
+    certificate = located.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
-    word = found.verdict.brief
-    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
-    if found.verdict.sentence != word:
-        lines += broken(INDENT + found.verdict.sentence, width)
-    if found.verdict.hidden:
-        lines += broken(INDENT + found.verdict.hidden_motion, width)
-    if shown := region_text(found.region):
-        if found.verdict.word == "unstable" and not found.unstable:
+    word = located.verdict.brief
+    lines = [f"{located.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
+    if located.verdict.sentence != word:
+        lines += broken(INDENT + located.verdict.sentence, width)
+    if located.verdict.hidden:
+        lines += broken(INDENT + located.verdict.hidden_motion, width)
+    if shown := region_text(located.region):
+        if located.verdict.word == "unstable" and not located.unstable:
             shown += "; all known poles in the right half plane"
         lines += broken(f"{INDENT}shown: {shown}", width)
-    if found.is_default_region:
+    if located.is_default_region:
         lines.append(f"{INDENT}this is the default: a distributed system has infinitely many poles")
-    for part in found.excluded:
+    for part in located.excluded:
         im = f" +- {part.im:g} j" if part.im else ""
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
-    tables = [("poles", found.poles, ""), ("zeros", found.zeros, "")]
+    tables = [("poles", located.poles, ""), ("zeros", located.zeros, "")]
     outside = ", in the right half plane, outside the region asked for"
-    more = [("poles", found.unstable, outside)]
+    more = [("poles", located.unstable, outside)]
     for cause, meaning in CAUSES.items():
-        more.append(("hidden", tuple(h.root for h in found.hidden if h.cause == cause), f", {meaning}"))
+        more.append(("hidden", tuple(h.root for h in located.hidden if h.cause == cause), f", {meaning}"))
     none = "none" if certificate.certified else "none found"
     for title, roots, meaning in [*tables, *(table for table in more if table[1])]:
         count = sum(root.multiplicity for root in roots) or none
         lines += ["", f"{INDENT}{title}: {count}{meaning}", *_root_table(roots, digits, width)]
-    everything = [*found.poles, *found.zeros, *found.unstable, *(h.root for h in found.hidden)]
+    everything = [*located.poles, *located.zeros, *located.unstable, *(h.root for h in located.hidden)]
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
     """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
-    found = {p.name: sympy.Symbol(p.name, **{p.assume: True}) for p in model.parameters}
-    return found | {p.name: sympy.I for p in model.parameters if p.is_imaginary}
+    symbols = {p.name: sympy.Symbol(p.name, **{p.assume: True}) for p in model.parameters}
+    return symbols | {p.name: sympy.I for p in model.parameters if p.is_imaginary}
 
 
 def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:

@@ -187,8 +187,8 @@ def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
     """Return the parts of a text between the places outside parentheses where it may break."""
     depth, start = 0, 0
     parts: list[str] = []
-    for found in _STOPS.finditer(text):
-        i = found.start()
+    for stop in _STOPS.finditer(text):
+        i = stop.start()
         if not depth and i > start and breaks(i):
             parts.append(text[start:i].rstrip())
             start = i

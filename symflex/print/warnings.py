@@ -29,16 +29,16 @@ def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnost
     try:
         equations = equations or assemble_for_checks(model)
         is_solvable = len(equations.unknowns) <= FEW_UNKNOWNS and not is_singular(equations)
-        found = (*unreached(equations), *_unused_definitions(model)) if is_solvable else ()
+        of_equations = (*unreached(equations), *_unused_definitions(model)) if is_solvable else ()
     except SymflexError:
-        found = ()  # what is wrong with the equations is said by what derives
+        of_equations = ()  # what is wrong with the equations is said by what derives
     own = model.outputs[0].span.source if model.outputs[0].span else None
 
     def place(warning: Diagnostic) -> tuple[bool, str, int]:
         span = warning.span
         return (True, "", 0) if span is None else (span.source is not own, span.source.name, span.start)
 
-    ordered = sorted((*model.warnings, *found), key=place)
+    ordered = sorted((*model.warnings, *of_equations), key=place)
     if len(ordered) > MOST_WARNINGS:
         more = f"{len(ordered) - MOST_WARNINGS} more warnings"
         ordered[MOST_WARNINGS:] = [Diagnostic(ordered[MOST_WARNINGS].code, more, severity="warning")]

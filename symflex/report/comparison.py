@@ -84,16 +84,16 @@ def both_cell(facts: ModelFacts) -> Cell:
 
 def together_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return up to which frequency outputs elsewhere move with colocated ones."""
-    for found in facts.colocations:
-        end = f"{found.bandwidth_hz:.4g} Hz" if found.bandwidth_hz else f"over {found.examined_hz:.4g} Hz"
-        yield from (end if found.is_together else "not at all", " ", Aside(found.tf), "\n")
+    for pair in facts.colocations:
+        end = f"{pair.bandwidth_hz:.4g} Hz" if pair.bandwidth_hz else f"over {pair.examined_hz:.4g} Hz"
+        yield from (end if pair.is_together else "not at all", " ", Aside(pair.tf), "\n")
 
 
 def data_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return how far a model is off measured responses."""
-    for found in facts.data:
-        source = Aside(f"{found.tf}, synthetic data" if found.is_synthetic else found.tf)
-        yield from (f"{found.decibels:.3g} dB, {found.degrees:.3g}° rms", "\n", source, "\n")
+    for misfit in facts.data:
+        source = Aside(f"{misfit.tf}, synthetic data" if misfit.is_synthetic else misfit.tf)
+        yield from (f"{misfit.decibels:.3g} dB, {misfit.degrees:.3g}° rms", "\n", source, "\n")
 
 
 def loop_cell(facts: ModelFacts) -> Iterator[Run]:
@@ -192,16 +192,16 @@ def _table(models: Sequence[ModelFacts], chosen: dict[str, ComparisonColumn]) ->
 
 def _cell(runs: Iterable[Run]) -> Cell:
     """Return a cell without the end of its last line; a dash where there is nothing to say."""
-    found = tuple(runs)
-    return (found[:-1] if found[-1:] == ("\n",) else found) or (NONE,)
+    cells = tuple(runs)
+    return (cells[:-1] if cells[-1:] == ("\n",) else cells) or (NONE,)
 
 
 def representatives(facts: ModelFacts) -> tuple[TransferFacts, ...]:
     """Return one function of each kind: those that differ only in the power of s of their output are one."""
-    found: dict[tuple[object, ...], TransferFacts] = {}
+    distinct: dict[tuple[object, ...], TransferFacts] = {}
     for f in facts.functions:
-        found.setdefault((f.colocated, f.added, f.modes, f.condition, f.right_half_plane_zeros), f)
-    return tuple(found.values())
+        distinct.setdefault((f.colocated, f.added, f.modes, f.condition, f.right_half_plane_zeros), f)
+    return tuple(distinct.values())
 
 
 def phase_runs(function: TransferFacts) -> tuple[Run, ...]:

@@ -156,14 +156,14 @@ class TransferFacts:
     @property
     def has_mirrored_real_zeros(self) -> bool:
         """Whether there are zeros, all real, each with its mirror image in the imaginary axis."""
-        found = [z for z in self.zeros if z.place != "origin"]
-        right = sorted(z.re for z in found if z.re > 0)
-        left = sorted(-z.re for z in found if z.re < 0)
-        slack = sum(z.radius for z in found)
+        zeros = [z for z in self.zeros if z.place != "origin"]
+        right = sorted(z.re for z in zeros if z.re > 0)
+        left = sorted(-z.re for z in zeros if z.re < 0)
+        slack = sum(z.radius for z in zeros)
         is_mirrored = len(left) == len(right) and all(
             abs(a - b) <= slack for a, b in zip(left, right, strict=True)
         )
-        return bool(found) and all(z.place == "real axis" for z in found) and is_mirrored
+        return bool(zeros) and all(z.place == "real axis" for z in zeros) and is_mirrored
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the facts as JSON data; the roots themselves are in the report's ``roots.json``."""
@@ -301,31 +301,31 @@ def facts_of(study: Study) -> ModelFacts:
     model = study.model
     rigid, undamped = study.rigid_counts, study.undamped_counts
     functions = []
-    for tf, found, explained in study.located:
+    for tf, located, explained in study.located:
         pair = (tf.output.name, tf.input.name)
         # A function of numbers alone says nothing about other values.
         condition = minimum_phase(tf, explained) if study.has_symbols else PhaseCondition("unknown", "")
         bracket = condition.expression
         functions.append(
             replace(
-                _of_roots(model, tf, found, condition.reason),
-                counts=None if found.is_infinite else tf.order,
+                _of_roots(model, tf, located, condition.reason),
+                counts=None if located.is_infinite else tf.order,
                 rigid=rigid.get(pair),
                 undamped=undamped.get(pair),
                 explained=explained.kind,
                 condition=condition.kind,
-                truncation=_truncation(study, tf, found),
+                truncation=_truncation(study, tf, located),
                 bracket="" if bracket is None else format_expression(bracket),
                 bracket_mathematics=None if bracket is None else mathematics(bracket, tf.model),
             )
         )
-    functions += [_of_roots(model, tf, found, reason) for tf, found, reason in study.unexplained]
+    functions += [_of_roots(model, tf, located, reason) for tf, located, reason in study.unexplained]
     return replace(
         bare_facts(study.stem, model),
         functions=tuple(functions),
         audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
-        loops=tuple(_loop(found) for found in study.loops if not isinstance(found, SymflexError)),
-        colocations=tuple(_colocation(found) for found in study.colocations),
+        loops=tuple(_loop(located) for located in study.loops if not isinstance(located, SymflexError)),
+        colocations=tuple(_colocation(located) for located in study.colocations),
         data=tuple(
             DataFact(c.measured.name, c.decibels, c.degrees, c.measured.is_synthetic)
             for c in study.comparisons
@@ -333,32 +333,33 @@ def facts_of(study: Study) -> ModelFacts:
     )
 
 
-def _of_roots(model: Model, tf: AnyTransferFunction, found: PoleZeroMap, reason: str) -> TransferFacts:
+def _of_roots(model: Model, tf: AnyTransferFunction, located: PoleZeroMap, reason: str) -> TransferFacts:
     """Return what the roots of a function tell of it; ``reason`` says what its formula does, or why none."""
     return TransferFacts(
         tf=tf.name,
         quantity=tf.quantity,
-        poles=tuple(map(_root_fact, found.all_poles)),
-        zeros=tuple(map(_root_fact, found.zeros)),
-        certified=found.certificate.certified,
-        is_infinite=found.is_infinite,
+        poles=tuple(map(_root_fact, located.all_poles)),
+        zeros=tuple(map(_root_fact, located.zeros)),
+        certified=located.certificate.certified,
+        is_infinite=located.is_infinite,
         colocated=is_colocated(model, tf.output, tf.input),
         reason=reason,
-        verdict=found.verdict,
+        verdict=located.verdict,
     )
 
 
-def _loop(found: StabilityMap) -> LoopFacts:
-    band = found.bandwidth
+def _loop(stability: StabilityMap) -> LoopFacts:
+    intervals = stability.intervals
+    band = stability.bandwidth
     last = None if band is None else _number(band.frequency, tau)
     return LoopFacts(
-        gain=found.gain,
-        unit=found.unit,
-        stable=tuple((_number(i.low), _number(i.high)) for i in found.stable),
-        unstable_at_last=found.intervals[-1].poles.right if found.intervals else found.verdict.found,
-        crossings_hz=tuple(float(w.mid()) / tau for b in found.boundaries for w in b.frequencies),
-        is_bounded=found.limits[1] is not None,
-        certified=found.certified,
+        gain=stability.gain,
+        unit=stability.unit,
+        stable=tuple((_number(i.low), _number(i.high)) for i in stability.stable),
+        unstable_at_last=intervals[-1].poles.right if intervals else stability.verdict.found,
+        crossings_hz=tuple(float(w.mid()) / tau for b in stability.boundaries for w in b.frequencies),
+        is_bounded=stability.limits[1] is not None,
+        certified=stability.certified,
         bandwidth_hz=inf if band is not None and band.gain is None else last,
         is_bandwidth_limited=band is not None and band.is_limited,
     )
@@ -368,16 +369,16 @@ def _number(value: arb | None, unit: float = 1.0) -> float | None:
     return None if value is None else float(value.mid()) / unit
 
 
-def _colocation(found: DynamicColocation) -> ColocationFact:
+def _colocation(colocation: DynamicColocation) -> ColocationFact:
     return ColocationFact(
-        tf=found.tf,
-        reference=found.reference,
-        phase_degrees=found.phase,
-        magnitude_db=found.magnitude,
-        bandwidth_hz=_number(found.edge, tau),
-        examined_hz=found.limits[1],
-        is_together=found.begins,
-        certified=found.is_decided,
+        tf=colocation.tf,
+        reference=colocation.reference,
+        phase_degrees=colocation.phase,
+        magnitude_db=colocation.magnitude,
+        bandwidth_hz=_number(colocation.edge, tau),
+        examined_hz=colocation.limits[1],
+        is_together=colocation.begins,
+        certified=colocation.is_decided,
     )
 
 
@@ -397,9 +398,9 @@ def _root_fact(root: Root) -> RootFact:
     return RootFact(re, im, radius, place, root.multiplicity, root.frequency_hz())
 
 
-def _truncation(study: Study, tf: TransferFunction, found: PoleZeroMap) -> TruncationFacts | None:
-    last = max((p.frequency_hz() for p in found.poles if p.im > 0), default=0.0)
-    kept = study.rational(tf) if found.is_infinite and last else None
+def _truncation(study: Study, tf: TransferFunction, located: PoleZeroMap) -> TruncationFacts | None:
+    last = max((p.frequency_hz() for p in located.poles if p.im > 0), default=0.0)
+    kept = study.rational(tf) if located.is_infinite and last else None
     if kept is None:
         return None
     return TruncationFacts(kept.modes, last, kept.valid_to(0.01), kept.valid_to(0.05))

@@ -72,16 +72,16 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
         return PhaseCondition("unknown", "")
     ring = tf.ratio.ring
     s = ring.index[LAPLACE]
-    found = [_of_factor(f, ring, tf) for f, e in tf.ratio.factors if e > 0 and degree_in(f, s)]
-    never = [c for c in found if c.kind == "never"]
+    conditions_of = [_of_factor(f, ring, tf) for f, e in tf.ratio.factors if e > 0 and degree_in(f, s)]
+    never = [c for c in conditions_of if c.kind == "never"]
     if never:
         return never[0]
-    conditions = [c for c in found if c.kind == "if positive"]
-    if any(c.kind == "unknown" for c in found) or len(conditions) > 1:
+    conditions = [c for c in conditions_of if c.kind == "if positive"]
+    if any(c.kind == "unknown" for c in conditions_of) or len(conditions) > 1:
         return PhaseCondition("unknown", "")
     if conditions:
         return conditions[0]
-    if not found:
+    if not conditions_of:
         return PhaseCondition("always", "it has no zeros")
     return PhaseCondition("always", "every factor of the numerator has coefficients of one sign")
 
@@ -113,11 +113,11 @@ def _of_factor(factor: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> PhaseCon
 def _without_powers(polynomial: fmpz_mpoly, ring: Ring) -> fmpz_mpoly:
     """Return a polynomial of the same sign, without the numbers and powers that are its factors."""
     content, factors = irreducible_factors(polynomial)
-    found = ring.constant(1 if content > 0 else -1)
+    product = ring.constant(1 if content > 0 else -1)
     for factor, exponent in factors:
         if len(factor) > 1 or exponent % 2:
-            found = found * (factor if len(factor) > 1 else ring.constant(1))
-    return found
+            product = product * (factor if len(factor) > 1 else ring.constant(1))
+    return product
 
 
 def _sign(polynomial: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> Sign:

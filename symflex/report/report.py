@@ -84,7 +84,7 @@ def find_specifications(
     leads out of a folder and not to one of ``allow_outside``, a file of measured data, and for more than
     :data:`MOST_MODELS`.
     """
-    found: list[Path] = []
+    specifications: list[Path] = []
     for path in paths:
         if path.is_dir():
             inside = [p for p in _inside(path, frozenset((".toml",)), output) if not is_claims(p)]
@@ -97,14 +97,14 @@ def find_specifications(
                 message = f"the folder '{path}' holds no specification"
                 hint = "a specification is a file whose name ends in .toml"
                 raise UsageError(Diagnostic("SF902", message, None, hint))
-            found += inside
+            specifications += inside
         elif path.suffix.lower() in DATA_SUFFIXES:
             message = f"'{path}' is a file of measured data, not a specification"
             hint = "put it into a folder with the specification, and give the folder"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         else:
-            found.append(path)
-    distinct = tuple(dict.fromkeys(found))
+            specifications.append(path)
+    distinct = tuple(dict.fromkeys(specifications))
     if len(distinct) > MOST_MODELS:
         raise UsageError(Diagnostic("SF902", f"{len(distinct)} specifications; a report takes {MOST_MODELS}"))
     return distinct
@@ -150,7 +150,7 @@ def find_measurements(
     """
     from symflex.data.measurement import read_measurement
 
-    found: list[MeasuredResponse] = []
+    measurements: list[MeasuredResponse] = []
     warnings: list[str] = []
     for path in paths:
         for file in _inside(path, DATA_SUFFIXES, output) if path.is_dir() else ():
@@ -161,8 +161,8 @@ def find_measurements(
             if isinstance(read, SymflexError):
                 warnings.append(f"{file} is left out: {read.diagnostics[0].message}")
             else:
-                found += read
-    return tuple(found), tuple(warnings)
+                measurements += read
+    return tuple(measurements), tuple(warnings)
 
 
 def _inside(folder: Path, suffixes: frozenset[str], output: Path | None) -> list[Path]:
@@ -377,8 +377,8 @@ def _overview(
 
 def _stability(chapter: Chapter) -> Badge | str:
     """Return the worst that was found of a model's transfer functions."""
-    found = [f.verdict for f in chapter.facts.functions]
-    worst = min(found, key=lambda v: WORST_FIRST.index(v.word), default=None)
+    verdicts = [f.verdict for f in chapter.facts.functions]
+    worst = min(verdicts, key=lambda v: WORST_FIRST.index(v.word), default=None)
     return stability_mark(worst.brief) if worst else "–"
 
 

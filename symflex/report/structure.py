@@ -67,7 +67,7 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
     >>> compliances(model)
     (Compliance(name='wall', is_bending=False, place='base'),)
     """
-    found = []
+    compliant = []
     for use in model.elements:
         if use.element.compliance:
             is_bending = use.element.compliance == "bending"
@@ -75,12 +75,12 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
             place = _place(is_bending, is_grounded=is_grounded)
             if is_grounded and _is_felt(model, use):
                 place = "contact"
-            found.append(Compliance(use.name, is_bending, place))
+            compliant.append(Compliance(use.name, is_bending, place))
     for field in model.fields:
         orders = [n.order for e in field.equations for n in names(e) if isinstance(n, Derivative)]
         is_bending = max(orders, default=0) >= BENDING_ORDER or len(field.unknowns) > 1
-        found.append(Compliance(field.name, is_bending, _place(is_bending, is_grounded=False)))
-    return tuple(found)
+        compliant.append(Compliance(field.name, is_bending, _place(is_bending, is_grounded=False)))
+    return tuple(compliant)
 
 
 def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
@@ -135,36 +135,36 @@ def _places(use: PlacedElement) -> set[str]:
 
 def _acted_on(model: Model, source: Input) -> set[str]:
     """Return the nodes an input acts on, directly or through signals, and the points of fields."""
-    found = {r.node for r in source.nodes if not r.is_ground}
+    nodes = {r.node for r in source.nodes if not r.is_ground}
     mentioned = {source.name}
     for _ in model.signals:
         mentioned |= {x.name for x in model.signals if _named(x.expression) & mentioned}
     for use in model.elements:
         if any(_named(e) & mentioned for _, e in use.values):
-            found |= _places(use)
+            nodes |= _places(use)
     for field in model.fields:
         for condition in field.conditions:
             if _named(condition) & mentioned:
-                found |= _points(condition, field.unknowns)
-    return found
+                nodes |= _points(condition, field.unknowns)
+    return nodes
 
 
 def _shown(model: Model, output: Output) -> set[str]:
     """Return the nodes and points whose motion an output is made of."""
     nodes = {n.name for n in model.nodes}
     signals = {x.name: x.expression for x in model.signals}
-    pending, seen, found = [output.expression], set(), set()
+    pending, seen, shown = [output.expression], set(), set()
     while pending:
         expression = pending.pop()
         for name in _named(expression):
             if name in nodes:
-                found.add(name)
+                shown.add(name)
             elif name in signals and name not in seen:
                 seen.add(name)
                 pending.append(signals[name])
         for field in model.fields:
-            found |= _points(expression, field.unknowns)
-    return found
+            shown |= _points(expression, field.unknowns)
+    return shown
 
 
 def _named(expression: Expression) -> set[str]:
@@ -237,8 +237,8 @@ def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
 
     Distributed models have none, and models without dampers.
     """
-    found = _limits(model, lambda use: use.element.damping, (), min)
-    return {pair: (zeros, poles) for pair, (zeros, poles) in found.items() if zeros is not None}
+    limits = _limits(model, lambda use: use.element.damping, (), min)
+    return {pair: (zeros, poles) for pair, (zeros, poles) in limits.items() if zeros is not None}
 
 
 def _limits(
@@ -268,7 +268,7 @@ def _limits(
         return {}
     given = with_numbers(replace(model, elements=elements, blocks=blocks))
     given = replace(given, parameters=(*given.parameters, ModelParameter(symbol, None)))
-    found = {}
+    counts = {}
     for tf in pipeline.derive_all(given, model.transfer_functions):
         ring = tf.ratio.ring
         if tf.ratio.is_zero or symbol not in ring.index:
@@ -277,8 +277,8 @@ def _limits(
         below, other_power = _limit(ring, tf.ratio.denominator(), symbol, choose)
         common = _degree(ring, above.gcd(below))
         zeros = _degree(ring, above) - common if power == other_power else None
-        found[tf.output.name, tf.input.name] = (zeros, _degree(ring, below) - common)
-    return found
+        counts[tf.output.name, tf.input.name] = (zeros, _degree(ring, below) - common)
+    return counts
 
 
 def _limit(
@@ -286,13 +286,13 @@ def _limit(
 ) -> tuple[fmpz_mpoly, int]:
     """Return the limits of all factors, multiplied, and the power of the symbol that goes with them."""
     place = ring.index[symbol]
-    found, power = ring.constant(1), 0
+    product, power = ring.constant(1), 0
     for factor, exponent in value.factors:
         terms = {tuple(map(int, monomial)): int(c) for monomial, c in factor.terms()}
         kept = choose([monomial[place] for monomial in terms])
         limit = {(*m[:place], 0, *m[place + 1 :]): c for m, c in terms.items() if m[place] == kept}
-        found, power = found * ring.context.from_dict(limit) ** exponent, power + kept * exponent
-    return found, power
+        product, power = product * ring.context.from_dict(limit) ** exponent, power + kept * exponent
+    return product, power
 
 
 def _degree(ring: Ring, polynomial: fmpz_mpoly) -> int:

@@ -131,12 +131,12 @@ class Study:
     @cached_property
     def maps(self) -> tuple[PoleZeroMap, ...]:
         """Poles and zeros, the lowest modes of distributed systems; none of functions that are zero."""
-        return tuple(found for _, found in self._maps if not isinstance(found, SymflexError))
+        return tuple(located for _, located in self._maps if not isinstance(located, SymflexError))
 
     @cached_property
     def without_map(self) -> tuple[tuple[str, SymflexError], ...]:
         """Functions whose search failed as a whole, and why."""
-        return tuple((tf, found) for tf, found in self._maps if isinstance(found, SymflexError))
+        return tuple((tf, located) for tf, located in self._maps if isinstance(located, SymflexError))
 
     @cached_property
     def _maps(self) -> tuple[tuple[str, PoleZeroMap | SymflexError], ...]:
@@ -160,9 +160,9 @@ class Study:
         rows = []
         for bound in self.bounds:
             if bound.name in by_name and isinstance(bound, BoundTransferFunction):
-                found = by_name[bound.name]
-                explained = explain_zeros(self.model, bound, found)
-                rows.append((symbolic.get(bound.name, bound.source), found, explained))
+                roots = by_name[bound.name]
+                explained = explain_zeros(self.model, bound, roots)
+                rows.append((symbolic.get(bound.name, bound.source), roots, explained))
         return tuple(rows)
 
     @cached_property
@@ -185,14 +185,14 @@ class Study:
     @cached_property
     def rigid_counts(self) -> Mapping[tuple[str, str], RigidCounts]:
         """Zeros and poles with rigid compliances; see :func:`symflex.report.structure.rigid_counts`."""
-        found = attempt(lambda: rigid_counts(self.model))
-        return {} if isinstance(found, SymflexError) else found
+        counts = attempt(lambda: rigid_counts(self.model))
+        return {} if isinstance(counts, SymflexError) else counts
 
     @cached_property
     def undamped_counts(self) -> Mapping[tuple[str, str], Counts]:
         """Zeros and poles without dampers; see :func:`symflex.report.structure.undamped_counts`."""
-        found = attempt(lambda: undamped_counts(self.model))
-        return {} if isinstance(found, SymflexError) else found
+        counts = attempt(lambda: undamped_counts(self.model))
+        return {} if isinstance(counts, SymflexError) else counts
 
     @cached_property
     def facts(self) -> ModelFacts:
@@ -203,13 +203,13 @@ class Study:
     def responses(self) -> tuple[SampledResponse, ...]:
         """Frequency responses over the model's band, on grids that miss no resonance."""
         band = self.model.analysis.band
-        found = []
+        responses = []
         for bound in self.bounds:
             if bound.is_zero:
                 continue
             low, high = (float(f) for f in band) if band else default_band(pipeline.roots(bound))
-            found.append(respond(bound, adaptive_grid(bound, low, high)))
-        return tuple(found)
+            responses.append(respond(bound, adaptive_grid(bound, low, high)))
+        return tuple(responses)
 
     @cached_property
     def comparisons(self) -> tuple[DataComparison, ...]:
@@ -232,10 +232,10 @@ class Study:
         """
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: characteristic_loop(self.model, gain))
-        found: AnyLoop | SymflexError = self._characteristic[gain]
-        if isinstance(found, SymflexError):
-            raise found
-        return found
+        loop: AnyLoop | SymflexError = self._characteristic[gain]
+        if isinstance(loop, SymflexError):
+            raise loop
+        return loop
 
     @cached_property
     def _characteristic(self) -> dict[str, AnyLoop | SymflexError]:
@@ -249,14 +249,14 @@ class Study:
         """
         kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), told.kind) for tf, _, told in self.located]
         joints = {key: tf for tf, key, kind in kinds if kind == "colocated"}
-        found = []
+        colocations = []
         for tf, key, kind in kinds:
             joint = joints.get(key)
             if kind != "colocated" and joint is not None:
                 one = attempt(partial(colocation, self.model, ColocationOptions(tf.name, joint.name)))
                 if not isinstance(one, SymflexError):
-                    found.append(one)
-        return tuple(found)
+                    colocations.append(one)
+        return tuple(colocations)
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None where there is no such approximation."""
@@ -264,14 +264,14 @@ class Study:
         if not isinstance(bound, BoundTransferFunction):
             return None
         modes = self.model.analysis.modes or MODES
-        found = attempt(lambda: approximate(bound, modes))
-        return None if isinstance(found, SymflexError) else found
+        approximation = attempt(lambda: approximate(bound, modes))
+        return None if isinstance(approximation, SymflexError) else approximation
 
 
-def _result(found: T | SymflexError) -> T:
-    if isinstance(found, SymflexError):
-        raise found
-    return found
+def _result(result: T | SymflexError) -> T:
+    if isinstance(result, SymflexError):
+        raise result
+    return result
 
 
 def attempt(compute: Callable[[], T]) -> T | SymflexError:

@@ -77,9 +77,9 @@ class Attempt:
 
 def without_losses(sought: Sought) -> Iterator[Attempt]:
     """Isolate the roots of a function without losses in one dimension, on both axes; others are refused."""
-    found = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
-    if found is not None:
-        yield Attempt(found, scans=True)
+    search = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
+    if search is not None:
+        yield Attempt(search, scans=True)
 
 
 def guess_and_prove(sought: Sought) -> Iterator[Attempt]:

@@ -97,18 +97,18 @@ def locate(
         where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
-        found = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
-        if found.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
-            return found
+        located = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
+        if located.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
+            return located
         # Lengths whose values are multiples share their kernels once they are numbers.
         again = locate_distributed(of_numbers(bound), region, digits, with_zeros=with_zeros, judged=judged)
-        return again if again.certificate.certified else found
+        return again if again.certificate.certified else located
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
     # Polynomials in roots that look different may have roots in common: they are split together.
     together = [hidden] if bound.radicals and hidden else [[factor] for factor in hidden]
-    found = find_pole_zero_map(
+    located = find_pole_zero_map(
         bound.name,
         problem_of(bound, below),
         problem_of(bound, above),
@@ -116,7 +116,7 @@ def locate(
         digits,
         [(problem_of(bound, factors), "cancelled") for factors in together],
     )
-    verdict = replace(found.verdict, moving=_moving_unseen(bound))
+    verdict = replace(located.verdict, moving=_moving_unseen(bound))
     if bound.source.hides_waves and verdict.word != "unstable":
         proof, _ = _passivity_of(bound)
         verdict = (
@@ -124,7 +124,7 @@ def locate(
             if proof
             else StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
         )
-    return replace(found, verdict=verdict)
+    return replace(located, verdict=verdict)
 
 
 def _moving_unseen(bound: BoundTransferFunction) -> tuple[str, ...]:
@@ -151,8 +151,8 @@ def _with_values(bound: AnyBoundFunction) -> Model:
 
 def of_numbers(bound: AnyBoundFunction) -> BoundTransferFunction:
     """Return a function as the quotient that numbers in place of all parameters make of its model."""
-    (found,) = derive_bound(_with_values(bound), [(bound.source.output.name, bound.source.input.name)])
-    return found
+    (derived,) = derive_bound(_with_values(bound), [(bound.source.output.name, bound.source.input.name)])
+    return derived
 
 
 def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> PoleZeroMap:
@@ -170,20 +170,20 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
         return locate(of_numbers(bound), region, digits)
     where, is_default = _region_of(bound, region)
     proof, rests = _passivity(bound, bound.values)
-    found = locate_in_network(
+    located = locate_in_network(
         equations_of(bound), bound.name, pair, where, digits, is_default=is_default, proof=proof, rests=rests
     )
-    is_open = not found.certificate.certified and found.certificate.code is None
+    is_open = not located.certificate.certified and located.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
-        return found
+        return located
     # What resists the counts of a network may yield to those of its formula, where that is not too large.
     try:
         (expanded,) = derive_all(source.model, [pair])
         other = locate(bind(expanded, dict(bound.values)), region, digits)
     except BudgetError:
-        return found
-    is_better = other.certificate.certified or other.certificate.found > found.certificate.found
-    return other if is_better else found
+        return located
+    is_better = other.certificate.certified or other.certificate.found > located.certificate.found
+    return other if is_better else located
 
 
 UNSEEN_WAVES = "a distributed part that input and output do not see may have poles anywhere"
@@ -243,7 +243,7 @@ def locate_distributed(
             searched.settle()
     chosen = searched.chosen()
     every = list(chain(*chosen))
-    found = count_roots(every)
+    count = count_roots(every)
     if reason is None and not all(root.certified for root in every):
         reason = TOUCHING
     missing = sum(side.missing for side in searched.sides)
@@ -261,14 +261,14 @@ def locate_distributed(
     hidden = in_order(right_beyond(hidden, known))
     # Nobody asked for these modes and no others.
     is_free = is_default and isinstance(where, Modes)
-    found += count_roots((*beyond, *hidden))
+    count += count_roots((*beyond, *hidden))
     return PoleZeroMap(
         bound.name,
         where,
         (*chosen[0], *(beyond if is_free else ())),
         tuple(chosen[1]),
         (*searched.hidden, *map(HiddenRoot, hidden)),
-        Certificate(", ".join(engines), found + missing, found, reason, code),
+        Certificate(", ".join(engines), count + missing, count, reason, code),
         digits,
         tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
         is_default and not all(side.is_finite for side in searched.sides[:1]),
@@ -423,7 +423,7 @@ class _Searched:
         model = observed(bound.source.model, bound.source.output)
         growth = fastest_growth(model, bound.all_values) if bound.is_of_model else None
         limit = growth[0] if growth else None
-        found: list[tuple[Root, ...]] = []
+        sides: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
         has_more = False  # poles than those that are known
         for place, part in (*poles, (2 * len(poles), product)):
@@ -439,14 +439,14 @@ class _Searched:
                 if is_over or (proof and end is None):
                     more = side.all_roots if side.is_finite else side.at_origin if rests else ()
                     known += [r for r in more if r not in known]
-                    found.append(tuple(known))
+                    sides.append(tuple(known))
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
                 whole = search_right(bound, part, side, known, reached, self.digits, end)
             except SymflexError as error:
                 has_more, known = True, known if proof else []
-                found.append(tuple(known))
+                sides.append(tuple(known))
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
@@ -459,20 +459,20 @@ class _Searched:
             has_more = has_more or bool(whole.unproved) or len(apart) < len(whole.roots)
             if any(is_right(r) for r in whole.roots if r not in apart):
                 gaps.append(RightHalfPlane((), DEGENERATE))
-            found.append(apart)
+            sides.append(apart)
             gaps.append(whole)
         unsure = gaps_text(gaps)
-        if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*found)):
+        if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*sides)):
             proof = COMPRESSED
             rests = growth is not None and growth[1]
         if proof:
             unsure = "" if rests or not has_more else NONE_ON_AXIS
-        seen = list(chain(*found[:-1]))
+        seen = list(chain(*sides[:-1]))
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
-        unseen = [r for r in found[-1] if not r.is_zero] + root_at_zero(at_rest)
+        unseen = [r for r in sides[-1] if not r.is_zero] + root_at_zero(at_rest)
         verdict = judge(seen, unsure, proof, unseen)
-        return verdict, found[0] if poles else (), found[-1]
+        return verdict, sides[0] if poles else (), sides[-1]
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""

@@ -102,14 +102,14 @@ def locate_lossy(
     engine, missing = POLYNOMIAL, 0
     if bound.is_distributed:
         followed, engine = _followed(bound, region, digits, locate), FOLLOWED
-        found = [[r for r in side.roots if not r.im < 0] for side in followed]
+        roots_of_sides = [[r for r in side.roots if not r.im < 0] for side in followed]
         missing = sum(side.missing for side in followed)
         reason = "; ".join(dict.fromkeys(side.reason for side in followed if side.reason)) or None
     else:
-        found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, cancelled(bound))]
+        roots_of_sides = [_of_polynomials(bound, side.factors, digits) for side in (*sides, cancelled(bound))]
     cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
-    poles, zeros = (_inside(region, roots) for roots in found[:2])
-    concealed = _inside(_among(poles, region) if bound.is_distributed else region, found[2])
+    poles, zeros = (_inside(region, roots) for roots in roots_of_sides[:2])
+    concealed = _inside(_among(poles, region) if bound.is_distributed else region, roots_of_sides[2])
     total = count_roots((*poles, *zeros, *concealed))
     return PoleZeroMap(
         bound.name,
@@ -273,10 +273,10 @@ def _side(
         if root.is_zero:
             moved.append(_lossy(root))
             continue
-        found = _moved(function, root, factor, bits) or _moved(function, root, arb(0), bits)
-        if found is not None and not any(overlap(found, other) for other in (*moved, *extra)):
-            (extra if any(root is other for other in shared) else moved).append(found)
-            factor = found.loss_factor() or factor
+        lossy = _moved(function, root, factor, bits) or _moved(function, root, arb(0), bits)
+        if lossy is not None and not any(overlap(lossy, other) for other in (*moved, *extra)):
+            (extra if any(root is other for other in shared) else moved).append(lossy)
+            factor = lossy.loss_factor() or factor
     moved.sort(key=_size)
     try:
         missing = _missing(KernelFunction(bound, part), (*moved, *extra), _circles(moved, region))
@@ -341,11 +341,11 @@ def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[flo
     counted, rest = divmod(within(high) - (order if low == -inf else within(low)), function.power)
     with precision(FLOAT_BITS):
         inner, outer = (arb(z).exp() if z > -inf else arb(0) for z in circles)
-        found = count_roots(r for r in roots if not r.is_zero and inner < r.size() < outer)
+        known = count_roots(r for r in roots if not r.is_zero and inner < r.size() < outer)
     at_zero = count_roots(r for r in roots if r.is_zero)
     if rest or (low == -inf and order != at_zero * function.power):
         raise RootOnPathError
-    return counted - found
+    return counted - known
 
 
 def _moved(function: Callable[[acb], tuple[acb, acb]], root: Root, factor: arb, bits: int) -> Root | None:

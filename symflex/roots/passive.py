@@ -131,11 +131,11 @@ def passive_loop(
 def _dynamic(model: Model) -> dict[str, Expression]:
     """Return the definitions that depend on s, each in terms of none: their poles are seen then."""
     kept = {LAPLACE, *(b.name for b in model.blocks)}
-    found: dict[str, Expression] = {}
+    definitions: dict[str, Expression] = {}
     for _ in model.definitions:
-        told = {d.name: substitute(d.expression, found) for d in model.definitions}
-        found = {name: e for name, e in told.items() if names_among(e, kept)}
-    return found
+        told = {d.name: substitute(d.expression, definitions) for d in model.definitions}
+        definitions = {name: e for name, e in told.items() if names_among(e, kept)}
+    return definitions
 
 
 def observed(model: Model, output: Output) -> Model:
@@ -265,13 +265,13 @@ class _Structure:
         rows = [form for role, form in self._forms if role in ("signal", "constraint")]
         for variable in {v for row in rows for v in row} - {effort, *ends}:
             rows = _without(variable, rows)
-        found = next((row for row in rows if effort in row), None)
-        if found is None:
+        feedback = next((row for row in rows if effort in row), None)
+        if feedback is None:
             return None
-        if len(found) == 1:
+        if len(feedback) == 1:
             return _Feedback(is_moved=False, loses=False, powers={})  # it follows inputs, through signals
         signs = zip(ends, (1, -1), strict=False)
-        shares = [found[v] / found[effort] * sign for v, sign in signs if v in found]
+        shares = [feedback[v] / feedback[effort] * sign for v, sign in signs if v in feedback]
         is_between = len(shares) == sum(v is not None for v in ends)
         if not is_between or not all((x - shares[0]).is_zero for x in shares):
             return None
@@ -332,25 +332,25 @@ class _Structure:
 
     def _states(self, use: PlacedElement, element: LineElement) -> tuple[Ends, Ends]:
         """Return what moves at both ends of a member, and what it delivers there."""
-        found = []
+        ends = []
         for end, through in zip(_ends(use, self.equations.model), ("_a", ""), strict=True):
             across: Ends = (end,)
             if len(element.ends) > 1:
                 across = tuple(end and Variable("node", end.owner, c) for c in element.ends)
-            found.append((*across, *(Variable("through", use.name, q + through) for q in element.through)))
-        return found[0], found[1]
+            ends.append((*across, *(Variable("through", use.name, q + through) for q in element.through)))
+        return ends[0], ends[1]
 
     def _unable_to_grow(
         self, beams: Sequence[tuple[Ends, Ends]], resting: set[Variable], forms: Sequence[Form]
     ) -> set[Variable]:
         """Return quantities at ends of beams that rest: nothing else there moves, and they cannot grow."""
-        found: set[Variable] = set()
+        bounded: set[Variable] = set()
         for states in beams:
             for here, signs in ((states[0], GROWING[0]), (states[1], FALLING[1])):
                 moving = {v: sign for v, sign in zip(here, signs, strict=True) if v and v not in resting}
                 if len(moving) == 1 and self._is_impossible(moving, beams, resting, forms):
-                    found.update(moving)
-        return found
+                    bounded.update(moving)
+        return bounded
 
     def _is_impossible(
         self,
@@ -394,22 +394,22 @@ class _Structure:
     def _numbers(self) -> dict[str, arb]:
         """The ring's generators that have a number."""
         with precision(BITS):
-            found = {"pi": arb.pi()} | {
+            values = {"pi": arb.pi()} | {
                 name: ball(v.rational) * arb.pi() ** v.pi_power
                 for name, v in self.values.items()
                 if name != self.gain
             }
             for name, value in self.equations.definitions:
                 parts = value.numerator(), value.denominator()
-                above, below = (self._powers(part, found) for part in parts)
+                above, below = (self._powers(part, values) for part in parts)
                 if above is not None and below is not None and above.keys() == below.keys() == {(0, 0)}:
-                    found[name] = above[0, 0] / below[0, 0]
-        return found
+                    values[name] = above[0, 0] / below[0, 0]
+        return values
 
     def _powers(self, value: Factored, numbers: Mapping[str, arb] | None = None) -> Powers | None:
         """Return a polynomial's coefficients, ``None`` where one of its names has no number."""
         numbers = self._numbers if numbers is None else numbers
-        names, found = value.ring.names, Powers()
+        names, coefficients = value.ring.names, Powers()
         with precision(BITS):
             for monomial, coefficient in terms_of((value / value.unit).expand()):
                 total, powers = ball(value.unit) * coefficient, {LAPLACE: 0, self.gain: 0}
@@ -421,8 +421,8 @@ class _Structure:
                     else:
                         return None
                 at = (powers[LAPLACE], powers[self.gain])
-                found[at] = found.get(at, arb(0)) + total
-        return found
+                coefficients[at] = coefficients.get(at, arb(0)) + total
+        return coefficients
 
     def _fades(self, coefficient: Factored) -> bool:
         """Tell whether a coefficient vanishes left of the imaginary axis or at 0 only, for every K > 0."""
@@ -525,7 +525,7 @@ def _without(variable: Variable, rows: Sequence[Form]) -> list[Form]:
     pivot = next((row for row in rows if variable in row), None)
     if pivot is None:
         return list(rows)
-    found = []
+    forms = []
     for row in rows:
         if row is pivot:
             continue
@@ -534,21 +534,21 @@ def _without(variable: Variable, rows: Sequence[Form]) -> list[Form]:
             zero = Factored.number(share.ring, 0)
             others = (row.keys() | pivot.keys()) - {variable}
             total = {v: row.get(v, zero) - pivot.get(v, zero) * share for v in others}
-            found.append({v: c for v, c in total.items() if not c.is_zero})
+            forms.append({v: c for v, c in total.items() if not c.is_zero})
         else:
-            found.append(row)
-    return found
+            forms.append(row)
+    return forms
 
 
 def _followed(
     resting: set[Variable], forms: Sequence[Form], is_nonzero: Callable[[Factored], object]
 ) -> set[Variable]:
     """Return what rests with what does: in a row, what is multiplied by something and left alone."""
-    found, known = set(resting), -1
-    while len(found) > known:
-        known = len(found)
+    resting_too, known = set(resting), -1
+    while len(resting_too) > known:
+        known = len(resting_too)
         for form in forms:
-            left = [v for v in form if v not in found]
+            left = [v for v in form if v not in resting_too]
             if len(left) == 1 and is_nonzero(form[left[0]]):
-                found.add(left[0])
-    return found
+                resting_too.add(left[0])
+    return resting_too

@@ -91,9 +91,9 @@ class _Fields:
         """Tell whether all fields and what holds their ends are passive."""
         if any(value.depends_on(LAPLACE) for _, value in self.equations.definitions):
             return False  # what hides s behind a name is not seen to depend on it
-        found = [list(self._paired(field)) for field in self.equations.continua]
-        ways = max(map(len, found), default=0) if all(found) else 0
-        return any(self._ends_are_passive([own[min(k, len(own) - 1)] for own in found]) for k in range(ways))
+        pairs = [list(self._paired(field)) for field in self.equations.continua]
+        ways = max(map(len, pairs), default=0) if all(pairs) else 0
+        return any(self._ends_are_passive([own[min(k, len(own) - 1)] for own in pairs]) for k in range(ways))
 
     def _paired(self, field: Continuum) -> Iterator[_Paired]:
         """Yield the pairs of a field with which it is passive: its energy may be written in several ways."""
@@ -241,13 +241,13 @@ class _Fields:
 
     def _sign(self, value: Factored, field: Continuum | None) -> int | None:
         """Return the sign of a value all along a field, but for its ends; ``None`` where it is not told."""
-        found = 1 if value.unit > 0 else -1
+        sign = 1 if value.unit > 0 else -1
         for factor, exponent in value.factors:
             own = self._sign_of_factor(Factored.polynomial(value.ring, factor), field) if exponent % 2 else 1
             if own is None:
                 return None
-            found *= own
-        return found
+            sign *= own
+        return sign
 
     def _sign_of_factor(self, value: Factored, field: Continuum | None) -> int | None:
         if field is None or not any(n in value.ring.index and value.depends_on(n) for n in self._along):
@@ -285,8 +285,8 @@ class _Fields:
             found = value_along(self._functions.get(name, Name(name)), at, self._line)
             return arb("nan") if found is None else found
 
-        found: arb = evaluated(value, generator, arb(1))
-        return found
+        number: arb = evaluated(value, generator, arb(1))
+        return number
 
 
 def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]] | None]]:

@@ -433,15 +433,15 @@ def find_pole_zero_map(
         every.append(everywhere)
         if exceeded is not None:
             break
-    found = sum(map(count_roots, every))
+    count = sum(map(count_roots, every))
     located += [()] * (len(sought) - len(located))
     pole_roots, zero_roots, *others = located
     concealed = [
         HiddenRoot(root, cause) for (_, cause), roots in zip(hidden, others, strict=True) for root in roots
     ]
     reason = None if exceeded is None else exceeded.message
-    if reason is None and counted != found:
-        reason = f"{counted} roots exist, {found} were found"
+    if reason is None and counted != count:
+        reason = f"{counted} roots exist, {count} were found"
     elif reason is None and not all(root.certified for roots in every for root in roots):
         reason = "some roots could not be told apart; each such group is enclosed as one"
     code = None if exceeded is None else exceeded.code
@@ -450,7 +450,7 @@ def find_pole_zero_map(
         for (_, cause), known, whole_roots in zip(hidden, others, every[2:], strict=False)
         for root in right_beyond(whole_roots, known)
     ]
-    missing = "" if counted == found else reason or "not all poles were found"
+    missing = "" if counted == count else reason or "not all poles were found"
     verdict = judge(every[0], missing, hidden=[root for roots in every[2:] for root in roots])
     return PoleZeroMap(
         tf,
@@ -458,7 +458,7 @@ def find_pole_zero_map(
         pole_roots,
         zero_roots,
         tuple(concealed),
-        Certificate(POLYNOMIAL, counted, found, reason, code),
+        Certificate(POLYNOMIAL, counted, count, reason, code),
         digits,
         verdict=verdict,
         unstable=right_beyond(every[0], pole_roots),

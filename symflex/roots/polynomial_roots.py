@@ -78,8 +78,8 @@ class _PolynomialSearch:
         except BudgetError as error:
             # Where constants satisfy a relation, parts that are not solved may have the same roots.
             is_exact = all(part.polynomial.is_exact for part in self.splitting.parts)
-            found = in_order(self._merged()) if is_exact else ()
-            raise BudgetError(*error.diagnostics, found=found) from None
+            finished = in_order(self._merged()) if is_exact else ()
+            raise BudgetError(*error.diagnostics, found=finished) from None
         return in_order(merged)
 
     def _solve(self, i: int, digits: int) -> None:
@@ -104,8 +104,8 @@ def _roots_of(part: SquareFreePart, discs: Sequence[Disc], digits: int) -> list[
     for disc in discs:
         # An exact centre may have few bits, its square root needs them all.
         with precision(max(disc.centre.bits(), bits_for_digits(digits)) + GUARD_BITS):
-            found = convert(disc)
-        roots.extend(replace(root, multiplicity=root.multiplicity * part.multiplicity) for root in found)
+            converted = convert(disc)
+        roots.extend(replace(root, multiplicity=root.multiplicity * part.multiplicity) for root in converted)
     return roots
 
 

@@ -215,15 +215,15 @@ def groups(roots: Sequence[Root]) -> list[list[Root]]:
     (1, 2)
     """
     sizes = ((float(root.natural_frequency().mid()), i) for i, root in enumerate(roots) if not root.is_zero)
-    found: list[list[int]] = []
+    indices: list[list[int]] = []
     for _, i in sorted(sizes):
         # Images stand next to each other, but for the few that are as large.
-        like = next((g for g in reversed(found[-NEIGHBOURS:]) if _mirrored(roots[g[0]], roots[i])), None)
+        like = next((g for g in reversed(indices[-NEIGHBOURS:]) if _mirrored(roots[g[0]], roots[i])), None)
         if like is None:
-            found.append([i])
+            indices.append([i])
         else:
             like.append(i)
-    return [[roots[i] for i in sorted(group)] for group in sorted(found, key=min)]
+    return [[roots[i] for i in sorted(group)] for group in sorted(indices, key=min)]
 
 
 def count_modes(roots: Sequence[Root]) -> int:
@@ -259,7 +259,7 @@ def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
     >>> [(r.decimal(1).re, r.decimal(1).im) for r in mirror_images([root], even=True)]
     [('-3', '4'), ('-3', '-4'), ('3', '4'), ('3', '-4')]
     """
-    found = []
+    mirrored = []
     with precision(max((root.working_bits() for root in roots), default=FLOAT_BITS)):
         for root in roots:
             images = [root]
@@ -267,8 +267,8 @@ def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
                 images.append(replace(root, im=-root.im))
             if even and not root.on_imaginary_axis:
                 images += [replace(image, re=-image.re) for image in images]
-            found += images
-    return found
+            mirrored += images
+    return mirrored
 
 
 def exact_fraction(number: arb) -> Fraction:

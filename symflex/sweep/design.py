@@ -299,13 +299,13 @@ def check_design(model: Model, design: Design) -> None:
             check_value(model, name, value, design.names)
 
 
-def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
-    names = [each.name for each in found]
+def _design(sides: Sequence[Axis | Range], draws: int, seed: int) -> Design:
+    names = [each.name for each in sides]
     for i, name in enumerate(names):
         if name in names[:i]:
             raise UsageError(Diagnostic("SF902", f"'{name}' is swept twice"))
-    axes = tuple(each for each in found if isinstance(each, Axis))
-    ranges = tuple(each for each in found if isinstance(each, Range))
+    axes = tuple(each for each in sides if isinstance(each, Axis))
+    ranges = tuple(each for each in sides if isinstance(each, Range))
     if ranges and not draws:
         hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
         raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))

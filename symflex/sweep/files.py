@@ -209,10 +209,10 @@ def _no_sweep(path: str | Path, reason: str) -> DataError:
 
 
 def _from_npz(data: bytes) -> Sweep:
-    found = read_archive(data, SIZE_LIMIT, ARRAYS_LIMIT)
-    header = json.loads(str(found[HEADER]))
+    entries = read_archive(data, SIZE_LIMIT, ARRAYS_LIMIT)
+    header = json.loads(str(entries[HEADER]))
     arrays = [
-        Labelled(str(name), tuple(map(str, of["dims"])), found[name], str(of["unit"]), str(of["doc"]))
+        Labelled(str(name), tuple(map(str, of["dims"])), entries[name], str(of["unit"]), str(of["doc"]))
         for name, of in header["arrays"].items()
     ]
     return _sweep(header["attributes"], arrays, set(header["coordinates"]))
@@ -243,17 +243,17 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     for each in arrays:
         for dim, size in zip(each.dims, each.values.shape, strict=True):
             require(sizes.setdefault(dim, size) == size, f"arrays disagree about the length of '{dim}'")
-    found = Sweep(
+    sweep = Sweep(
         tuple((str(k), str(v)) for k, v in attributes.items()),
         tuple(each for each in arrays if each.name in coordinates),
         tuple(each for each in arrays if each.name not in coordinates),
     )
-    known = {each.name: each for each in (*found.coordinates, *found.variables)}
-    is_known = found.of in ARRAYS and "point_status" in known
-    require(is_known, f"it holds no {found.of[:40] or 'results'} with their status")
-    own, names = ARRAYS[found.of]
+    known = {each.name: each for each in (*sweep.coordinates, *sweep.variables)}
+    is_known = sweep.of in ARRAYS and "point_status" in known
+    require(is_known, f"it holds no {sweep.of[:40] or 'results'} with their status")
+    own, names = ARRAYS[sweep.of]
     points = known["point_status"].dims
-    swept = found.attribute("parameters").split()
+    swept = sweep.attribute("parameters").split()
     expected = {name: (points + own, "fiub") for name in names} | {dim: ((dim,), "fiu") for dim in own}
     expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
     if any(name in known for name in STABILITY):  # files of earlier versions hold none of them
@@ -266,7 +266,7 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     require(bool(np.all((words >= 0) & (words < len(VERDICTS)))), "a verdict on stability is not a known one")
     are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
     require(are_swept, "its axes are not parameters, or are empty")
-    return found
+    return sweep
 
 
 JOURNAL_SCHEMA = "symflex.sweep.journal/1"
@@ -341,16 +341,16 @@ def _prepare(folder: Path, key: str, *, is_fresh: bool) -> None:
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
         raise UsageError(Diagnostic("SF916", f"'{folder}' is not a journal of a sweep", None, "move it away"))
     if folder.is_dir():
-        found = _key_of(about)
+        own_key = _key_of(about)
         # A kill may have come between making a folder and saying whose it is.
-        if found is None and not all(path.match(".symflex-*.tmp") for path in folder.iterdir()):
+        if own_key is None and not all(path.match(".symflex-*.tmp") for path in folder.iterdir()):
             message = f"'{folder}' is not a journal of a sweep"
             raise UsageError(Diagnostic("SF916", message, None, "move it away or choose another -o"))
-        if found is not None and found != key and not is_fresh:
+        if own_key is not None and own_key != key and not is_fresh:
             message = f"'{folder}' belongs to another sweep, or to another version of symflex"
             hint = "give --fresh to discard it, or choose another -o"
             raise UsageError(Diagnostic("SF916", message, None, hint))
-        if is_fresh or found is None:
+        if is_fresh or own_key is None:
             _discard(folder)
     folder.mkdir(exist_ok=True)
     for left in folder.glob(".symflex-*.tmp"):
@@ -372,9 +372,9 @@ def _discard(folder: Path) -> None:
 
 def _key_of(about: Path) -> str | None:
     try:
-        found = json.loads(read_bytes(os.fspath(about), ABOUT_LIMIT).decode())
+        journal = json.loads(read_bytes(os.fspath(about), ABOUT_LIMIT).decode())
     except (OSError, ValueError, RecursionError, UsageError):
         return None
-    if not isinstance(found, dict) or found.get("schema") != JOURNAL_SCHEMA:
+    if not isinstance(journal, dict) or journal.get("schema") != JOURNAL_SCHEMA:
         return None
-    return str(found.get("key"))
+    return str(journal.get("key"))

@@ -233,13 +233,13 @@ def _divided(
     """Return names and links by way of points in between, ``None`` where roots come or go on the way."""
     result = None
     for pieces in PIECES:
-        found = between(*ends, pieces)
-        if found is None:
+        halfway = between(*ends, pieces)
+        if halfway is None:
             return result
         here, names = before, old
         doubtful: set[int] = set()
         step: Complexes | None = None
-        for there in (*(np.log(s) for s in found), own):
+        for there in (*(np.log(s) for s in halfway), own):
             if len(there) != len(here):
                 break
             # All roots go on: none is missing, and none is new.
@@ -268,7 +268,7 @@ def _continued(
     if len(before) == len(now) and len(now):
         # All frequencies may have moved by one factor.
         foretold.append((before + np.median((now - before).real), FACTOR))
-    best = min((_assigned(before, *place, now) for place in foretold), key=lambda found: found[:2])
+    best = min((_assigned(before, *place, now) for place in foretold), key=lambda assignment: assignment[:2])
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
         met = _is_real(before[row]) != _is_real(now[column])
         if abs(now[column] - before[row]) > FAR and (met or not is_clear):

@@ -220,8 +220,8 @@ class RootSolver:
 
     def _known(self, values: dict[str, ExactValue], similarity: Similarity, family: int) -> _Known:
         """Return the roots at a point to many digits, none where not all is proved."""
-        found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
-        model, roots = self._chosen(found, family), _upper(self._all(found))
+        located = locate(self._bound(values), self._region, SIMILAR_DIGITS)
+        model, roots = self._chosen(located, family), _upper(self._all(located))
         is_proved = model.status is PointStatus.CERTIFIED and all(root.certified for root in roots)
         return _Known(similarity, model, roots) if is_proved else _Known(similarity, None, ())
 
@@ -232,22 +232,22 @@ class RootSolver:
                 break
         return result
 
-    def _all(self, found: PoleZeroMap) -> tuple[Root, ...]:
-        return found.all_poles if self._kind == "poles" else found.zeros
+    def _all(self, located: PoleZeroMap) -> tuple[Root, ...]:
+        return located.all_poles if self._kind == "poles" else located.zeros
 
-    def _chosen(self, found: PoleZeroMap, family: int) -> PointRoots:
-        certificate = found.certificate
-        status = PointStatus.EXCEPT_ACCUMULATION if found.excluded else PointStatus.CERTIFIED
+    def _chosen(self, located: PoleZeroMap, family: int) -> PointRoots:
+        certificate = located.certificate
+        status = PointStatus.EXCEPT_ACCUMULATION if located.excluded else PointStatus.CERTIFIED
         if not certificate.certified:
             status = PointStatus.NOT_CERTIFIED
-        every = self._all(found)
+        every = self._all(located)
         kinds = {True: RootStatus.CERTIFIED, False: RootStatus.TOGETHER}
         rows = tuple(
             FoundRoot(doubles(root.re, root.im), root.multiplicity, kinds[root.certified])
             for root in _upper(every)
         )
         at_zero = sum(root.multiplicity for root in every if root.is_zero)
-        return PointRoots(rows, at_zero, status, found.verdict, certificate.code or "", family)
+        return PointRoots(rows, at_zero, status, located.verdict, certificate.code or "", family)
 
 
 def _upper(roots: Sequence[Root]) -> tuple[Root, ...]:
@@ -274,11 +274,11 @@ def solve_roots(task: Task) -> Solver:
     return lambda points: _rows([solver(point) for point in points])
 
 
-def _rows(found: Sequence[PointRoots]) -> Rows:
-    shape = len(found), max((len(point.roots) for point in found), default=0)
+def _rows(points: Sequence[PointRoots]) -> Rows:
+    shape = len(points), max((len(point.roots) for point in points), default=0)
     re, im, radius = (np.full(shape, np.nan) for _ in range(3))
     status, multiplicity = np.zeros(shape, np.int8), np.zeros(shape, np.int32)
-    for i, point in enumerate(found):
+    for i, point in enumerate(points):
         for j, root in enumerate(point.roots):
             re[i, j], im[i, j], radius[i, j] = root.place.re, root.place.im, root.place.radius
             status[i, j], multiplicity[i, j] = root.status, root.multiplicity
@@ -288,11 +288,11 @@ def _rows(found: Sequence[PointRoots]) -> Rows:
         "radius": radius,
         "status": status,
         "multiplicity": multiplicity,
-        "at_zero": np.array([point.at_zero for point in found], np.int32),
-        **_said([point.verdict for point in found]),
-        "point_status": np.array([point.status for point in found], np.int8),
-        "family": np.array([point.family for point in found], np.int64),
-        "code": codes_of([point.code for point in found]),
+        "at_zero": np.array([point.at_zero for point in points], np.int32),
+        **_said([point.verdict for point in points]),
+        "point_status": np.array([point.status for point in points], np.int8),
+        "family": np.array([point.family for point in points], np.int64),
+        "code": codes_of([point.code for point in points]),
     }
 
 
@@ -356,11 +356,11 @@ def solve_margins(task: Task) -> Solver:
 
         def one(i: int, point: Point) -> PointStatus:
             loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
-            found = find_stable_gains(loop)
-            verdicts[i] = found.verdict
-            for name, (centre, radius) in _margins_of(found).items():
+            stability = find_stable_gains(loop)
+            verdicts[i] = stability.verdict
+            for name, (centre, radius) in _margins_of(stability).items():
                 values[name][i], values[f"{name}_radius"][i] = centre, radius
-            return PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
+            return PointStatus.CERTIFIED if stability.certified else PointStatus.NOT_CERTIFIED
 
         told = _each(points, one)
         said = _said(verdicts)
@@ -371,16 +371,16 @@ def solve_margins(task: Task) -> Solver:
     return solve
 
 
-def _margins_of(found: StabilityMap) -> dict[str, Pair]:
+def _margins_of(stability: StabilityMap) -> dict[str, Pair]:
     """Return the margins of a stable loop; an infinite gain margin is inf, or 0 downwards."""
-    interval = found.nominal_interval
+    interval = stability.nominal_interval
     if interval is None or not interval.poles.is_stable:
         return {}
     result: dict[str, Pair] = {"gain_margin_up": (inf, 0.0), "gain_margin_down": (0.0, 0.0)}
-    for margin in found.gain_margins:
+    for margin in stability.gain_margins:
         name = "gain_margin_up" if margin.factor > 1 else "gain_margin_down"
         result[name] = rounded(margin.factor)[:2]
-    worst = found.phase_margin
+    worst = stability.phase_margin
     if worst is not None:
         result["phase_margin"] = rounded(degrees(worst.angle))[:2]
         result["crossover"] = rounded(hertz(worst.frequency))[:2]

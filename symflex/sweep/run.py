@@ -338,9 +338,9 @@ def sweep(
     check_writable(path)
     with held(path):
         journal = open_journal(path, key, is_fresh=given.fresh)
-        found = run_sweep(
+        swept = run_sweep(
             task, design, executor, workers=workers, journal=journal, progress=progress, attributes=said
         )
-        write_atomically(path, sweep_bytes(found, path.suffix))
+        write_atomically(path, sweep_bytes(swept, path.suffix))
         journal.remove()
-    return found
+    return swept

@@ -92,27 +92,27 @@ class Similarities:
         """Return the similarity at a point, ``None`` where the function has no such scale."""
         if not self._is_possible:
             return None
-        found = _Point(values, self._waves, self._polynomials)
-        length = found.number(self._lengths[0])
-        leading = found.leading(self._values[self._leading])
+        point = _Point(values, self._waves, self._polynomials)
+        length = point.number(self._lengths[0])
+        leading = point.leading(self._values[self._leading])
         if length is None or length == 0 or leading is None:
             return None
         coefficient, degree = leading
-        found.set_units(length, 1 / (abs(coefficient) * abs(length) ** self._order), degree)
+        point.set_units(length, 1 / (abs(coefficient) * abs(length) ** self._order), degree)
         orders = [
             power for _, order, count in self._laws for power in (*(order - i for i in range(count)), 1)
         ]
         try:
             key = (
                 degree,
-                tuple(found.product(part) for part in self._parts),
-                tuple((found.polynomial(number), times) for number, times in self._hidden),
-                tuple(found.value(v, order) for v, order in zip(self._values, orders, strict=True)),
-                tuple(found.value(v, -1) for v in self._lengths),
+                tuple(point.product(part) for part in self._parts),
+                tuple((point.polynomial(number), times) for number, times in self._hidden),
+                tuple(point.value(v, order) for v, order in zip(self._values, orders, strict=True)),
+                tuple(point.value(v, -1) for v in self._lengths),
             )
         except ZeroDivisionError:
             return None  # something vanishes here, and the function is another
-        return Similarity(key, found.scale, degree)
+        return Similarity(key, point.scale, degree)
 
     def _product(self, value: Factored) -> _Product:
         unit = fmpq(value.unit.numerator, value.unit.denominator)
@@ -205,11 +205,11 @@ class _Point:
         if len(image) == 1:
             return (image[0][0],)
         sign, size = self._measured(*image[0])
-        found: list[object] = [image[0][0]]
+        key: list[object] = [image[0][0]]
         for monomial, number in image[1:]:
             own, power = self._measured(monomial, number)
-            found.append((monomial, own * sign, str(power / size)))
-        return tuple(found)
+            key.append((monomial, own * sign, str(power / size)))
+        return tuple(key)
 
     def _measured(self, monomial: tuple[int, ...], number: fmpq) -> tuple[int, fmpq]:
         n, waves = self._degree, sum(monomial[2 : 2 + self._waves])

@@ -139,22 +139,22 @@ def assembled(
     if design.draws:
         coordinates.append(Labelled(DRAW, (DRAW,), np.arange(design.draws, dtype=np.int32), "", "number"))
     if task.of in ("poles", "zeros"):
-        found, more = _roots(design, rows, between)
+        named, more = _roots(design, rows, between)
         coordinates.append(Labelled(MODE, (MODE,), np.arange(1, more + 1, dtype=np.int32), "", "name"))
     elif task.of == "response":
         values = np.array(task.frequencies)
         coordinates.append(Labelled(FREQUENCY, (FREQUENCY,), values, "Hz", "frequency"))
-        found = [(name, (FREQUENCY,), rows[name], "", f"{name} of the response") for name in ("re", "im")]
+        named = [(name, (FREQUENCY,), rows[name], "", f"{name} of the response") for name in ("re", "im")]
     else:
-        found = [(name, (), rows[name], unit, doc) for name, unit, doc in _margin_names()]
+        named = [(name, (), rows[name], unit, doc) for name, unit, doc in _margin_names()]
     if task.of in ("poles", "margins"):
-        found += [(name, (), rows[name], "", doc) for name, doc in STABILITY.items()]
-    found.append(("point_status", (), rows["point_status"], "", POINT_STATUS))
-    found.append(("code", (), rows["code"], "", "error code of a point that failed"))
+        named += [(name, (), rows[name], "", doc) for name, doc in STABILITY.items()]
+    named.append(("point_status", (), rows["point_status"], "", POINT_STATUS))
+    named.append(("code", (), rows["code"], "", "error code of a point that failed"))
     shape = design.shape
     variables = tuple(
         Labelled(name, dims + own, values.reshape(shape + values.shape[1:]), unit, doc)
-        for name, own, values, unit, doc in found
+        for name, own, values, unit, doc in named
     )
     names = " ".join(label(name) for name in design.names)
     said = {"schema": SCHEMA, "tf": "/".join(task.pair), "of": task.of, "parameters": names, **attributes}
@@ -207,7 +207,7 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
     size = np.hypot(re, im)
     ratio = np.divide(-re, size, out=np.full(shape, np.nan), where=size > 0)
     own = (MODE,)
-    found: list[Named] = [
+    named: list[Named] = [
         ("re", own, re, "rad/s", "real part"),
         ("im", own, im, "rad/s", "imaginary part; not negative, conjugates are left out"),
         ("radius", own, sorted_by_mode(rows["radius"], np.nan), "rad/s", "bound on the distance to the root"),
@@ -218,7 +218,7 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
         ("damping_ratio", own, ratio + 0.0, "", "damping ratio"),
         ("at_zero", (), rows["at_zero"], "", "multiplicity of the root at s = 0"),
     ]
-    return found, modes_kept
+    return named, modes_kept
 
 
 def _margin_names() -> list[tuple[str, str, str]]:

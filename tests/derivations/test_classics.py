@@ -81,10 +81,7 @@ def damped_mode(k):
 POLES = {
     ("clamped_free", "W_tip/F"): ((1, 2, 5), lambda k: beam_mode("clamped_free", clamped_free(k))),
     # A uniform load at the middle drives and shows symmetric modes only.
-    ("clamped_clamped", "W_mid/p"): (
-        (1, 3, 5),
-        lambda k: beam_mode("clamped_clamped", clamped_clamped(k)),
-    ),
+    ("clamped_clamped", "W_mid/p"): ((1, 3, 5), lambda k: beam_mode("clamped_clamped", clamped_clamped(k))),
     ("free_free", "A_far/F"): ((1, 2, 5), lambda k: beam_mode("free_free", clamped_clamped(k))),
     ("pinned_pinned", "theta_far/tau"): ((1, 2, 5), lambda k: beam_mode("pinned_pinned", k * pi)),
     ("sliding_sliding", "V_far/F"): ((1, 2, 5), lambda k: beam_mode("sliding_sliding", k * pi)),

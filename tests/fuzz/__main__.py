@@ -59,10 +59,7 @@ def main():
         parser.error(f"no such target: {', '.join(sorted(unknown))}")
     if find_spec("atheris") is None:
         is_required = os.environ.get("SYMFLEX_REQUIRE_TOOLS") == "1"
-        print(
-            "SKIPPED: nothing was fuzzed, atheris is missing: pip install '.[fuzz]'",
-            file=sys.stderr,
-        )
+        print("SKIPPED: nothing was fuzzed, atheris is missing: pip install '.[fuzz]'", file=sys.stderr)
         return 1 if is_required else 0
     names = given.targets or TARGETS
     failed = False

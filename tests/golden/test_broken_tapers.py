@@ -155,11 +155,7 @@ BROKEN = {
     # x where it means nothing.
     "x_in_a_domain": (tapered(domain='"0", "«x»"'), "SF210", NO_X),
     "x_in_a_point": (tapered(conditions=f'"w(«x») = 0", "w\'(0) = 0", {FREE}'), "SF210", NO_X),
-    "x_in_front_of_a_condition": (
-        tapered(conditions=f'"w(0) = 0", "«x»*w\'(0) = 0", {FREE}'),
-        "SF210",
-        NO_X,
-    ),
+    "x_in_front_of_a_condition": (tapered(conditions=f'"w(0) = 0", "«x»*w\'(0) = 0", {FREE}'), "SF210", NO_X),
     "x_in_an_output": (tapered(output="w(«x»)"), "SF210", NO_X),
     "x_beside_an_output": (tapered(output="«x»*w(l)"), "SF210", NO_X),
     "x_in_a_definition": (tapered(more='[definitions]\nI_1 = "I_0*(1 - c*«x»/l)"\n'), "SF210", NO_X),
@@ -176,8 +172,7 @@ BROKEN = {
     "x_in_a_signal": (tapered(more='[signals]\nu = "«x»*F"\n'), "SF210", NO_X),
     "x_in_a_spring": (
         arm(
-            'I = "I_0", A = "A_0"',
-            more='k = { type = "spring", between = ["tip", "ground"], k = "N_0/«x»" }',
+            'I = "I_0", A = "A_0"', more='k = { type = "spring", between = ["tip", "ground"], k = "N_0/«x»" }'
         ),
         "SF210",
         NO_X,
@@ -198,11 +193,7 @@ BROKEN = {
         "SF210",
         NO_X,
     ),
-    "x_in_a_point_of_a_member": (
-        arm('I = "I_0*(1 - c*x/l)", A = "A_0"', output="arm.y(«x»)"),
-        "SF210",
-        NO_X,
-    ),
+    "x_in_a_point_of_a_member": (arm('I = "I_0*(1 - c*x/l)", A = "A_0"', output="arm.y(«x»)"), "SF210", NO_X),
     "x_in_a_printed_formula": (
         tapered() + '[published."y/F"]\nexpr = "«x»/N_0"\nsource = "nobody"\n',
         "SF210",

@@ -26,8 +26,7 @@ def arguments(name):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=[pytest.mark.slow] if n.startswith("robot_axis") else []) for n in NAMES],
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n.startswith("robot_axis") else []) for n in NAMES]
 )
 def test_an_explanation_reads_as_expected(name, capsys):
     assert run(arguments(name)) == 0

@@ -127,12 +127,7 @@ def _tip(tension: mpf) -> dict[int, object]:
 def _beam(k_f: mpf, tension: mpf, rho: float, length: float) -> dict[str, object]:
     return {
         "slope": _single(lambda s: (rho * s * s + k_f) / 2, lambda _: -tension / 2),
-        "conditions": (
-            (0, {0: 1}, 0),
-            (0, {1: 1}, 0),
-            (length, {2: 1}, 0),
-            (length, _tip(tension), 1),
-        ),
+        "conditions": ((0, {0: 1}, 0), (0, {1: 1}, 0), (length, {2: 1}, 0), (length, _tip(tension), 1)),
         "seen": {"X": (length, 0)},
     }
 
@@ -209,11 +204,7 @@ conditions = [
             'U = "u(l)"',
         ),
         _beams(lambda s: [[-2 * s * s / 3, -s * s / 3], [0, -2 * s * s / 3]]),
-        (
-            *((0, {k: 1}, 0) for k in (0, 1, 4, 5)),
-            *((1.3, {k: 1}, 0) for k in (2, 3, 6)),
-            (1.3, {7: 3}, 1),
-        ),
+        (*((0, {k: 1}, 0) for k in (0, 1, 4, 5)), *((1.3, {k: 1}, 0) for k in (2, 3, 6)), (1.3, {7: 3}, 1)),
         {"U": (1.3, 0)},
     ),
     "a uniform load": Case(
@@ -262,11 +253,7 @@ conditions = [
             'U = "u(l)"\nV = "v(l)"',
         ),
         _beams(lambda s: [[-(2 * s * s + 50) / 3, mpf(50) / 3], [mpf(50) / 3, -(2 * s * s + 50) / 3]]),
-        (
-            *((0, {k: 1}, 0) for k in (0, 1, 4, 5)),
-            *((1.2, {k: 1}, 0) for k in (2, 6, 7)),
-            (1.2, {3: 3}, 1),
-        ),
+        (*((0, {k: 1}, 0) for k in (0, 1, 4, 5)), *((1.2, {k: 1}, 0) for k in (2, 6, 7)), (1.2, {3: 3}, 1)),
         {"U": (1.2, 0), "V": (1.2, 4)},
     ),
     "two rods that a layer with losses joins": Case(

@@ -14,12 +14,7 @@ from tests.independent.distributed.span import clamped, free
 from tests.independent.published_roots import WAVENUMBERS
 from tests.independent.winding import Frame, Member, OnTheContourError, count_inside, determinant
 
-HELD = {
-    "free": (),
-    "pinned": ("y",),
-    "sliding": ("theta",),
-    "clamped": ("y", "theta"),
-}
+HELD = {"free": (), "pinned": ("y",), "sliding": ("theta",), "clamped": ("y", "theta")}
 
 
 @pytest.fixture(autouse=True)

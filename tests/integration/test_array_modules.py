@@ -332,8 +332,7 @@ def test_the_derivative_by_an_axial_force_is_that_of_the_boundary_value_problem(
 @needs_jax
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "function"),
-    [("sliding_free_beam", "V_act_over_F"), ("two_mass", "X_tip_over_F")],
+    ("name", "function"), [("sliding_free_beam", "V_act_over_F"), ("two_mass", "X_tip_over_F")]
 )
 def test_derivatives_are_finite_wherever_values_are(name, function, over_jax, jax, jnp):
     module = over_jax(name)

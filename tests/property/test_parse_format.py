@@ -10,16 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex import pipeline
-from symflex.expressions import (
-    Name,
-    format_expression,
-    negative,
-    number,
-    power,
-    product_of,
-    quotient,
-    sum_of,
-)
+from symflex.expressions import Name, format_expression, negative, number, power, product_of, quotient, sum_of
 from symflex.print.forms import hidden_expressions, print_form
 from symflex.print.forms.printed import forms_of
 from symflex.print.json_format import derive_json

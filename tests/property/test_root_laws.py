@@ -22,8 +22,7 @@ SUPPORTS = {"free": (), "pin": ("y",), "slider": ("theta",), "fixed": ("y", "the
 
 def quiet(examples):
     return settings(
-        max_examples=examples,
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+        max_examples=examples, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much]
     )
 
 

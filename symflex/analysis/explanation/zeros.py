@@ -24,20 +24,8 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
-from symflex.analysis.explanation.ends import (
-    bending_between,
-    ends_of_element,
-    ends_of_field,
-    is_line,
-)
-from symflex.analysis.explanation.parts import (
-    Relation,
-    Separation,
-    relate,
-    separate,
-    varying,
-    waves_of,
-)
+from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
+from symflex.analysis.explanation.parts import Relation, Separation, relate, separate, varying, waves_of
 from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
 from symflex.equations import Equations
 from symflex.equations.elimination import Determinants

@@ -26,13 +26,7 @@ from flint import acb, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
-from symflex.analysis.time_response.delayed_terms import (
-    NO_DELAY,
-    Delay,
-    DelayReader,
-    later,
-    sum_of,
-)
+from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayReader, later, sum_of
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.sampled import Gathered, Sampled
@@ -167,14 +161,7 @@ class WaveQuotient:
         total = Gathered(seconds)
         off = arb(0, missing)
         begun, below = ({d: _real(v) for d, v in side.items()} for side in (parts.above, parts.below))
-        for echo, series in arriving(
-            begun,
-            below,
-            _total,
-            lambda own, q: own * q,
-            durations,
-            seconds[-1],
-        ):
+        for echo, series in arriving(begun, below, _total, lambda own, q: own * q, durations, seconds[-1]):
             delay = durations.seconds(echo)
             by_power = dict(enumerate(series.coeffs(), shift))  # of 1/s
             zero = arb(0)

@@ -222,12 +222,7 @@ class _Files:
         order = max((f.order for f in self.functions.values()), default=1)
         below = helpers("\n".join(printed.values()), self.structure, order)
         code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, text in printed.items())
-        signs = {
-            "float": "FLT_EVAL_METHOD",
-            "math": "",
-            "stdint": "uint64_t",
-            "string": "memcpy(",
-        }
+        signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
         parts = [includes, self._defaults(), below, code]
         return "\n".join(part for part in parts if part)

@@ -19,15 +19,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel
-    from symflex.codegen.program.exponents import (
-        Family,
-        Key,
-        RealAxis,
-        RealKey,
-        RealSum,
-        RealTerm,
-        Term,
-    )
+    from symflex.codegen.program.exponents import Family, Key, RealAxis, RealKey, RealSum, RealTerm, Term
     from symflex.codegen.program.forge import Forge
     from symflex.codegen.program.series import LocalBasis
     from symflex.transfer import TransferFunction

@@ -406,7 +406,5 @@ ARRAY_API = Language(
     partial(python_module, dialect=ARRAY_API_DIALECT),
 )
 JAX = Language(
-    ".py",
-    "the same for jax: jit, grad and vmap work through it",
-    partial(python_module, dialect=JAX_DIALECT),
+    ".py", "the same for jax: jit, grad and vmap work through it", partial(python_module, dialect=JAX_DIALECT)
 )

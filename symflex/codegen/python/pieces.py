@@ -19,12 +19,7 @@ import numpy as np
 from symflex.codegen.infix import InfixPrinter, in_lines
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
-from symflex.codegen.program.evaluate import (
-    NUMPY_FUNCTIONS,
-    number_of,
-    numbers_of_pieces,
-    value_of_piece,
-)
+from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
 
 if TYPE_CHECKING:

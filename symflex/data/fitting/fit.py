@@ -144,15 +144,15 @@ class ResonanceFit:
 
     def real_poles(self) -> list[tuple[float, float]]:
         """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""
-        found, covariance = self.resonances, self.refined.covariance
-        n = found.count
-        poles = [(float(p), (2 * n + i, 1.0, 2 * n + i, 0.0)) for i, p in enumerate(found.real_p)]
-        for i in np.flatnonzero(found.zeta_p >= 1).tolist():
-            zeta = float(found.zeta_p[i])
+        modes, covariance = self.resonances, self.refined.covariance
+        n = modes.count
+        poles = [(float(p), (2 * n + i, 1.0, 2 * n + i, 0.0)) for i, p in enumerate(modes.real_p)]
+        for i in np.flatnonzero(modes.zeta_p >= 1).tolist():
+            zeta = float(modes.zeta_p[i])
             root = np.sqrt(max(zeta**2 - 1, np.finfo(float).tiny))
             # d ln(zeta +- root) by ln zeta is +- zeta/root.
             poles += [
-                (float(found.omega_p[i] * (zeta + root) ** sign), (i, 1.0, n + i, sign * zeta / root))
+                (float(modes.omega_p[i] * (zeta + root) ** sign), (i, 1.0, n + i, sign * zeta / root))
                 for sign in (-1, 1)
             ]
         result = []
@@ -170,21 +170,21 @@ class ResonanceFit:
 
         Those that the data do not determine are infinite.
         """
-        found = self.resonances
-        n, free = found.count, self.problem.free
+        modes = self.resonances
+        n, free = modes.count, self.problem.free
         covariance = self.refined.covariance
-        deviation = np.full(found.size(free), np.inf)
+        deviation = np.full(modes.size(free), np.inf)
         if covariance is not None:
             deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        own = {name: np.zeros_like(getattr(found, name)) for name in UNITS}
-        for name, index, place in found.own_places(free):
-            sizes = np.abs(getattr(found, name)[index]) if name in LOGARITHMIC else UNITS[name]
+        own = {name: np.zeros_like(getattr(modes, name)) for name in UNITS}
+        for name, index, place in modes.own_places(free):
+            sizes = np.abs(getattr(modes, name)[index]) if name in LOGARITHMIC else UNITS[name]
             own[name][index] = sizes * deviation[place]
         return replace(
-            found,
-            omega_p=found.omega_p * deviation[:n],
-            zeta_p=found.zeta_p * deviation[n : 2 * n],
-            real_p=found.real_p * deviation[2 * n : found.shared()],
+            modes,
+            omega_p=modes.omega_p * deviation[:n],
+            zeta_p=modes.zeta_p * deviation[n : 2 * n],
+            real_p=modes.real_p * deviation[2 * n : modes.shared()],
             **own,
         )
 
@@ -341,7 +341,7 @@ def _kept(line: FittedLines, wild: Whole) -> Whole:
 
 def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
     """Return the lines of each response that the fit describes, or that are too many to be called wild."""
-    found = []
+    lines = []
     for r, line in enumerate(problem.lines):
         every = line.every
         factor = candidate.refined.resonances.factor(r, every.observation.omega)
@@ -349,13 +349,13 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
         off = np.abs(model - every.measured.values) / line.deviation_of_every()
         # What is larger than the noise everywhere is no matter of single lines.
         off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
-        found.append(_kept(every, np.flatnonzero(off > WILD)))
-    return found
+        lines.append(_kept(every, np.flatnonzero(off > WILD)))
+    return lines
 
 
 def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     """Return why a fit is poor."""
-    found, errors = fit.resonances, fit.standard_errors()
+    modes, errors = fit.resonances, fit.standard_errors()
     reasons = []
     if fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE:
         return ()  # what is left is rounding, and tells nothing
@@ -369,12 +369,12 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         reasons.append("neighbouring lines deviate together: the model lacks something")
     weak, why = (WEAK_ROUNDED, ", and the data have few digits") if _is_rounded(fit) else (WEAK, "")
     for i in np.flatnonzero(fit.modes).tolist():
-        if not errors.zeta_p[i] <= weak * found.zeta_p[i]:
-            where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
+        if not errors.zeta_p[i] <= weak * modes.zeta_p[i]:
+            where = f"{named_pair(fit, i)} at {modes.omega_p[i] / (2 * np.pi):.4g} Hz"
             reasons.append(f"the damping of {where} is lost in its error{why}")
-    if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(found.gain)):
-        is_beyond = (found.omega_z > fit.problem.band[1]) & (found.zeta_z < 0)
-        is_lag = not fit.problem.free.delay and bool(np.any(found.real_z < 0) or np.any(is_beyond))
+    if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
+        is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
+        is_lag = not fit.problem.free.delay and bool(np.any(modes.real_z < 0) or np.any(is_beyond))
         advice = ": zeros on the right above the band may stand for a dead time, try --delay"
         reasons.append("the gain is lost in its error" + advice * is_lag)
     for r, line in enumerate(fit.problem.lines):
@@ -403,16 +403,16 @@ def named_pair(fit: ResonanceFit, i: int) -> str:
 
 def _said_of_lines(fit: ResonanceFit) -> list[str]:
     """Return which lines were left out, and which real zeros no line shows."""
-    found, warnings = fit.resonances, []
+    modes, warnings = fit.resonances, []
     low, high = fit.problem.band
-    for r in range(found.responses):
+    for r in range(modes.responses):
         left = fit.left_out(r)
         if left.size:
             places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[left][:NAMED_LINES])
             more = ", ..." if left.size > NAMED_LINES else ""
             word = "outlier" if left.size == 1 else "outliers"
             warnings.append(f"{left.size} {word}{fit.of_response(r)} left out, at {places}{more} Hz")
-    for r, corner in enumerate(np.abs(found.real_z).tolist()):
+    for r, corner in enumerate(np.abs(modes.real_z).tolist()):
         if np.isfinite(corner) and not low <= corner <= high:
             place = f"{corner / (2 * np.pi):.4g} Hz"
             warnings.append(f"the real zero{fit.of_response(r)} lies outside the band measured, at {place}")
@@ -420,32 +420,32 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
 
 
 def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
-    found = fit.resonances
+    modes = fit.resonances
     errors = fit.standard_errors()
     low, high = fit.problem.band
     is_exact = fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE
     warnings = _said_of_lines(fit)
-    for i in range(found.count):
-        if fit.modes[i] and not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
+    for i in range(modes.count):
+        if fit.modes[i] and not errors.zeta_p[i] <= WEAK * modes.zeta_p[i]:
             warnings.append(f"the damping of {named_pair(fit, i)} is hardly determined by the data")
-        for r in range(found.responses):
-            if not found.has_zeros[r, i]:
+        for r in range(modes.responses):
+            if not modes.has_zeros[r, i]:
                 continue
             pair = f"zero pair {i + 1}{fit.of_response(r)}"
-            damped = f"{pair} has the damping ratio {found.zeta_z[r, i]:.2g}"
-            if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
-                errors.omega_z[r, i] > WEAK * abs(found.omega_z[r, i])
+            damped = f"{pair} has the damping ratio {modes.zeta_z[r, i]:.2g}"
+            if errors.zeta_z[r, i] > max(abs(modes.zeta_z[r, i]), LEAST_DAMPING) or (
+                errors.omega_z[r, i] > WEAK * abs(modes.omega_z[r, i])
             ):
                 warnings.append(f"{pair} is not determined by the data: its error is of its own size")
                 continue
-            if abs(found.zeta_z[r, i]) > OVERDAMPED:
+            if abs(modes.zeta_z[r, i]) > OVERDAMPED:
                 lacking = "behaviour that a gain, a power of s and resonances cannot have"
                 warnings.append(f"{damped}: two real zeros, which stand for {lacking}")
-            elif abs(found.zeta_z[r, i]) > FLAT and not is_exact:
+            elif abs(modes.zeta_z[r, i]) > FLAT and not is_exact:
                 moved = "modes outside the band may move it by more than its standard error"
                 warnings.append(f"{damped} and no sharp trough: {moved}")
-            if not low <= abs(found.omega_z[r, i]) <= high:
-                place = abs(found.omega_z[r, i]) / (2 * np.pi)
+            if not low <= abs(modes.omega_z[r, i]) <= high:
+                place = abs(modes.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
                     f"{pair} lies outside the band measured, at {place:.4g} Hz: the data show only its effect"
                 )
@@ -453,14 +453,14 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         spacing = line.measured.spacing_hz
         if spacing is None or line.observation.matrix is not None:
             continue
-        widths = (found.zeta_p * found.omega_p / np.pi)[fit.modes]
+        widths = (modes.zeta_p * modes.omega_p / np.pi)[fit.modes]
         narrow = (np.flatnonzero(widths < 4 * spacing) + 1).tolist()
         if narrow:
             pairs = ", ".join(map(str, narrow))
             said = f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
             warnings.append(f"{said}used a Hann window, say --window hann, or damping comes out too large")
             break
-    several = ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
+    several = ", the responses one by one, or --driving OUT/IN" if modes.responses > 1 else " or more --modes"
     advice = "" if fit.problem.has_base else f"; try --slope N{several}"
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
         said = f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains"

@@ -102,10 +102,10 @@ def refine(
     # On the way the effect of the window does not matter, and without it a step takes a sixth of the time.
     plain = problem.without_window() if problem.has_deviations else problem
     first = ROUGH if problem.has_deviations else tolerance
-    found, converged = _descend(plain, start, "logarithmic", steps, first)
+    modes, converged = _descend(plain, start, "logarithmic", steps, first)
     if problem.has_deviations:
-        found, converged = _descend(problem, found, "complex", steps, tolerance)
-    return _judged(problem, found.ordered(), has_converged=converged)
+        modes, converged = _descend(problem, modes, "complex", steps, tolerance)
+    return _judged(problem, modes.ordered(), has_converged=converged)
 
 
 def refine_directly(
@@ -113,8 +113,8 @@ def refine_directly(
 ) -> Refined:
     """Return the minimum near a start that is close to one, by the last residual alone."""
     kind = "complex" if problem.has_deviations else "logarithmic"
-    found, converged = _descend(problem, start, kind, steps, tolerance)
-    return _judged(problem, found.ordered(), has_converged=converged)
+    modes, converged = _descend(problem, start, kind, steps, tolerance)
+    return _judged(problem, modes.ordered(), has_converged=converged)
 
 
 def _descend(
@@ -136,10 +136,10 @@ def _descend(
     def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
         return _reduced(problem, start.unpack(vector, problem.free), rest, kind)
 
-    found, has_converged = search(
+    solution, has_converged = search(
         residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance
     )
-    return start.unpack(found, problem.free), has_converged
+    return start.unpack(solution, problem.free), has_converged
 
 
 def search(
@@ -213,12 +213,12 @@ def _step(matrix: Real, right: Real, damped: Real) -> Real:
     return np.asarray(np.linalg.solve(upper[:size, :size], upper[:size, size]) / damped, np.float64)
 
 
-def _reduced(problem: FitProblem, found: Resonances, rest: list[Complex], kind: str) -> tuple[Real, Real]:
+def _reduced(problem: FitProblem, modes: Resonances, rest: list[Complex], kind: str) -> tuple[Real, Real]:
     """Return the linear equations of a step: a triangle for each response, shape (k, p), and their right."""
-    size = found.size(problem.free)
+    size = modes.size(problem.free)
     rows, right = [], []
-    for r, slopes in enumerate(_slopes(problem, found, kind)):
-        columns = found.columns(r, problem.free)
+    for r, slopes in enumerate(_slopes(problem, modes, kind)):
+        columns = modes.columns(r, problem.free)
         upper = triangle(np.column_stack((_parts(slopes), _parts(rest[r]))))
         wide = np.zeros((upper.shape[0], size))
         wide[:, columns] = upper[:, :-1]
@@ -258,18 +258,18 @@ def _absolute(line: FittedLines) -> Real:
     return (np.ones(1) if line.deviation is None else line.deviation) * np.abs(line.measured.values)
 
 
-def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> Refined:
+def _judged(problem: FitProblem, modes: Resonances, *, has_converged: bool) -> Refined:
     kind = "complex" if problem.has_deviations else "logarithmic"
-    residuals = _residuals(problem, found, kind)
-    total = found.size(problem.free)
+    residuals = _residuals(problem, modes, kind)
+    total = modes.size(problem.free)
     with np.errstate(all="ignore"):
         sums = _Sums(total, sum(r.size for r in residuals), sum(float(np.vdot(r, r).real) for r in residuals))
         shares = _correlation(residuals, sums.power)
-        for r, (line, slopes) in enumerate(zip(problem.lines, _slopes(problem, found, kind), strict=True)):
-            score = score_covariance(line, line.base * found.factor(r, line.observation.omega), slopes)
-            sums.add(found.columns(r, problem.free), slopes, score, len(shares))
+        for r, (line, slopes) in enumerate(zip(problem.lines, _slopes(problem, modes, kind), strict=True)):
+            score = score_covariance(line, line.base * modes.factor(r, line.observation.omega), slopes)
+            sums.add(modes.columns(r, problem.free), slopes, score, len(shares))
         covariance, correlation = _covariance(sums, shares)
-    return Refined(found, has_converged, tuple(residuals), covariance, correlation, total)
+    return Refined(modes, has_converged, tuple(residuals), covariance, correlation, total)
 
 
 def widened(problem: FitProblem, refined: Refined) -> Refined:
@@ -282,12 +282,12 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
     have another error, and another value: errors are these, and the way from this value to that one. Below
     the band powers are negative.
     """
-    found, size = refined.resonances, refined.resonances.size(problem.free)
+    modes, size = refined.resonances, refined.resonances.size(problem.free)
     normal, gradient = np.zeros((size, size)), np.zeros(size)
     crosses, squares, pulls = [], [], []
-    for r, slopes in enumerate(_slopes(problem, found, "complex")):
-        line, columns = problem.lines[r], found.columns(r, problem.free)
-        place, damping = np.abs(found.omega_z[r]), np.abs(found.zeta_z[r])
+    for r, slopes in enumerate(_slopes(problem, modes, "complex")):
+        line, columns = problem.lines[r], modes.columns(r, problem.free)
+        place, damping = np.abs(modes.omega_z[r]), np.abs(modes.zeta_z[r])
         low, high = line.omega[[0, -1]]
         outside = (place < low) | ((place > high) | (damping > FLAT)) & (place < np.inf)
         place, damping = place[outside], damping[outside]
@@ -297,7 +297,7 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
             even, odd = np.max(near**2, initial=0.0), 2j * np.max(damping * near, initial=0.0)
             ratio = (line.omega / end) ** sign
             bends += [even * ratio**4, even * ratio**6, odd * ratio**3, odd * ratio**5]
-        values, deviation = problem.values(found, r), _absolute(line)
+        values, deviation = problem.values(modes, r), _absolute(line)
         bent = NEXT_TERM * np.column_stack(bends) * (values / deviation)[:, np.newaxis]
         rest = (values - line.measured.values) / deviation
         normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real

@@ -155,27 +155,27 @@ def written_step(numbers: Real) -> Real:
     ([0.001, 0.01, 0.1], [0.0, 0.0])
     """
     size = np.abs(numbers)
-    found: Real = np.zeros(size.size)
+    step_found: Real = np.zeros(size.size)
     least = SMALLEST * max(float(np.max(size, initial=0.0)), np.finfo(float).tiny)
     decade = np.floor(np.log10(np.maximum(size, least)) + EXACT) + 1
     for place in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
         for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS + 1):
             step = 10 ** (place - digits)
             if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + least):
-                found = np.maximum(found, step)
+                step_found = np.maximum(step_found, step)
                 break
-    return found
+    return step_found
 
 
 def single_lines(omega: Real, resonances: Resonances) -> Whole:
     """Return the lines beside resonances whose bandwidth is far less than the distance of lines."""
-    found = []
+    outliers = []
     for centre, zeta in zip(resonances.omega_p, resonances.zeta_p, strict=True):
         i = int(np.argmin(np.abs(omega - centre)))
         distance = omega[min(i + 1, omega.size - 1)] - omega[max(i - 1, 0)]
         if omega[0] <= centre <= omega[-1] and 2 * zeta * centre < NARROW * distance:
-            found.append(i)
-    return np.unique(np.array(found, np.int64))
+            outliers.append(i)
+    return np.unique(np.array(outliers, np.int64))
 
 
 def isolated(places: Whole, size: int) -> Whole:

@@ -85,16 +85,16 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
     logarithms, covariance = _refined(systems, fit)
     count = logarithms.size // 2
     solved = [_solved(system, logarithms, fit.refined.correlation) for system in systems]
-    found = np.array([one.constants for one in solved])
-    turned = np.degrees(np.angle(found))
+    constants = np.array([one.constants for one in solved])
+    turned = np.degrees(np.angle(constants))
     for i in np.flatnonzero(np.abs(turned[at]) > MOST_TURNED):
         hertz = float(np.exp(logarithms[i])) / (2 * np.pi)
         where = f"the modal constant of {names[at]} at {hertz:.4g} Hz"
         message = f"{where} is {turned[at, i]:.0f} degrees off the positive real axis"
         raise FitError(Diagnostic("SF616", message, None, "a response at the driven point has positive ones"))
     turned = np.where(np.abs(turned) > RIGHT_ANGLE, turned - np.copysign(2 * RIGHT_ANGLE, turned), turned)
-    driven = np.sqrt(found[at].real)
-    shapes = np.asarray(found.real / driven, np.float64)
+    driven = np.sqrt(constants[at].real)
+    shapes = np.asarray(constants.real / driven, np.float64)
     errors = [_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]
     frequency, damping = np.exp(logarithms[:count]) / (2 * np.pi), np.exp(logarithms[count:])
     return FittedModeShapes(names, at, shapes, np.array(errors), turned, units[0], frequency, damping)
@@ -178,14 +178,14 @@ def _shown_poles(fit: ResonanceFit) -> tuple[Real, Real]:
     Where the data determine none, which makes the fit poor, all in the band have shapes. SF616 when there are
     none.
     """
-    found, errors = fit.resonances, fit.standard_errors()
-    shown = fit.modes & (errors.zeta_p <= WEAK * found.zeta_p)
+    modes, errors = fit.resonances, fit.standard_errors()
+    shown = fit.modes & (errors.zeta_p <= WEAK * modes.zeta_p)
     if not shown.any():
         shown = fit.modes
     if not shown.any():
         message = "the response at the driven point shows no resonance"
         raise FitError(Diagnostic("SF616", message, None, "check --driving and --band"))
-    return found.omega_p[shown], found.zeta_p[shown]
+    return modes.omega_p[shown], modes.zeta_p[shown]
 
 
 def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _SolvedShapes:
@@ -205,12 +205,12 @@ def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _S
         noise = np.asarray(mix.T @ (inverse @ inverse.T) @ mix * spread, np.float64)
         return (solution[:n] + 1j * solution[n : 2 * n]) * turn, noise
 
-    found, noise = constants(logarithms)
+    modal_constants, noise = constants(logarithms)
     slopes = np.empty((n, 2 * n))
     for i in range(2 * n):
         step = STEP * np.eye(2 * n)[i]
         slopes[:, i] = (constants(logarithms + step)[0] - constants(logarithms - step)[0]).real / (2 * STEP)
-    return _SolvedShapes(found, noise, slopes)
+    return _SolvedShapes(modal_constants, noise, slopes)
 
 
 def _errors(one: _SolvedShapes, driven: _SolvedShapes, poles: Real, *, is_driven: bool) -> Real:

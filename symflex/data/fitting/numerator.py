@@ -67,11 +67,11 @@ def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[tuple[flo
     if not all(choices):
         return []
     best = [one[0] for one in choices]
-    found = [_together(poles, best)]
+    combined = [_together(poles, best)]
     # One response at a time gets its next best.
     for r, one in enumerate(choices):
-        found += [_together(poles, [*best[:r], other, *best[r + 1 :]]) for other in one[1:]]
-    return found
+        combined += [_together(poles, [*best[:r], other, *best[r + 1 :]]) for other in one[1:]]
+    return combined
 
 
 def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonances]:
@@ -84,8 +84,8 @@ def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonance
     omega_p, zeta_p = np.append(omega, centre), np.append(zeta, (first + second) / (2 * centre))
     own = ("omega_z", "zeta_z", "gain", "delay", "slope", "real_z")
     arrays = {name: np.array([getattr(one, name) for one in chosen]) for name in own}
-    found = Resonances(omega_p, zeta_p, real_p=corners[corners.size // 2 * 2 :], **arrays)
-    return sum(one.bic for one in chosen), found.ordered()
+    modes = Resonances(omega_p, zeta_p, real_p=corners[corners.size // 2 * 2 :], **arrays)
+    return sum(one.bic for one in chosen), modes.ordered()
 
 
 def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -> list[Numerator]:
@@ -96,7 +96,7 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
     if not problem.free.delay:
         solved = full.solved(shapes, begun)
         likely = np.argsort(full.bic(np.array([rest for rest, _ in solved]), shapes))[:MOST_POLISHED]
-        found = [(solved[i][0], begun, shapes[i], solved[i][1]) for i in likely]
+        polished = [(solved[i][0], begun, shapes[i], solved[i][1]) for i in likely]
     else:
         # Poles hardly depend on the dead time they were found with; what stands over them does.
         thin = _System(problem, response, poles, max(1, full.size // MOST_LINES))
@@ -106,9 +106,9 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
         table = np.array([[rest for rest, _ in thin.solved(shapes, float(one))] for one in tried])
         least = table.min(axis=0)
         likely = np.argsort(thin.bic(least, shapes))[:MOST_POLISHED]
-        found = [full.polished(shapes[i], float(tried[np.argmin(table[:, i])])) for i in likely]
+        polished = [full.polished(shapes[i], float(tried[np.argmin(table[:, i])])) for i in likely]
     every = []
-    for rest, delay, shape, coefficients in found:
+    for rest, delay, shape, coefficients in polished:
         zeros = _pairs(coefficients, full.middle, order // 2)
         if zeros is not None:
             gain = float(coefficients[0]) / full.middle ** shape[0]

@@ -160,9 +160,9 @@ def score_covariance(line: FittedLines, inside: Complex, slopes: Complex) -> Rea
             )
             other_part += (upper @ shared.conj()) * (lower @ shared)
         below, above = scaled[:last], scaled[lag:]
-        found = (below.conj() * circular[:, None]).T @ above
-        found = found + (below.conj() * other_part[:, None]).T @ above.conj()
-        share = found.real / (2 * records)
+        covariance = (below.conj() * circular[:, None]).T @ above
+        covariance = covariance + (below.conj() * other_part[:, None]).T @ above.conj()
+        share = covariance.real / (2 * records)
         total += share if lag == 0 else share + share.T
     return total
 

@@ -143,13 +143,13 @@ def _from_peaks(problem: FitProblem, order: int) -> Iterator[Resonances]:
 def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
     """Return the likeliest functions over all choices of poles, the best first."""
     known: list[Complex] = []
-    found: list[tuple[float, Resonances]] = []
+    starts: list[tuple[float, Resonances]] = []
     for poles in choices:
         alike = (other for other in known if other.size == poles.size)
         if not any(np.all(abs(other - poles) < SAME * abs(poles)) for other in alike):
             known.append(poles)
-            found += over_poles(problem, poles, MOST_NUMERATORS)
-    for _, resonances in sorted(found, key=lambda one: one[0])[:MOST_STARTS]:
+            starts += over_poles(problem, poles, MOST_NUMERATORS)
+    for _, resonances in sorted(starts, key=lambda one: one[0])[:MOST_STARTS]:
         yield resonances
 
 
@@ -189,10 +189,10 @@ def best_of_starts(
             ):
                 refined = refine_directly(problem, refined.resonances, 2 * STEPS)
             failure = _failure(problem, refined, is_quick=is_quick)
-            found = Candidate(order, name if order else "none", start, refined, failure)
+            candidate = Candidate(order, name if order else "none", start, refined, failure)
             met.append(refined)
-            if best is None or _is_better(problem, found, best):
-                best = found
+            if best is None or _is_better(problem, candidate, best):
+                best = candidate
             if is_quick and best.refined.reduced > FAR_OFF:
                 break
             # Where the power of s is open, another may explain the lines as well.
@@ -273,14 +273,14 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
         """Try a number; return whether that settles it."""
         done = TRIED_SHARE * (order - first) / (last - first + 1)
         entered_budget().progress.report(done, f"fit with {order} poles to {thin.count} lines")
-        found = best_of_starts(thin, order, given.start, is_quick=modes is None)
-        if found is None:
+        candidate = best_of_starts(thin, order, given.start, is_quick=modes is None)
+        if candidate is None:
             return False
-        tried.append(found)
+        tried.append(candidate)
         if modes is not None:
-            resonances = found.refined.resonances
-            return int(resonances.in_band(*thin.band).sum()) == modes and _is_enough(thin, found)
-        return found.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # the data are exact
+            resonances = candidate.refined.resonances
+            return int(resonances.in_band(*thin.band).sum()) == modes and _is_enough(thin, candidate)
+        return candidate.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # the data are exact
 
     worse = 0
     for order in range(first, last + 1, 2):
@@ -308,12 +308,12 @@ def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
 
 def _is_weak(problem: FitProblem, refined: Refined) -> bool:
     """Return whether a gain, or the damping of a resonance, is lost in its own error: it fits noise."""
-    covariance, found = refined.covariance, refined.resonances
+    covariance, modes = refined.covariance, refined.resonances
     if covariance is None:
         return True
-    n, variances = found.count, np.diag(covariance)
-    gains = [variances[found.places(r, problem.free)["gain"]] for r in range(found.responses)]
-    dampings = np.sqrt(variances[n : 2 * n])[found.in_band(*problem.band)]
+    n, variances = modes.count, np.diag(covariance)
+    gains = [variances[modes.places(r, problem.free)["gain"]] for r in range(modes.responses)]
+    dampings = np.sqrt(variances[n : 2 * n])[modes.in_band(*problem.band)]
     return bool(np.any(dampings > WEAK) or not np.isfinite(gains).all())
 
 
@@ -329,12 +329,12 @@ def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate
     return any(_merit(problem, rival) < limit for rival in others)
 
 
-def _slope_in_band(problem: FitProblem, found: Resonances) -> Whole:
+def _slope_in_band(problem: FitProblem, modes: Resonances) -> Whole:
     """Return the powers of s that the band shows: poles and zeros far below it are such powers."""
     low = problem.band[0] / FAR_OUTSIDE
-    poles = 2 * np.sum(found.omega_p < low) + np.sum(found.real_p < low)
-    zeros = 2 * np.sum(np.abs(found.omega_z) < low, axis=1) + (np.abs(found.real_z) < low)
-    return np.asarray(found.slope + zeros - poles, np.int64)
+    poles = 2 * np.sum(modes.omega_p < low) + np.sum(modes.real_p < low)
+    zeros = 2 * np.sum(np.abs(modes.omega_z) < low, axis=1) + (np.abs(modes.real_z) < low)
+    return np.asarray(modes.slope + zeros - poles, np.int64)
 
 
 def _continued(
@@ -374,12 +374,12 @@ def _value(score: Score, criterion: str) -> float:
     return score.bic if criterion == "bic" else score.aicc
 
 
-def too_few(problem: FitProblem, count: int, found: int) -> str:
+def too_few(problem: FitProblem, count: int, reached: int) -> str:
     """Return what is said where no fit has as many resonances in the band as asked for."""
     low, high = (value / (2 * np.pi) for value in problem.band)
     over = " over the base" if problem.has_base else ""
     band = f"between {low:.4g} and {high:.4g} Hz"
-    return f"{count} resonances are asked for, and the best fit has {found}{over} {band}"
+    return f"{count} resonances are asked for, and the best fit has {reached}{over} {band}"
 
 
 def _nothing(problem: FitProblem) -> Candidate:
@@ -396,18 +396,18 @@ def _merit(problem: FitProblem, refined: Refined, correlation: float = 1.0) -> f
     size = 2 * problem.count / max(correlation, 1.0)
     fit = size * np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE)
     merit = float(fit + refined.parameters * np.log(size))
-    found = refined.resonances
-    return merit + STRANGE * strange(found.omega_z, found.zeta_z, found.real_z, *problem.band)
+    modes = refined.resonances
+    return merit + STRANGE * strange(modes.omega_z, modes.zeta_z, modes.real_z, *problem.band)
 
 
-def _is_better(problem: FitProblem, found: Candidate, best: Candidate) -> bool:
-    if (found.failure is None) != (best.failure is None):
-        failed, usable = (found, best) if best.failure is None else (best, found)
+def _is_better(problem: FitProblem, candidate: Candidate, best: Candidate) -> bool:
+    if (candidate.failure is None) != (best.failure is None):
+        failed, usable = (candidate, best) if best.failure is None else (best, candidate)
         is_far_worse = usable.refined.cost > FAR_BETTER * failed.refined.cost + NEGLIGIBLE * problem.count
-        return (found is usable) != is_far_worse
+        return (candidate is usable) != is_far_worse
     # What a model lacks makes its residuals correlated; the better one of the two shows the noise.
-    least = min(found.refined.correlation, best.refined.correlation)
-    return _merit(problem, found.refined, least) < _merit(problem, best.refined, least) - LOWER
+    least = min(candidate.refined.correlation, best.refined.correlation)
+    return _merit(problem, candidate.refined, least) < _merit(problem, best.refined, least) - LOWER
 
 
 def _better_of(
@@ -416,8 +416,8 @@ def _better_of(
     """Return where another start leads, if that is better than the fit so far."""
     refined = refine_directly(problem, start, *(QUICK if is_quick else THOROUGH))
     failure = _failure(problem, refined, is_quick=is_quick)
-    found = replace(best, order=start.order, refined=refined, failure=failure)
-    return found if _is_better(problem, found, best) else best
+    candidate = replace(best, order=start.order, refined=refined, failure=failure)
+    return candidate if _is_better(problem, candidate, best) else best
 
 
 def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Candidate:

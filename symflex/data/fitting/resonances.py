@@ -195,11 +195,11 @@ class Resonances:
         n = int(self.has_zeros[response].sum())
         sizes = {"omega_z": n, "zeta_z": n, "real_z": int(np.isfinite(self.real_z[response]))}
         sizes |= {"gain": int(free.gain), "lag": int(free.lag), "delay": int(free.delay)}
-        found = {}
+        slices = {}
         for name, size in sizes.items():
-            found[name] = slice(at, at + size)
+            slices[name] = slice(at, at + size)
             at += size
-        return found
+        return slices
 
     def own_places(self, free: Free) -> Iterator[tuple[str, tuple[int, Mask] | slice, slice]]:
         """Yield for every response its parameters: name, place in the array of it, place in the vector."""
@@ -250,23 +250,23 @@ class Resonances:
     def log_derivatives(self, response: int, omega: Real, free: Free) -> Complex:
         """Return d ln(factor) by the packed parameters that :meth:`columns` names, shape (k, p)."""
         n, shared = self.count, self.shared()
-        found = np.zeros((omega.size, shared + self._own(response, free)), dtype=np.complex128)
+        slopes = np.zeros((omega.size, shared + self._own(response, free)), dtype=np.complex128)
         places = self.places(response, free)
         first = places["omega_z"].start - shared
         at = {name: slice(one.start - first, one.stop - first) for name, one in places.items()}
         s = 1j * omega[:, None]
         for i in range(n):
             by_omega, by_zeta = _log_slopes(omega, self.omega_p[i], self.zeta_p[i])
-            found[:, i], found[:, n + i] = -by_omega, -by_zeta * self.zeta_p[i]
-        found[:, 2 * n : shared] = s / (self.real_p + s)
+            slopes[:, i], slopes[:, n + i] = -by_omega, -by_zeta * self.zeta_p[i]
+        slopes[:, 2 * n : shared] = s / (self.real_p + s)
         for k, i in enumerate(np.flatnonzero(self.has_zeros[response]).tolist()):
             by_omega, by_zeta = _log_slopes(omega, self.omega_z[response, i], self.zeta_z[response, i])
-            found[:, at["omega_z"].start + k], found[:, at["zeta_z"].start + k] = by_omega, by_zeta
-        found[:, at["real_z"]] = -s / (self.real_z[response] + s)
-        found[:, at["gain"]] = 1
-        found[:, at["lag"]] = -MILLISECOND * s / (1 + s * abs(self.lag[response]))
-        found[:, at["delay"]] = -MILLISECOND * s
-        return found
+            slopes[:, at["omega_z"].start + k], slopes[:, at["zeta_z"].start + k] = by_omega, by_zeta
+        slopes[:, at["real_z"]] = -s / (self.real_z[response] + s)
+        slopes[:, at["gain"]] = 1
+        slopes[:, at["lag"]] = -MILLISECOND * s / (1 + s * abs(self.lag[response]))
+        slopes[:, at["delay"]] = -MILLISECOND * s
+        return slopes
 
 
 def _quadratic(omega: Real, centre: float, zeta: float) -> Complex:

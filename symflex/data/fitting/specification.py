@@ -37,16 +37,16 @@ COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields"
 """Sections of a base that are copied; its outputs are multiplied, and its figures show another model."""
 
 
-def fit_specification(found: ResonanceFit, folder: str | Path, loop: str | None = None) -> str:
+def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = None) -> str:
     """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name.
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
     stand for is referred to; any other, and one that does not stand at or below the folder, is copied. SF617
     where neither way gives a specification that is accepted.
     """
-    bases = tuple(dict.fromkeys(Path(base.path) for base in found.bases if base.path))
-    allowed = tuple(place for base in found.bases for place in base.folders)
-    taken = {name for base in found.bases for name in base.taken}
+    bases = tuple(dict.fromkeys(Path(base.path) for base in fit.bases if base.path))
+    allowed = tuple(place for base in fit.bases for place in base.folders)
+    taken = {name for base in fit.bases for name in base.taken}
     ways: list[Mapping[str, object] | None] = [None]
     if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
         message = f"'{loop[:64]}' is not a valid name for the gain of a loop"
@@ -54,14 +54,14 @@ def fit_specification(found: ResonanceFit, folder: str | Path, loop: str | None 
     if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])
         whole = tomllib.loads(source.text, parse_float=Decimal)
-        own = found.bases[0].tf.split("/")[1]
+        own = fit.bases[0].tf.split("/")[1]
         # Other inputs of the base are left out, unless something there needs them.
         ways += [whole | {"inputs": {own: whole["inputs"][own]}}, whole]
         words = taken | set(re.findall(r"\w+", source.text))
     # A file that needs --allow-outside is the last resort: where the base itself needs it.
     for outside in ((), allowed):
         for copied in ways:
-            text = _written(found, folder, taken if copied is None else words, copied, loop)
+            text = _written(fit, folder, taken if copied is None else words, copied, loop)
             try:
                 model = load_with(Source(str(Path(folder) / "fitted.toml"), text), {}, allow_outside=outside)
                 check_solvable(assemble(model))
@@ -87,20 +87,20 @@ def _written(
     they mean something else. The base is ``copied`` as nested values, or referred to by a ``model`` block
     from the folder.
     """
-    found, errors = fit.resonances, fit.standard_errors()
+    modes, errors = fit.resonances, fit.standard_errors()
     prefix = _prefix(taken)
     outputs = _output_names(fit)
     source_name = fit.bases[0].tf.partition("/")[2] or _ends(fit.measured[0].name)[1]
     parameters: dict[str, object] = {}
     blocks: dict[str, object] = {}
     expressions: dict[str, object] = {}
-    several = found.responses > 1
+    several = modes.responses > 1
     used = {source_name, *outputs, *taken}
-    for i in range(found.count):
+    for i in range(modes.count):
         name = f"{prefix}omega_p{i + 1}"
         what = f"pole pair {i + 1}" + ("" if fit.modes[i] else ", a residual term")
-        parameters[name] = _frequency(found.omega_p[i], errors.omega_p[i], what)
-        parameters[f"{prefix}zeta_p{i + 1}"] = _ratio(found.zeta_p[i], errors.zeta_p[i])
+        parameters[name] = _frequency(modes.omega_p[i], errors.omega_p[i], what)
+        parameters[f"{prefix}zeta_p{i + 1}"] = _ratio(modes.zeta_p[i], errors.zeta_p[i])
     for r, output in enumerate(outputs):
         base = fit.bases[r]
         names = _Names(prefix, f"_{output}" if several else "", used)
@@ -112,9 +112,9 @@ def _written(
         if fit.problem.free.gain:
             parts.append(names.parameter("c_fit"))
             doc = f"gain, {_said_error(errors.gain[r])}"
-            value: object = _exact(found.gain[r])
+            value: object = _exact(modes.gain[r])
             if not base.path and (unit := fit.measured[r].unit) not in ("", "1"):
-                value = f"{found.gain[r]:.{DIGITS}g} ({unit})" + (f"*s^({base.slope})" if base.slope else "")
+                value = f"{modes.gain[r]:.{DIGITS}g} ({unit})" + (f"*s^({base.slope})" if base.slope else "")
             parameters[parts[-1]] = {"value": value, "assume": "real", "doc": doc}
         for own, more, factors in (_pairs(fit, r, errors, names), _beside(fit, r, errors, names)):
             parameters |= own
@@ -175,17 +175,17 @@ def _pairs(
     fit: ResonanceFit, response: int, errors: Resonances, names: _Names
 ) -> tuple[dict[str, object], dict[str, object], list[str]]:
     """Return parameters of the pairs of zeros, blocks of the resonances, and both as factors."""
-    found = fit.resonances
+    modes = fit.resonances
     parameters: dict[str, object] = {}
     blocks: dict[str, object] = {}
     factors: list[str] = []
-    for i in range(found.count):
-        omega_z, block, pair = found.omega_z[response, i], names.block(f"R_{i + 1}"), names.pair(i + 1)
+    for i in range(modes.count):
+        omega_z, block, pair = modes.omega_z[response, i], names.block(f"R_{i + 1}"), names.pair(i + 1)
         if np.isfinite(omega_z):
             where = f"zero pair {i + 1}" + (f" of {names.tail[1:]}" if names.tail else "")
             where = where if omega_z > 0 else f"real zeros of opposite sign, {where}"
             parameters[pair["omega_z"]] = _frequency(abs(omega_z), errors.omega_z[response, i], where)
-            parameters[pair["zeta_z"]] = _ratio(found.zeta_z[response, i], errors.zeta_z[response, i])
+            parameters[pair["zeta_z"]] = _ratio(modes.zeta_z[response, i], errors.zeta_z[response, i])
         if omega_z < 0:  # two real zeros of opposite sign, whose frequency is in Hz
             omega, zeta = f"(2*pi*{pair['omega_z']})", pair["zeta_z"]
             factors.append(f"(1 + 2*{zeta}*s/{omega} - s^2/{omega}^2)")
@@ -199,15 +199,15 @@ def _single(
     fit: ResonanceFit, response: int, errors: Resonances, names: _Names
 ) -> tuple[dict[str, object], list[str]]:
     """Return parameters and factors of the single real pole and the single real zero."""
-    found = fit.resonances
+    modes = fit.resonances
     parameters: dict[str, object] = {}
     factors: list[str] = []
-    corner = found.real_z[response]
+    corner = modes.real_z[response]
     if np.isfinite(corner):
         name = names.parameter("omega_s")
         parameters[name] = _frequency(abs(corner), errors.real_z[response], "real zero")
         factors.append(f"(1 {'+' if corner > 0 else '-'} s/(2*pi*{name}))")
-    for pole, error in zip(found.real_p, errors.real_p, strict=True):
+    for pole, error in zip(modes.real_p, errors.real_p, strict=True):
         name = f"{names.prefix}omega_r"
         parameters[name] = _frequency(pole, error, "real pole")
         factors.append(f"(1/(1 + s/(2*pi*{name})))")
@@ -220,15 +220,15 @@ def _beside(
     """Return parameters, blocks and factors of what stands beside the pairs, lag and dead time among it."""
     parameters, factors = _single(fit, response, errors, names)
     blocks: dict[str, object] = {}
-    found = fit.resonances
+    modes = fit.resonances
     if fit.problem.free.lag:
-        name, value = names.parameter("T_sensor"), found.lag[response]
+        name, value = names.parameter("T_sensor"), modes.lag[response]
         parameters[name] = _time(value, errors.lag[response], "lag of the sensor")
         ends = ("0", name) if value >= 0 else (name, "0")
         blocks[names.block("L_sensor")] = {"type": "lead_lag", "T_1": ends[0], "T_2": ends[1]}
     if fit.problem.free.delay:
         name = names.parameter("T_dead")
-        parameters[name] = _time(found.delay[response], errors.delay[response], "dead time")
+        parameters[name] = _time(modes.delay[response], errors.delay[response], "dead time")
         blocks[names.block("D_dead")] = {"type": "delay", "T": name}
     return parameters, blocks, [*factors, *blocks]
 
@@ -262,7 +262,7 @@ def _with_copy(
     sections: dict[str, object], copied: Mapping[str, object], origin: Path, folder: str | Path
 ) -> dict[str, object]:
     """Return the sections of a fit with those of its base, whose files are named from a new folder."""
-    found = dict(sections)
+    merged = dict(sections)
     for name in COPIED:
         section = copied.get(name)
         if not isinstance(section, dict):
@@ -271,9 +271,9 @@ def _with_copy(
         for key, entry in section.items():
             if name == "blocks" and isinstance(entry, dict) and entry.get("type") == "model":
                 entries[key] = entry | {"spec": _relative(origin / str(entry["spec"]), folder)}
-        own = found.get(name)
-        found[name] = (own if isinstance(own, dict) else {}) | entries
-    return found | {"inputs": copied["inputs"]}
+        own = merged.get(name)
+        merged[name] = (own if isinstance(own, dict) else {}) | entries
+    return merged | {"inputs": copied["inputs"]}
 
 
 def _relative(path: str | Path, folder: str | Path) -> str:
@@ -343,8 +343,8 @@ def _output_names(fit: ResonanceFit) -> list[str]:
 
 
 def _free(name: str, taken: Collection[str]) -> str:
-    number, found = 1, name
-    while found in taken:
+    number, free = 1, name
+    while free in taken:
         number += 1
-        found = f"{name}_{number}"
-    return found
+        free = f"{name}_{number}"
+    return free

@@ -44,17 +44,17 @@ def stabilisation(fit: ResonanceFit) -> list[StablePoles]:
     thin = fit.problem.thinned(max(MOST_LINES // len(fit.problem.lines), 1))
     low, high = thin.band
     most = min(2 * max(FEWEST_ORDERS, fit.resonances.count + MORE_ORDERS), MOST_ORDER)
-    found: list[StablePoles] = []
+    orders: list[StablePoles] = []
     for order in range(2, most + 1, 2):
         poles = relocated(thin, spread(low, high, order))
         poles = poles[(poles.imag > 0) & (np.abs(poles) >= low) & (np.abs(poles) <= high)]
         poles = poles[np.argsort(np.abs(poles))]
         hertz, damping = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
         stable = np.zeros(poles.size, dtype=bool)
-        if found:
-            before = found[-1]
+        if orders:
+            before = orders[-1]
             near = np.abs(hertz[:, None] / before.frequency_hz - 1) < SAME_FREQUENCY
             alike = np.abs(damping[:, None] / before.damping_ratio - 1) < SAME_DAMPING
             stable = np.any(near & alike, axis=1)
-        found.append(StablePoles(order, hertz, damping, stable))
-    return found
+        orders.append(StablePoles(order, hertz, damping, stable))
+    return orders

@@ -86,8 +86,8 @@ def find_modes(problem: FitProblem) -> list[int]:
     level = np.log(np.abs(problem.lines[0].ratio))
     noise = _noise(level)
     smooth = _smoothed(level)
-    peaks, found = find_peaks(smooth, prominence=max(LEAST_PROMINENCE, NOISE_MULTIPLE * noise))
-    return [int(peaks[i]) for i in np.argsort(-found["prominences"], kind="stable")]
+    peaks, about_peaks = find_peaks(smooth, prominence=max(LEAST_PROMINENCE, NOISE_MULTIPLE * noise))
+    return [int(peaks[i]) for i in np.argsort(-about_peaks["prominences"], kind="stable")]
 
 
 def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
@@ -95,14 +95,14 @@ def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
 
     Several responses share the peaks of the first; each has its own troughs.
     """
-    found = find_modes(problem)[:count]
-    while len(found) < count:
+    chosen = find_modes(problem)[:count]
+    while len(chosen) < count:
         # A shoulder becomes a peak when the modes found so far are divided out.
-        more = _hidden_peak(problem, sorted(found))
+        more = _hidden_peak(problem, sorted(chosen))
         if more is None:
             return None
-        found.append(more)
-    fitted = [_one_response(problem, r, sorted(found)) for r in range(len(problem.lines))]
+        chosen.append(more)
+    fitted = [_one_response(problem, r, sorted(chosen)) for r in range(len(problem.lines))]
     table = np.array([modes for modes, _ in fitted], np.float64)
     gains = np.array([gain for _, gain in fitted])
     omega_p, zeta_p = table[0, :, 0], table[0, :, 1]
@@ -117,8 +117,8 @@ def _hidden_peak(problem: FitProblem, peaks: list[int]) -> int | None:
     line = problem.lines[0]
     level = np.log(np.abs(line.ratio / Resonances.of(modes, gain).factor(0, line.omega)))
     noise = NOISE_MULTIPLE * _noise(level)
-    places, found = find_peaks(_smoothed(level), prominence=max(LEAST_PROMINENCE, noise))
-    for i in np.argsort(-found["prominences"], kind="stable"):
+    places, about_peaks = find_peaks(_smoothed(level), prominence=max(LEAST_PROMINENCE, noise))
+    for i in np.argsort(-about_peaks["prominences"], kind="stable"):
         if min(abs(int(places[i]) - peak) for peak in peaks) > APART:
             return int(places[i])
     return None
@@ -205,12 +205,12 @@ def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
     low, high = problem.band
     if not order:
         return [np.zeros(0, np.complex128)]
-    found = [relocated(problem, spread(low, high, order))]
+    relocations = [relocated(problem, spread(low, high, order))]
     generous = relocated(problem, spread(low, high, order + 2 * SPARE), GENEROUS)
-    found.append(relocated(problem, _conspicuous(problem, generous, order)))
+    relocations.append(relocated(problem, _conspicuous(problem, generous, order)))
     if len(problem.slopes) > 1:
-        found.append(relocated(problem, spread(low, high, order), powers=FEW_POWERS))
-    return found
+        relocations.append(relocated(problem, spread(low, high, order), powers=FEW_POWERS))
+    return relocations
 
 
 def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
@@ -395,8 +395,8 @@ def _upper(roots: Complex) -> Complex:
     pairs = roots[~is_real & (roots.imag > 0)]
     damped = np.maximum(np.abs(pairs.real), LOWEST_DAMPING * np.abs(pairs))
     real = np.maximum(np.abs(roots[is_real].real), REAL * scale)
-    found = np.concatenate((-damped + 1j * pairs.imag, -real.astype(np.complex128)))
-    return found[np.argsort(np.abs(found), kind="stable")]
+    poles = np.concatenate((-damped + 1j * pairs.imag, -real.astype(np.complex128)))
+    return poles[np.argsort(np.abs(poles), kind="stable")]
 
 
 def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, complex]]:
@@ -426,7 +426,7 @@ def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, c
     left = np.zeros((size + 1, size + 1), dtype=np.complex128)
     left[0, 1:], left[1:, 0] = weights, 1
     left[1:, 1:] = np.diag(support)
-    found = []
+    poles = []
     for pole in eig(left, right, right=False):
         if not np.isfinite(pole) or pole.imag <= 0:
             continue
@@ -434,8 +434,8 @@ def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, c
         with np.errstate(all="ignore"):  # data that an approximant meets exactly leave poles on its points
             residue = np.sum(weights * at / away) / np.sum(-weights / away**2)
         if np.isfinite(residue):
-            found.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
-    return found
+            poles.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
+    return poles
 
 
 # ------------------------------------------------------------------ with which dead time
@@ -445,11 +445,11 @@ def with_delays(problem: FitProblem, count: int | None) -> FitProblem:
     """Return the problem with the dead time of each response to begin with, where they are free."""
     if not problem.free.delay:
         return problem
-    found = []
+    delays = []
     for r in range(len(problem.lines)):
         single = replace(problem, lines=problem.lines[r : r + 1], delays=(0.0,)).without_window()
-        found.append(_delay(single, count or max(len(find_modes(single)), 1)))
-    return replace(problem, delays=tuple(found))
+        delays.append(_delay(single, count or max(len(find_modes(single)), 1)))
+    return replace(problem, delays=tuple(delays))
 
 
 def _delay(single: FitProblem, count: int) -> float:

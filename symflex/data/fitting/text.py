@@ -35,7 +35,7 @@ def fit_html(fit: ResonanceFit) -> str:
 
 
 def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Passage]:
-    found, errors = fit.resonances, fit.standard_errors()
+    modes, errors = fit.resonances, fit.standard_errors()
     lines = [f"POOR FIT: {reason}" for reason in fit.poor]
     for r, measured in enumerate(fit.measured):
         lines.append(f"{measured.name}   {_what(fit, r)}")
@@ -43,18 +43,18 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
             lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
         lines.append(INDENT + _data_line(fit, r))
     yield Passage([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
-    poles = list(zip(found.omega_p, errors.omega_p, found.zeta_p, errors.zeta_p, strict=True))
+    poles = list(zip(modes.omega_p, errors.omega_p, modes.zeta_p, errors.zeta_p, strict=True))
     rows = [_row(str(k), *poles[i]) for k, i in enumerate(np.flatnonzero(fit.modes), 1)]
     none = "" if rows else ": no resonance in the band"
     yield Passage([f"{INDENT}poles{none}"], [HEAD, *rows] if rows else ())
     rows = _residual_terms(fit)
     if rows:
         yield Passage([f"{INDENT}residual terms: poles that are no resonances in the band"], [HEAD, *rows])
-    for r in range(found.responses):
+    for r in range(modes.responses):
         yield _zeros(fit, r)
     if shapes is not None:
         yield _shapes(shapes)
-    misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(found.responses)]
+    misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
     residuals = [
         f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB and {turn:.2g} degrees rms"
         for r, (level, turn) in enumerate(misfits)
@@ -69,20 +69,20 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
 
 def _zeros(fit: ResonanceFit, r: int) -> Passage:
     """Return the zeros of a response, and what else of it is fitted."""
-    found, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
+    modes, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
     lines = [f"{INDENT}zeros{fit.of_response(r)}"]
     if free.gain:
-        lines.append(f"{INDENT}gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+        lines.append(f"{INDENT}gain {modes.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
     if free.lag:
-        lines.append(f"{INDENT}lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+        lines.append(f"{INDENT}lag of the sensor {modes.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
     if free.delay:
-        lines.append(f"{INDENT}dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+        lines.append(f"{INDENT}dead time {modes.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
     rows = [
-        _row(str(i + 1), found.omega_z[r, i], errors.omega_z[r, i], found.zeta_z[r, i], errors.zeta_z[r, i])
-        for i in np.flatnonzero(found.has_zeros[r]).tolist()
+        _row(str(i + 1), modes.omega_z[r, i], errors.omega_z[r, i], modes.zeta_z[r, i], errors.zeta_z[r, i])
+        for i in np.flatnonzero(modes.has_zeros[r]).tolist()
     ]
-    if np.isfinite(found.real_z[r]):
-        corner, error = found.real_z[r] / (2 * pi), errors.real_z[r] / (2 * pi)
+    if np.isfinite(modes.real_z[r]):
+        corner, error = modes.real_z[r] / (2 * pi), errors.real_z[r] / (2 * pi)
         side = "real" if corner > 0 else "real, right half"
         rows.append(("", _shown(abs(corner), error), _error(error), "", "", side))
     if not rows:
@@ -92,13 +92,13 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
 
 def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
     """Return rows of the pole pairs outside the band, and of the real poles."""
-    found, errors = fit.resonances, fit.standard_errors()
+    modes, errors = fit.resonances, fit.standard_errors()
     low, high = fit.problem.band
     rows = []
-    for i in np.flatnonzero(~fit.modes & (found.zeta_p < 1)).tolist():
-        row = _row("", found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
-        place = "below the band" if found.omega_p[i] < low else "above the band"
-        rows.append((*row[:-1], "no peak" if low <= found.omega_p[i] <= high else place))
+    for i in np.flatnonzero(~fit.modes & (modes.zeta_p < 1)).tolist():
+        row = _row("", modes.omega_p[i], errors.omega_p[i], modes.zeta_p[i], errors.zeta_p[i])
+        place = "below the band" if modes.omega_p[i] < low else "above the band"
+        rows.append((*row[:-1], "no peak" if low <= modes.omega_p[i] <= high else place))
     for corner, error in fit.real_poles():
         hertz, hertz_error = corner / (2 * pi), error / (2 * pi)
         rows.append(("", _shown(hertz, hertz_error), _error(hertz_error), "", "", "real"))
@@ -144,7 +144,7 @@ def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
 
 def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
     """Return the document ``symflex fit --json`` prints."""
-    found = fit.resonances
+    modes = fit.resonances
     return {
         "schema": SCHEMA,
         "modes": int(fit.modes.sum()),
@@ -155,9 +155,9 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
         "poor": bool(fit.poor),
         "poor_because": list(fit.poor),
         "poles": _poles(fit, fit.modes),
-        "residual_poles": _poles(fit, ~fit.modes & (found.zeta_p < 1)),
+        "residual_poles": _poles(fit, ~fit.modes & (modes.zeta_p < 1)),
         "real_poles": [_real(corner, error) for corner, error in fit.real_poles()],
-        "responses": [_response_json(fit, r) for r in range(found.responses)],
+        "responses": [_response_json(fit, r) for r in range(modes.responses)],
         "residual": {
             "reduced": fit.refined.reduced,
             "in_units_of_coherence_noise": _is_scaled(fit),
@@ -177,12 +177,12 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
 
 def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
     measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
-    found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
-    shown = found.has_zeros[r]
-    omega = found.omega_z[r, shown]
+    modes, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
+    shown = modes.has_zeros[r]
+    omega = modes.omega_z[r, shown]
     parts = (start.omega_p, start.zeta_p, start.omega_z[r], start.zeta_z[r])
     begun = zip(*(part.tolist() for part in parts), strict=True)
-    zeros = _pairs(np.abs(omega), found.zeta_z[r, shown], errors.omega_z[r, shown], errors.zeta_z[r, shown])
+    zeros = _pairs(np.abs(omega), modes.zeta_z[r, shown], errors.omega_z[r, shown], errors.zeta_z[r, shown])
     return {
         "name": measured.name,
         "synthetic": measured.is_synthetic,
@@ -194,11 +194,11 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "unit": measured.unit,
         "base": {"spec": base.path, "tf": base.tf} if base.path else None,
         "slope": None if base.path else base.slope,
-        "gain": {"value": float(found.gain[r]), "standard_error": _finite(float(errors.gain[r]))},
-        "lag": {"value": float(found.lag[r]), "standard_error": _finite(float(errors.lag[r]))},
-        "delay": {"value": float(found.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
+        "gain": {"value": float(modes.gain[r]), "standard_error": _finite(float(errors.gain[r]))},
+        "lag": {"value": float(modes.lag[r]), "standard_error": _finite(float(errors.lag[r]))},
+        "delay": {"value": float(modes.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
         "zeros": [p | {"real_of_opposite_sign": bool(w < 0)} for p, w in zip(zeros, omega, strict=True)],
-        "real_zeros": [_real(found.real_z[r], errors.real_z[r])] if np.isfinite(found.real_z[r]) else [],
+        "real_zeros": [_real(modes.real_z[r], errors.real_z[r])] if np.isfinite(modes.real_z[r]) else [],
         "start": [{"omega_p": p, "zeta_p": x, "omega_z": _finite(z), "zeta_z": y} for p, x, z, y in begun],
         "residual_db": fit.misfit_db(r),
         "residual_degrees": fit.misfit_degrees(r),
@@ -213,8 +213,8 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
 
 
 def _poles(fit: ResonanceFit, which: np.ndarray) -> list[dict[str, object]]:
-    found, errors = fit.resonances, fit.standard_errors()
-    return _pairs(*(one[which] for one in (found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p)))
+    modes, errors = fit.resonances, fit.standard_errors()
+    return _pairs(*(one[which] for one in (modes.omega_p, modes.zeta_p, errors.omega_p, errors.zeta_p)))
 
 
 def _real(corner: float, error: float) -> dict[str, object]:

@@ -208,7 +208,7 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
     records = reader.integer("i4")
     dimensions = [(_name(reader), reader.integer("i4")) for _ in range(_count(reader, _DIMENSION, items))]
     attributes = _attributes(reader, items)
-    found: dict[str, Variable] = {}
+    variables: dict[str, Variable] = {}
     left = len(data)
     for _ in range(_count(reader, _VARIABLE, items)):
         name = _name(reader)
@@ -226,8 +226,8 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
         values = body.numbers(kind, shape)
         left -= values.nbytes
         require(left >= 0, "variables overlap")
-        found[name] = tuple(dimensions[number][0] for number in numbers), values, about
-    return attributes, found
+        variables[name] = tuple(dimensions[number][0] for number in numbers), values, about
+    return attributes, variables
 
 
 def _checked(count: int, items: int) -> int:
@@ -237,8 +237,8 @@ def _checked(count: int, items: int) -> int:
 
 
 def _count(reader: ByteReader, tag: int, items: int) -> int:
-    found, count = reader.integer("i4"), reader.integer("i4")
-    require(found == tag or (found, count) == (_ABSENT, 0), f"a list of kind {found}")
+    tag_read, count = reader.integer("i4"), reader.integer("i4")
+    require(tag_read == tag or (tag_read, count) == (_ABSENT, 0), f"a list of kind {tag_read}")
     return _checked(count, items)
 
 
@@ -256,14 +256,14 @@ def _type(reader: ByteReader) -> str:
 
 def _attributes(reader: ByteReader, items: int) -> Attributes:
     """Return attributes as text."""
-    found: Attributes = {}
+    entries: Attributes = {}
     for _ in range(_count(reader, _ATTRIBUTE, items)):
         name, kind = _name(reader), _type(reader)
         values = reader.numbers(kind, (reader.integer("i4"),))
         reader.align(4)
         is_text = kind == _TYPES[_TEXT]
-        found[name] = values.tobytes().decode("utf-8") if is_text else " ".join(map(str, values.tolist()))
-    return found
+        entries[name] = values.tobytes().decode("utf-8") if is_text else " ".join(map(str, values.tolist()))
+    return entries
 
 
 _HEADER, _VERSION, _VERSION_5, _VERSION_7_3 = 128, 124, 1, 2
@@ -318,10 +318,10 @@ def read_variables(data: bytes, limit: int) -> Arrays:
         raise NewerFileError
     require(version == _VERSION_5, f"unknown version {version}")
     reader = ByteReader(memoryview(data)[_HEADER:], order)
-    found: Arrays = {}
+    variables: Arrays = {}
     for _ in range(VARIABLES_LIMIT + 1):
         if not reader.left:
-            return found
+            return variables
         kind, content = _element(reader)
         if kind == _COMPRESSED:
             stream = zlib.decompressobj()
@@ -333,8 +333,8 @@ def read_variables(data: bytes, limit: int) -> Arrays:
             kind, content = _element(ByteReader(inflated, order))
         if kind == _MATRIX:
             name, values = _matrix(ByteReader(content, order), DEEPEST)
-            found |= {name + key: value for key, value in values.items()}
-            if len(found) > VARIABLES_LIMIT:
+            variables |= {name + key: value for key, value in values.items()}
+            if len(variables) > VARIABLES_LIMIT:
                 raise OverflowError
     raise OverflowError
 
@@ -449,12 +449,12 @@ def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.
 
 
 def _version_4(data: bytes) -> Arrays:
-    found: Arrays = {}
+    variables: Arrays = {}
     order = "<" if int.from_bytes(data[:4], "little") <= _LAST_MOPT else ">"
     reader = ByteReader(data, order)
     for _ in range(VARIABLES_LIMIT + 1):
         if not reader.left:
-            return found
+            return variables
         mopt, rows, columns, is_complex, length = (reader.integer("i4") for _ in range(5))
         kind, text = mopt // 10 % 10, mopt % 10
         is_header = 0 <= mopt <= _LAST_MOPT and kind < len(_STORED_4) and length >= 1
@@ -471,7 +471,7 @@ def _version_4(data: bytes) -> Arrays:
             is_character = (values.real >= 0) & (values.real < SURROGATES[0])
             codes = np.where(is_character, values.real, ord("?")).astype(np.uint32)
             lines = ["".join(map(chr, row)).rstrip(" \0") for row in codes.tolist()]
-            found[name] = np.squeeze(np.array(lines))
+            variables[name] = np.squeeze(np.array(lines))
         else:
-            found[name] = _OTHER if text else np.squeeze(values)
+            variables[name] = _OTHER if text else np.squeeze(values)
     raise OverflowError

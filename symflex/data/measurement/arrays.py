@@ -84,14 +84,14 @@ def format_of(name: str, data: bytes) -> str:
 
 def _octave_variables(data: bytes) -> Arrays:
     """Return the scalars, vectors and matrices of a text; ValueError where one is cut short."""
-    text, found = data.decode("utf-8", "replace").replace("\r\n", "\n") + "\n", {}
+    text, variables = data.decode("utf-8", "replace").replace("\r\n", "\n") + "\n", {}
     for name, columns, body in _OCTAVE_VARIABLE.findall(text):
         numbers = [number(cell) for cell in body.split()]
         require(None not in numbers, f"{name[:40]} holds what is not a number")
         width = int(columns or 1)
         require(width > 0 and len(numbers) % width == 0, f"{name[:40]} is cut short")
-        found[name] = np.array(numbers).reshape(-1, width).squeeze()
-    return found
+        variables[name] = np.array(numbers).reshape(-1, width).squeeze()
+    return variables
 
 
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
@@ -171,26 +171,26 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
         scope, _, last = key.rpartition(".")
         scopes.setdefault(scope, {})[last.lower()] = array
     holding = [scope for scope, own in scopes.items() if _has_values(own)]
-    found: list[MeasuredResponse] = []
+    responses: list[MeasuredResponse] = []
     for scope in holding:
         parts = scope.split(".") if scope else []
         known: dict[str, Array] = {}
         for outer in (scopes.get(".".join(parts[:depth]), {}) for depth in range(len(parts))):
             known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
-        found += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
-    return tuple(found) if found else _from_unknown(arrays, name, stem)
+        responses += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
+    return tuple(responses) if responses else _from_unknown(arrays, name, stem)
 
 
 def _with_axes(arrays: Arrays) -> Arrays:
     """Return arrays with the frequencies that structures of Testlab tell by start and increment."""
-    found = dict(arrays)
+    with_axes = dict(arrays)
     for stem in [key.removesuffix(".x_values.increment") for key in arrays if key.endswith(".increment")]:
         parts = ("x_values.start_value", "x_values.increment", "y_values.values")
         start, step, values = (arrays.get(f"{stem}.{part}", np.empty(0)) for part in parts)
         if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
             lines = start.item() + step.item() * np.arange(max(values.shape))
-            found[f"{stem}.y_values.frequency_hz"] = lines
-    return found
+            with_axes[f"{stem}.y_values.frequency_hz"] = lines
+    return with_axes
 
 
 def _meaning(key: str) -> ColumnMeaning:
@@ -206,7 +206,7 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
     """Return the arrays that ``f=freq,h=G`` names; SF902 where there is none, or the left side is unknown."""
     words = {"f": "frequency_hz", "omega": "omega", "w": "omega", "h": "values", "coh": "coherence"}
     known = {*words, "re", "im", "mag", "mag_db", "phase", "phase_deg", "phase_rad"}
-    found: dict[str, Array] = {}
+    renamed: dict[str, Array] = {}
     for part in asked.split(","):
         kind, _, key = (text.strip() for text in part.partition("="))
         if kind not in known or key not in arrays:
@@ -215,8 +215,8 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
             names = listed_names(list(arrays))
             hint = f"the names left of '=' are {', '.join(sorted(known))}; those right of it are {names}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
-        found[words.get(kind, kind)] = arrays[key]
-    return found
+        renamed[words.get(kind, kind)] = arrays[key]
+    return renamed
 
 
 def _has_values(own: Arrays) -> bool:
@@ -275,14 +275,14 @@ def _responses(
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(made):
         names = names_of(made, stem)
-    found = []
+    responses = []
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
             called, one.frequency_hz, one.values, one.coherence, averages, window, unit, is_synthetic,
             notes, tuple(guesses),
         )  # fmt: skip
-        found.append(checked_response(response, name, lambda *_: None))
-    return found
+        responses.append(checked_response(response, name, lambda *_: None))
+    return responses
 
 
 def matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
@@ -361,8 +361,8 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         guesses.append(f"'{f}' is read as the frequency in {unit}, in which its ends are round numbers")
         key = "frequency_hz" if unit == "Hz" else "omega"
     shares = {k.lower(): a for k, a in arrays.items() if _meaning(k.lower()).kind == "coherence"}
-    found = _from_scope(shares | {key: arrays[f], "values": arrays[h]}, name, stem)
-    return tuple(replace(one, guesses=(*guesses, *one.guesses)) for one in found)
+    responses = _from_scope(shares | {key: arrays[f], "values": arrays[h]}, name, stem)
+    return tuple(replace(one, guesses=(*guesses, *one.guesses)) for one in responses)
 
 
 def _ask_unit(what: str, name: str, in_hz: str, in_rad: str) -> DataError:

@@ -237,24 +237,24 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         kind = "magnitude"
     if kind == "magnitude" and not unit and {"abs", "lin", "linear"} & set(words):
         unit = "lin"
-    found = ColumnMeaning(kind, label=label, unit=unit, word=word)
-    return _with_unit(found, unit, sign, "log" in words or low.startswith("log"))
+    meaning = ColumnMeaning(kind, label=label, unit=unit, word=word)
+    return _with_unit(meaning, unit, sign, "log" in words or low.startswith("log"))
 
 
-def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
+def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
     small = unit.lower().rstrip(".")
-    if found.kind in ("frequency", "omega"):
-        own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
-        is_angular = small == "rad" or (found.kind == "omega" and small in ("1/s", "s^-1"))
+    if column.kind in ("frequency", "omega"):
+        own = "rad/s" if column.kind == "omega" else column.word if column.word in _FREQUENCY_UNITS else ""
+        is_angular = small == "rad" or (column.kind == "omega" and small in ("1/s", "s^-1"))
         factor = 1e-3 if unit == "mHz" else _FREQUENCY_UNITS.get("rad/s" if is_angular else small or own)
-        return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
-    if found.kind == "phase":
+        return replace(column, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
+    if column.kind == "phase":
         factor = _PHASE_UNITS.get(small)
-        return replace(found, factor=None if factor is None else sign * factor)
-    if found.kind == "magnitude":
-        is_level = small.startswith(_LEVELS) or found.word.startswith(("db", "logmag", "spl"))
-        return replace(found, scale="decibel" if is_level else "unknown" if small in ("", "-") else "linear")
-    return replace(found, factor=sign)
+        return replace(column, factor=None if factor is None else sign * factor)
+    if column.kind == "magnitude":
+        is_level = small.startswith(_LEVELS) or column.word.startswith(("db", "logmag", "spl"))
+        return replace(column, scale="decibel" if is_level else "unknown" if small in ("", "-") else "linear")
+    return replace(column, factor=sign)
 
 
 def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[ColumnMeaning]:
@@ -266,32 +266,32 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     ['frequency', 'real', 'imaginary']
     """
     below = list(units_below) or [""] * len(names)
-    found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
+    read = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
     apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
-    found = [other if other.kind and not one.kind else one for one, other in zip(found, apart, strict=True)]
-    kinds = {m.kind for m in found}
+    read = [other if other.kind and not one.kind else one for one, other in zip(read, apart, strict=True)]
+    kinds = {m.kind for m in read}
     if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
-        turned = {m.label for m in found if m.kind == "phase"}
-        ratios = {m.label for m in found if not m.kind and "/" in m.unit + m.label}
+        turned = {m.label for m in read if m.kind == "phase"}
+        ratios = {m.label for m in read if not m.kind and "/" in m.unit + m.label}
         turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
-        for i, m in enumerate(found):
+        for i, m in enumerate(read):
             if not m.kind and m.label in turned and "/" in m.unit + m.label:
-                found[i] = meaning_of(f"magnitude {m.label}", m.unit)
-        kinds = {m.kind for m in found}
+                read[i] = meaning_of(f"magnitude {m.label}", m.unit)
+        kinds = {m.kind for m in read}
     if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
-        return found
+        return read
     letters: dict[str, int] = {}
-    for i, meaning in enumerate(found):
+    for i, meaning in enumerate(read):
         if not meaning.kind and (first := re.match(r"[a-z]{1,2}\b", meaning.label, re.I)):
             letters.setdefault(first[0].lower(), i)
     pairs = [pair for pair in _LETTERS if set(pair) <= set(letters)]
     if "phase" in kinds and "r" in letters:
-        found[letters["r"]] = replace(meaning_of("magnitude", found[letters["r"]].unit), word="r")
-    elif len(pairs) == 1 and not any(m.word == "z" for m in found):
+        read[letters["r"]] = replace(meaning_of("magnitude", read[letters["r"]].unit), word="r")
+    elif len(pairs) == 1 and not any(m.word == "z" for m in read):
         for letter, kind in zip(pairs[0], _LETTERS[pairs[0]], strict=True):
             i = letters[letter]
-            found[i] = ColumnMeaning(kind, 1.0, unit=found[i].unit, word=letter)
-    return found
+            read[i] = ColumnMeaning(kind, 1.0, unit=read[i].unit, word=letter)
+    return read
 
 
 def counts(numbers: npt.NDArray[Any]) -> bool:
@@ -322,7 +322,7 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
         listed = f": {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""  # noqa: PLR2004
         message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
         raise UsageError(Diagnostic("SF902", message, None, hint))
-    found = []
+    columns = []
     for word in words:
         meaning = ColumnMeaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
         if not meaning.kind and word not in ("", "-"):
@@ -331,8 +331,8 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
             meaning = replace(meaning, factor=1.0)
         if meaning.kind == "magnitude" and meaning.scale == "unknown":
             meaning = replace(meaning, scale="linear")
-        found.append(meaning)
-    return found + [ColumnMeaning()] * (width - len(words))
+        columns.append(meaning)
+    return columns + [ColumnMeaning()] * (width - len(words))
 
 
 def assembled(
@@ -479,13 +479,13 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     order = list(columns)
     begins = sorted(map(order.index, own))
     cuts = pairwise([*begins, len(order)])
-    found = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in cuts]
-    if not any(found[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
+    sections = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in cuts]
+    if not any(sections[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
         return [[first, *rest]]
-    if not all(any(c.meaning.kind for c in one) for one in found):
+    if not all(any(c.meaning.kind for c in one) for one in sections):
         message = "there are two frequency columns with different values"
         raise DataError(Diagnostic("SF602", message, own[1].span, ask(columns)))
-    return [[order[a], *one] for a, one in zip(begins, found, strict=True)]
+    return [[order[a], *one] for a, one in zip(begins, sections, strict=True)]
 
 
 def _is_rounded(first: DataColumn, other: DataColumn) -> bool:
@@ -535,14 +535,14 @@ def _groups(
     """Return label and columns by kind of every response."""
     labels = dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind)
     alike = {label: [c for c in rest if c.meaning.label == label] for label in labels}
-    found = [(label, group) for label in labels for group in _pairs(alike[label])]
-    found = found or [("", group) for group in _pairs(rest)]
+    groups = [(label, group) for label in labels for group in _pairs(alike[label])]
+    groups = groups or [("", group) for group in _pairs(rest)]
     coherences = [c for c in rest if c.meaning.kind == "coherence"]
-    if len(coherences) in (1, len(found)):
-        for i, (_, group) in enumerate(found):
+    if len(coherences) in (1, len(groups)):
+        for i, (_, group) in enumerate(groups):
             group.setdefault("coherence", coherences[i % len(coherences)])
     powers = [c for c in rest if c.meaning.kind == "power"]
-    if not found and powers:
+    if not groups and powers:
         own = [c for c in powers if c.meaning.label != "xyz"] or powers[:1]
         with np.errstate(all="ignore"):
             totals = [float(np.nan_to_num(np.nansum(np.abs(c.numbers)))) for c in own]
@@ -550,11 +550,11 @@ def _groups(
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
         flat = "" if best.meaning.word == _RATIO else ", the excitation taken as flat"
         guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
-        found = [(best.meaning.label, {"power": best})]
+        groups = [(best.meaning.label, {"power": best})]
     sizes = [c for c in rest if c.meaning.kind == "magnitude"]
-    if not found and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO):
-        found = [("", {"magnitude": sizes[0]})]
-    return found
+    if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO):
+        groups = [("", {"magnitude": sizes[0]})]
+    return groups
 
 
 def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:

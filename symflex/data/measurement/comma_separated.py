@@ -92,8 +92,8 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     guesses = list(table.guesses)
-    made, found = _responses(name, table, blocks, asked, guesses)
-    guesses += found + _skipped(table, blocks)
+    made, guessed = _responses(name, table, blocks, asked, guesses)
+    guesses += guessed + _skipped(table, blocks)
     told = {key: span.text.strip() for key, span in fields.items()}
     averages = averages_of(told["averages"], name, fields["averages"]) if "averages" in told else None
     signs = (line.strip() for line in table.lines)
@@ -381,7 +381,7 @@ def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool =
         joined = re.sub(r"(?<!\s)\s+(?=[\[(])", "\0", text)
         ways += [cut(text, d) for d in "\t;,"] + [re.split(r"\s{2,}", text)]
         ways.append([c.replace("\0", " ") for c in joined.split()])
-    found = []
+    cuts = []
     for cells in ways:
         names = [bare(c) for c in cells]
         has_frequency = any(meaning_of(n).kind == "frequency" for n in names)
@@ -394,15 +394,15 @@ def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool =
         if 1 < len(names) < width and has_frequency:
             names += [""] * (width - len(names))
         if len(names) >= width:
-            found.append(names)
-    return found
+            cuts.append(names)
+    return cuts
 
 
 def _comment_fields(table: TextTable) -> dict[str, Span]:
-    found: dict[str, Span] = {}
+    spans: dict[str, Span] = {}
     for start, line in zip(table.starts, table.lines, strict=False):
         if line.strip().startswith(COMMENTS) and (match := _COMMENT_FIELD.fullmatch(line)):
             begin = start + match.start("value")
             place = Span(table.source, begin, begin + len(match["value"].rstrip()))
-            found.setdefault(match["key"].lower(), place)
-    return found
+            spans.setdefault(match["key"].lower(), place)
+    return spans

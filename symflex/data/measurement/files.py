@@ -135,7 +135,7 @@ def prepared(
         raise UsageError(Diagnostic("SF902", message))
     if band is not None and not 0 <= band[0] < band[1]:
         raise UsageError(Diagnostic("SF902", "give a band as two frequencies in Hz, the lower one first"))
-    found = []
+    prepared_ones = []
     for response in responses:
         known = response
         if averages is not None:
@@ -147,8 +147,8 @@ def prepared(
             if not known.values.size:
                 message = f"'{response.name}' has no lines between {band[0]:g} and {band[1]:g} Hz"
                 raise DataError(Diagnostic("SF605", message))
-        found.append(known)
-    return tuple(found)
+        prepared_ones.append(known)
+    return tuple(prepared_ones)
 
 
 def csv_bytes(response: MeasuredResponse) -> bytes:

@@ -220,10 +220,10 @@ def _decimal_times(times: list[Fraction]) -> list[Fraction]:
     numbers = np.array([float(time) for time in times])
     step = float(f"{(numbers[-1] - numbers[0]) / (numbers.size - 1):.10g}") or 1.0
     places = np.round(numbers / step)
-    found = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
+    decimal = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
     if np.all(np.abs(numbers - places * step) <= EVEN * step):
-        found = [Fraction(str(step)) * int(place) for place in places.tolist()]
-    return found if all(a < b for a, b in pairwise(found)) else times
+        decimal = [Fraction(str(step)) * int(place) for place in places.tolist()]
+    return decimal if all(a < b for a, b in pairwise(decimal)) else times
 
 
 def _decimal(text: str, decimal: str = ".") -> Fraction | None:

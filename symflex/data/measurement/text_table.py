@@ -246,13 +246,13 @@ class TextTable:
 
     def cells(self, index: int) -> list[Span]:
         """Return where the cells of a line stand, empty ones with an empty range."""
-        text, start, end, found = self.lines[index], self.starts[index], 0, []
+        text, start, end, spans = self.lines[index], self.starts[index], 0, []
         for word in cut(text, self.delimiter, are_all_kept=True):
             at = text.find(word, end) if word else 0
             end = max(at, end) + len(word)
             place = Span(self.source, start + at, start + at + len(word))
-            found.append(place if at >= 0 else self.line(index))
-        return found
+            spans.append(place if at >= 0 else self.line(index))
+        return spans
 
     def blocks(self) -> list[NumberBlock]:
         """Return the blocks of numbers; where no line begins with a number, of those with text in front."""
@@ -260,28 +260,28 @@ class TextTable:
 
     def _blocks(self, *, has_text_in_front: bool) -> list[NumberBlock]:
         """Return the blocks of numbers, without those that are small beside the largest."""
-        found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
+        begun: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
         left = MAX_CELLS
         for i, line in enumerate(self.lines):
             cells = cut(line, self.delimiter) if line and not line.isspace() else []
-            if not self._is_row(cells, len(found[-1][2][-1]) if found else 0, has_text_in_front):
+            if not self._is_row(cells, len(begun[-1][2][-1]) if begun else 0, has_text_in_front):
                 gap.append(i)
                 continue
             left -= len(cells)
             if left < 0:
                 message = f"'{self.source.name}' has more than {MAX_CELLS} numbers"
                 raise DataError(Diagnostic("SF607", message, self.line(i)))
-            rows = found[-1][2] if found else []
+            rows = begun[-1][2] if begun else []
             is_stray = len(rows) == 1 and len(cells) > len(rows[0])
             # A blank line below the first row tells nothing: rows may stand two lines apart.
             is_apart = len(rows) != 1 or any(self.lines[i].strip() for i in gap)
-            if not found or is_stray or (gap and is_apart and self._begins(rows, cells)):
-                found.append((gap, [], []))
+            if not begun or is_stray or (gap and is_apart and self._begins(rows, cells)):
+                begun.append((gap, [], []))
             gap = []
-            found[-1][1].append(i)
-            found[-1][2].append(tuple(cells))
-        blocks = [NumberBlock(self, tuple(a), tuple(b), tuple(c)) for a, b, c in found]
+            begun[-1][1].append(i)
+            begun[-1][2].append(tuple(cells))
+        blocks = [NumberBlock(self, tuple(a), tuple(b), tuple(c)) for a, b, c in begun]
         most = max((len(block.rows) for block in blocks), default=0)
         fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
         return [b for b in blocks if len(b.rows) >= (min(most, FEWEST_ROWS) if b.names_frequency else fewest)]
@@ -312,15 +312,15 @@ def _format(lines: Sequence[str]) -> tuple[str, str]:
     sample = written[begin : begin + size]
 
     def score(candidate: tuple[str, str]) -> float:
-        found = 0.0
+        share = 0.0
         delimiter, decimal = candidate
         for line in sample:
             cells = cut(line, delimiter)
             are_numbers = (number(c, decimal) is not None and not WHOLE[decimal].fullmatch(c) for c in cells)
             numbers = sum(are_numbers)
             if numbers >= 2 and 2 * numbers > len(cells):  # noqa: PLR2004
-                found += numbers / len(cells)
-        return round(found, 6)
+                share += numbers / len(cells)
+        return round(share, 6)
 
     joined = "".join(sample)
     present = [c for c in _CANDIDATES if c[0] in joined and (c[1] == "." or "," in joined)]

@@ -83,7 +83,7 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     sets = _read(pyuff, name, data, places)
     coherences = {_ends(s): s for s in sets if s.get("func_type") in (COHERENCE, MULTIPLE_COHERENCE)}
     system = kinds.get(164, SI)
-    found: list[MeasuredResponse] = []
+    responses: list[MeasuredResponse] = []
     for (line, _), entry in zip(places, sets, strict=True):
         is_general = entry.get("func_type") == 0 and np.iscomplexobj(entry["data"])
         if entry.get("func_type") not in (RESPONSE, TRANSMISSIBILITY) and not is_general:
@@ -92,14 +92,14 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
             message = f"{name}:{line}:1: the abscissa of this dataset is not a frequency"
             raise DataError(Diagnostic("SF602", message))
         one = _response(f"{name}:{line}", stem, entry, coherences.get(_ends(entry)), system)
-        same = sum(one.name == other.name.partition(" ")[0] for other in found)
-        found.append(replace(one, name=f"{one.name} {same + 1}") if same else one)
-    if not found:
+        same = sum(one.name == other.name.partition(" ")[0] for other in responses)
+        responses.append(replace(one, name=f"{one.name} {same + 1}") if same else one)
+    if not responses:
         types = sorted({int(entry.get("func_type", 0)) for entry in sets})
         held = ", ".join(f"{t} ({FUNCTIONS.get(t, 'not read')})" for t in types[:8])
         message = f"'{name}' holds no frequency response: its datasets 58 are of the function types {held}"
         raise DataError(Diagnostic("SF602", message, None, "function type 4 is a frequency response"))
-    return tuple(found)
+    return tuple(responses)
 
 
 def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
@@ -107,7 +107,7 @@ def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
 
     With each kind goes the first number of its first line, which of units says the system.
     """
-    found: list[_Place] = []
+    places: list[_Place] = []
     kinds: dict[int, int] = {}
     place, lines = 0, 0
     marks = _MARKS.finditer(data)
@@ -124,10 +124,10 @@ def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
             kinds.setdefault(int(kind[:6]), int(first) if first.isdigit() else 0)
         if kind[:2] == b"58" and kind[2:3] in (b"", b"b", b" ", b"B"):
             _check_header(name, line, block[1:])
-            found.append((line, number))
+            places.append((line, number))
         lines += data.count(b"\n", place, end.start())
         place = end.start()
-    return found, kinds
+    return places, kinds
 
 
 def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
@@ -147,7 +147,7 @@ def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
 
 
 def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[_Place]) -> list[dict[str, Any]]:
-    found = []
+    entries = []
     if not re.search(rb"^ *58[bB]", data, re.M):  # it knows marks with 74 blanks behind them, or none
         data = re.sub(rb"^    -1[ \t]+(?=\r?$)", MARK, data, flags=re.M)
     # pyuff opens files by name; a copy of what was checked is what it gets.
@@ -165,8 +165,8 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[_Place]) -
                 entry = None
             if not isinstance(entry, dict) or "data" not in entry or "x" not in entry:
                 raise DataError(Diagnostic("SF601", f"{name}:{line}:1: this dataset 58 cannot be read"))
-            found.append(entry)
-    return found
+            entries.append(entry)
+    return entries
 
 
 def _ends(entry: Mapping[str, Any]) -> tuple[object, ...]:

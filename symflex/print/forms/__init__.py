@@ -229,8 +229,8 @@ def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
     known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
-    found = reachable(parts, known)
-    return replace(made, where=(*made.where, *found), definitions=frozenset(name for name, _ in found))
+    lines = reachable(parts, known)
+    return replace(made, where=(*made.where, *lines), definitions=frozenset(name for name, _ in lines))
 
 
 def print_forms(
@@ -240,20 +240,20 @@ def print_forms(
 
     The arguments are those of :func:`print_form`. Raises UsageError: SF902 when none of them has the form.
     """
-    found: list[PrintedForm] = []
+    printed: list[PrintedForm] = []
     sentences: list[str] = []
     refusal: UsageError | None = None
     arranged = Arranged()
     for tf in tfs:
         try:
-            found.append(print_form(tf, form, digits, arranged))
+            printed.append(print_form(tf, form, digits, arranged))
         except UsageError as error:
             refusal = refusal or error
-            found.append(print_form(tf, None, digits, arranged))
-            sentences.append(f"{tf.name} has no {form} form: printed in its {found[-1].name} form")
-    if refusal is not None and len(sentences) == len(found):
+            printed.append(print_form(tf, None, digits, arranged))
+            sentences.append(f"{tf.name} has no {form} form: printed in its {printed[-1].name} form")
+    if refusal is not None and len(sentences) == len(printed):
         raise refusal
-    return tuple(found), tuple(sentences)
+    return tuple(printed), tuple(sentences)
 
 
 def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
@@ -278,10 +278,10 @@ def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
 
 
 def _candidates(tf: TransferFunction) -> tuple[str, ...]:
-    found: tuple[str, ...] = CANDIDATES
+    candidates: tuple[str, ...] = CANDIDATES
     if tf.is_distributed:
-        found = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
-    return found if tf.length <= LARGE else found[:1]
+        candidates = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
+    return candidates if tf.length <= LARGE else candidates[:1]
 
 
 def _length(form: PrintedForm) -> float:

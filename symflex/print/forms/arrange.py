@@ -267,13 +267,13 @@ class Arranger:
 
     def _by_s(self, terms: dict[tuple[int, ...], int]) -> Iterable[dict[tuple[int, ...], int]]:
         """Return terms by powers of s; what holds no s, or a function or a closed sum, stands alone."""
-        found: dict[object, dict[tuple[int, ...], int]] = {}
+        by_power: dict[object, dict[tuple[int, ...], int]] = {}
         for m, c in terms.items():
             is_plain = m[0] and not any(
                 e and (f or g) for e, f, g in zip(m, self._is_apart, self._is_sum, strict=True)
             )
-            found.setdefault(m[0] if is_plain else m, {})[m] = c
-        return found.values()
+            by_power.setdefault(m[0] if is_plain else m, {})[m] = c
+        return by_power.values()
 
     def _most_shared(self, terms: dict[tuple[int, ...], int]) -> int | None:
         """Return the generator to take out of a sum: closed sums first, then parameters; never s alone."""
@@ -473,10 +473,10 @@ class ProductPrinter:
         if len(polynomial) <= SMALL:
             nested = self.arranger.grouped(polynomial)
             tried = [nested, *tried, self.arranger.separated(polynomial, by_functions=False)]
-        found = min(tried, key=_cost)
-        if isinstance(found, Sum) and isinstance(found.terms[0], Negative):
-            return Negative(Sum(tuple(map(negative, found.terms))))
-        return found
+        shortest = min(tried, key=_cost)
+        if isinstance(shortest, Sum) and isinstance(shortest.terms[0], Negative):
+            return Negative(Sum(tuple(map(negative, shortest.terms))))
+        return shortest
 
 
 def length_sides(printer: ProductPrinter, length: Factored) -> Sides:
@@ -570,12 +570,12 @@ def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:
     ways = [range(degree) if len(f) > 1 and degree_in(f, i) else range(1) for f, _ in value.factors]
     made = []
     for chosen in islice(product(*ways), MOST_WAYS):
-        found = Factored.number(ring, value.unit)
+        put_in = Factored.number(ring, value.unit)
         for (factor, exponent), more in zip(value.factors, chosen, strict=True):
-            found = found * put(factor, more) ** exponent
-        alone = next((e for f, e in found.factors if f == generator), 0)
-        found = found / one ** int(alone / degree)
-        made += [found, *(v for v in (found / one, found * one) if _symbols(v) < _symbols(found) - 1)]
+            put_in = put_in * put(factor, more) ** exponent
+        alone = next((e for f, e in put_in.factors if f == generator), 0)
+        put_in = put_in / one ** int(alone / degree)
+        made += [put_in, *(v for v in (put_in / one, put_in * one) if _symbols(v) < _symbols(put_in) - 1)]
     return sorted(made, key=_symbols)[:ARRANGED]
 
 

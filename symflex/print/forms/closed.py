@@ -103,17 +103,17 @@ class _Taper:
     @cached_property
     def exponentials(self) -> Mapping[str, Factored]:
         """The rates of exponentials in coefficients, by their generators; all are 1 at the start."""
-        found = {}
+        rates = {}
         for name, function in self.functions.items():
             if not varies_along_x(function) or not any(c.depends_on(name) for c in self._coefficients):
                 continue
             if not isinstance(function, Call) or function.name != "exp":
                 raise _NoClosedFormError
             exponent = _factored(function.argument, self.start)
-            found[name] = exponent.slope(COORDINATE)
-            if found[name].depends_on(COORDINATE) or not _put(exponent, self.start).is_zero:
+            rates[name] = exponent.slope(COORDINATE)
+            if rates[name].depends_on(COORDINATE) or not _put(exponent, self.start).is_zero:
                 raise _NoClosedFormError
-        return found
+        return rates
 
     @cached_property
     def length(self) -> Factored | None:

@@ -171,14 +171,14 @@ def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression,
 
 def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]:
     """Return the definitions that are exactly a closed sum."""
-    found: dict[str, Expression] = {}
+    named: dict[str, Expression] = {}
     for name, value in tf.definitions:
         if value.unit == 1 and len(value.factors) == 1 and value.factors[0][1] == 1:
             polynomial = value.factors[0][0]
             for closed_name, closed_sum in closure.sums:
                 if polynomial == closed_sum:
-                    found.setdefault(closed_name, Name(name))
-    return found
+                    named.setdefault(closed_name, Name(name))
+    return named
 
 
 def _rewritten(tf: TransferFunction, arranger: Arranger) -> tuple[Expression, Expression]:

@@ -51,10 +51,10 @@ def economical(tf: TransferFunction) -> TransferFunction:
     tf = _without_wavenumbers(tf)
     for _ in range(DOUBLINGS):
         lengths = dict.fromkeys(a.length for a in angles_of(tf.kernels) if is_half(a.length))
-        found = next((d for length in lengths if (d := _doubled(tf, length)) is not None), None)
-        if found is None:
+        doubled = next((d for length in lengths if (d := _doubled(tf, length)) is not None), None)
+        if doubled is None:
             return tf
-        tf = found
+        tf = doubled
     return tf
 
 
@@ -69,8 +69,8 @@ def apart(tf: TransferFunction) -> TransferFunction:
     used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
     for kernels in [angle.kernels for angle in angles_of(tf.kernels, used)]:
         angle = next(a for a in angles_of(tf.kernels) if a.kernels == kernels)
-        if angle.dispersion.shift.is_zero and (found := _in_two(tf, angle)) is not None:
-            tf = min(tf, found, key=lambda each: _size(each.ratio))
+        if angle.dispersion.shift.is_zero and (in_two := _in_two(tf, angle)) is not None:
+            tf = min(tf, in_two, key=lambda each: _size(each.ratio))
     return tf
 
 
@@ -168,7 +168,7 @@ def added(tf: TransferFunction) -> TransferFunction:
     groups: dict[str, list[Factored]] = {}
     for wave, length in own:
         groups.setdefault(wave, []).append(length)
-    found, sums = list(tf.kernels.kernels), list[_Sum]()
+    kernels, sums = list(tf.kernels.kernels), list[_Sum]()
     for wave, lengths in groups.items():
         if len(lengths) > MOST:
             continue
@@ -179,12 +179,12 @@ def added(tf: TransferFunction) -> TransferFunction:
                     angle = own[wave, parts[0]]
                     names = {f: f"{f}[{wave},sum {len(sums)}]" for f in angle.kernels}
                     own_kernels = (k for k in tf.kernels.kernels if k.generator in angle.kernels.values())
-                    found += [replace(k, generator=names[k.function], length=total) for k in own_kernels]
+                    kernels += [replace(k, generator=names[k.function], length=total) for k in own_kernels]
                     sums.append(_Sum(names, tuple(own[wave, part].kernels for part in parts)))
     if not sums:
         return tf
     ring = Ring((*tf.ratio.ring.names, *(g for one in sums for g in one.kernels.values())))
-    normal = NormalForm(ring, _over(ring, replace(tf.kernels, kernels=tuple(found))))
+    normal = NormalForm(ring, _over(ring, replace(tf.kernels, kernels=tuple(kernels))))
 
     def image(factor: fmpz_mpoly) -> Factored:
         best = Factored.polynomial(ring, ring.taken_over(factor))
@@ -296,10 +296,10 @@ def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle
     work = factor.compose(*(ring.generator(n) for n in source.names), ctx=ring.context)
     halves = 0
     for angle in angles:
-        found = angle_doubled(ring, work, angle)
-        if found is None:
+        doubled = angle_doubled(ring, work, angle)
+        if doubled is None:
             return None
-        work, times = found
+        work, times = doubled
         halves += times
     back = [source.generator(n) for n in source.names]
     plain = work.compose(*back, source.constant(0), ctx=source.context)

@@ -70,10 +70,10 @@ class _FrequencyPage:
         table = KernelTable(
             bending, tuple(k for k in tf.kernels.kernels if k.dispersion in bending and k.wavenumber)
         )
-        found = in_krylov_functions(tf.ratio.ring, table, tf.ratio)
-        if found is None:
+        converted = in_krylov_functions(tf.ratio.ring, table, tf.ratio)
+        if converted is None:
             raise lacks(tf, "frequency", NOT_ENTIRE)
-        self._change, self._value = found
+        self._change, self._value = converted
         others = KernelTable(
             tf.kernels.dispersions, tuple(k for k in tf.kernels.kernels if k not in table.kernels)
         )
@@ -207,15 +207,15 @@ class _FrequencyPage:
         below = 1
         for _, value in terms:
             below = max(below, value.denominator)
-        found: dict[tuple[int, ...], int] = {}
+        lowered: dict[tuple[int, ...], int] = {}
         for m, value in terms:
             for w in waves:
                 m[w] -= least[w]
-            found[tuple(m)] = int(value * below)
+            lowered[tuple(m)] = int(value * below)
         scale = Factored.number(self.ring, Fraction(1, below))
         for w in waves:
             scale = scale * Factored.generator(self.ring, source.names[w]) ** least[w]
-        return source.context.from_dict(found), scale
+        return source.context.from_dict(lowered), scale
 
     def _reduced(self, work: fmpz_mpoly) -> fmpz_mpoly:
         """Use ``j^2 = -1``, ``sin^2 = 1 - cos^2`` and ``sinh^2 = cosh^2 - 1``."""
@@ -253,7 +253,7 @@ class _FrequencyPage:
 
     def _laws(self) -> dict[str, Factored]:
         """Return per wavenumber a product of its power with omega and parameters that is one."""
-        found = {}
+        laws = {}
         for d in self._tf.kernels.dispersions:
             if d.kind in ("bending", "wave"):
                 (w,) = d.wavenumbers
@@ -261,8 +261,8 @@ class _FrequencyPage:
                 c0 = self._on_axis(d.characteristic[0])
                 one = beta**4 / -c0 if d.kind == "bending" else beta**2 / c0
                 if not one.depends_on(IMAGINARY):
-                    found[w] = one
-        return found
+                    laws[w] = one
+        return laws
 
     def _explained(self, used: frozenset[str]) -> tuple[tuple[Line, ...], dict[str, Expression]]:
         """Return the lines and the symbols of the generators used."""

@@ -16,14 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import KernelTable
 from symflex.errors import InternalError
-from symflex.expressions import (
-    Name,
-    format_expression,
-    number,
-    product_of,
-    quotient,
-    substitute,
-)
+from symflex.expressions import Name, format_expression, number, product_of, quotient, substitute
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
@@ -88,12 +81,12 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     source = form.source or tf
     if source is not tf and [h.multiplicity for h in source.hidden] == [h.multiplicity for h in tf.hidden]:
         with suppress(InternalError):  # then they are no factors of the function whose definitions are opened
-            found = _named(source, form)
-            read_hidden(tf, *found)
-            return found
-    found = _named(tf, form)
-    read_hidden(tf, *found)
-    return found
+            named = _named(source, form)
+            read_hidden(tf, *named)
+            return named
+    named = _named(tf, form)
+    read_hidden(tf, *named)
+    return named
 
 
 def _named(tf: TransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
@@ -140,13 +133,13 @@ def _stretched(table: KernelTable, ratio: Fraction) -> KernelTable:
 
 def _opened(lines: Iterable[Line]) -> dict[str, Expression]:
     """Return what names stand for, with no other name of the lines left in it."""
-    found = dict(lines)
-    for _ in found:
-        opened = {name: substitute(e, found) for name, e in found.items()}
-        if opened == found:
+    opened_lines = dict(lines)
+    for _ in opened_lines:
+        opened = {name: substitute(e, opened_lines) for name, e in opened_lines.items()}
+        if opened == opened_lines:
             break
-        found = opened
-    return found
+        opened_lines = opened
+    return opened_lines
 
 
 def _key(expression: Expression) -> tuple[str, ...]:

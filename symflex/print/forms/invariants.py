@@ -108,9 +108,9 @@ class Invariants:
             for change in (lambda f: f, plain)
         )
         for tried, w in tries:
-            found = self._invariant(tried)
-            if found is not None:
-                return found / Factored.generator(self.ring, w) if w else found
+            invariant = self._invariant(tried)
+            if invariant is not None:
+                return invariant / Factored.generator(self.ring, w) if w else invariant
         return None
 
     def _invariant(self, polynomial: fmpz_mpoly) -> Factored | None:
@@ -122,10 +122,10 @@ class Invariants:
             if not groups:
                 continue
             step = {"bending": self._bending, "wave": self._wave, "pair": self._pair}[dispersion.kind]
-            found = step(work, number, dispersion, groups)
-            if found is None:
+            stepped = step(work, number, dispersion, groups)
+            if stepped is None:
                 return None
-            work, factor = found
+            work, factor = stepped
             scale = scale * factor
         return Factored.polynomial(self.ring, work) * scale
 
@@ -164,10 +164,10 @@ class Invariants:
         work = self.ring.replaced(work, images)
         scale = Factored.number(self.ring, 1)
         for name in dispersion.wavenumbers:
-            found = self._even(work, name)
-            if found is None:
+            even = self._even(work, name)
+            if even is None:
                 return None
-            work, taken = found
+            work, taken = even
             scale = scale * taken
         plain, square = self._symmetric(work, number, dispersion)
         c2 = self.ring.generator(coefficient_name(number, 2))
@@ -220,10 +220,10 @@ class Invariants:
         work = work * mu**power
         scale = Factored.generator(self.ring, name) ** -power
         for i, (angle,) in groups:
-            found = self._opened(work, i, angle, mu)
-            if found is None:
+            opened = self._opened(work, i, angle, mu)
+            if opened is None:
                 return None
-            work, halves = found
+            work, halves = opened
             scale = scale / halves
         index = self.ring.index[name]
         assert not any(int(m[index]) % 4 for m in work.monoms())
@@ -320,15 +320,15 @@ def factor_by_factor(
         for factor, exponent in value.factors:
             if exponent * side < 0:
                 continue
-            if (found := one(factor)) is not None:
-                result = result * found**exponent
+            if (converted := one(factor)) is not None:
+                result = result * converted**exponent
             else:
                 rest = rest * Factored(value.ring, Fraction(1), ((factor, abs(exponent)),))
         if not rest.is_one:
-            found = whole(rest.expand())
-            if found is None:
+            converted = whole(rest.expand())
+            if converted is None:
                 return None
-            result = result * found**side
+            result = result * converted**side
     return result
 
 
@@ -341,14 +341,14 @@ def in_krylov_functions(
     wavenumber.
     """
     change = Invariants(source, table)
-    found = change.convert(value)
-    if found is not None:
-        return change, found
+    converted = change.convert(value)
+    if converted is not None:
+        return change, converted
     change, images = change.halved()
     normal = NormalForm(source, table)
     halved = value.map_factors(source, lambda f: normal.reduce(source.replaced(f, images)))
-    found = change.convert(halved)
-    return None if found is None else (change, found)
+    converted = change.convert(halved)
+    return None if converted is None else (change, converted)
 
 
 def krylov_name(group: int, order: int) -> str:

@@ -37,10 +37,10 @@ def irreducible_kernels(value: Factored, table: KernelTable) -> Factored:
 
 def _plain(value: Factored, factor: fmpz_mpoly) -> Factored:
     constant, parts = irreducible_factors(factor)
-    found = Factored.number(value.ring, constant)
+    product = Factored.number(value.ring, constant)
     for part, times in parts:
-        found = found * Factored.polynomial(value.ring, part) ** times
-    return found
+        product = product * Factored.polynomial(value.ring, part) ** times
+    return product
 
 
 def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:
@@ -60,18 +60,18 @@ def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) ->
     ]
     if sum(times for _, times in split) == 1:
         return whole
-    found = Factored.number(normal.ring, 1)
+    product = Factored.number(normal.ring, 1)
     rest = coordinates.coordinates.constant(1)
     for part, times in split:
         if any(coordinates.parity(part)):
             rest = rest * part**times
         else:
-            found = found * _restored(part, coordinates, normal) ** times
+            product = product * _restored(part, coordinates, normal) ** times
     if any(coordinates.parity(rest)):
         return whole
-    found = found * _restored(rest, coordinates, normal)
-    ratio = _expanded_ratio(found, factor, normal)
-    return whole if ratio is None else found * ratio
+    product = product * _restored(rest, coordinates, normal)
+    ratio = _expanded_ratio(product, factor, normal)
+    return whole if ratio is None else product * ratio
 
 
 def _restored(polynomial: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:
@@ -79,12 +79,12 @@ def _restored(polynomial: fmpz_mpoly, coordinates: Exponentials, normal: NormalF
     return normal.reduce_factored(restored)
 
 
-def _expanded_ratio(found: Factored, factor: fmpz_mpoly, normal: NormalForm) -> Fraction | None:
+def _expanded_ratio(product_found: Factored, factor: fmpz_mpoly, normal: NormalForm) -> Fraction | None:
     """Return the number by which the factors differ from the polynomial, ``None`` when it is not a number."""
-    if any(e < 0 for _, e in found.factors) or found.is_zero:
+    if any(e < 0 for _, e in product_found.factors) or product_found.is_zero:
         return None
-    product = normal.reduce((found / found.unit).expand())
+    product = normal.reduce((product_found / product_found.unit).expand())
     whole = normal.reduce(factor)
-    ratio = whole / found.unit / Fraction(1)
+    ratio = whole / product_found.unit / Fraction(1)
     difference = ratio / product
     return difference.unit if difference.is_constant else None

@@ -67,12 +67,12 @@ class KeptDefinitions:
     @cached_property
     def _divisors(self) -> tuple[tuple[str, fmpz_mpoly, bool], ...]:
         """Definitions over :attr:`ring`, and whether they bear s."""
-        zero, found = self.ring.constant(0), []
+        zero, divisors = self.ring.constant(0), []
         for name, value in self.values:
             images = (self.ring.generator(n) if n in self.ring.index else zero for n in value.ring.names)
             divisor = value.expand().compose(*images, ctx=self.ring.context)
-            found.append((name, divisor, value.depends_on(LAPLACE)))
-        return tuple(found)
+            divisors.append((name, divisor, value.depends_on(LAPLACE)))
+        return tuple(divisors)
 
     def rewrite(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return a polynomial of the form's ring in the definitions free of s that shorten it."""

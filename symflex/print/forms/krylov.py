@@ -43,10 +43,10 @@ def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
     """Return what :func:`krylov_form` arranges; ``None`` where the function has no such form."""
     if not tf.has_formula:
         return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "krylov", tf.ratio, arranged))
-    found = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
-    if found is None:
+    converted = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
+    if converted is None:
         return None
-    change, value = found
+    change, value = converted
     return BegunForm(terms_of(value), partial(_krylov, tf, change, value, arranged))
 
 

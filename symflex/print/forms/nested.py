@@ -155,8 +155,8 @@ def _laws(tf: NestedTransferFunction) -> dict[tuple[int, ...], tuple[str, Waves]
     """Return, by the coefficients of a differential equation, what its solution is called, and a user."""
     users = {w.coefficients: w for w in reversed(tf.waves) if w.coefficients}
     ordered = [users[c] for c in dict.fromkeys(w.coefficients for w in tf.waves if w.coefficients)]
-    found = Naming(names_of(tf.model) | tf.generators).take("h", len(ordered))
-    return {w.coefficients: (name, w) for name, w in zip(found, ordered, strict=True)}
+    names_of_laws = Naming(names_of(tf.model) | tf.generators).take("h", len(ordered))
+    return {w.coefficients: (name, w) for name, w in zip(names_of_laws, ordered, strict=True)}
 
 
 @dataclass

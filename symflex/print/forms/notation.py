@@ -79,9 +79,9 @@ class Naming:
         (('q',), ('q_2', 'q_3'), ('q_1',))
         """
         free = (name for i in count(1) if (name := f"{stem}_{i}") not in self._taken)
-        found = (stem,) if wanted == 1 and stem not in self._taken else tuple(islice(free, wanted))
-        self._taken.update(found)
-        return found
+        taken = (stem,) if wanted == 1 and stem not in self._taken else tuple(islice(free, wanted))
+        self._taken.update(taken)
+        return taken
 
     def family(self, stems: Sequence[str], members: int) -> tuple[str, ...]:
         """Return names numbered from zero, of the first stem that leaves all of them free.
@@ -92,9 +92,9 @@ class Naming:
         ('L_0', 'L_1')
         """
         own = (tuple(f"{stem * n}_{i}" for i in range(members)) for n in count(1) for stem in stems)
-        found = next(family for family in own if self._taken.isdisjoint(family))
-        self._taken.update(found)
-        return found
+        chosen = next(family for family in own if self._taken.isdisjoint(family))
+        self._taken.update(chosen)
+        return chosen
 
     def keep(self, names: Iterable[str]) -> None:
         """Let the names be used by nothing else."""
@@ -326,15 +326,15 @@ def other_kernels(
 
 def wavenumber_laws(tf: TransferFunction) -> dict[str, Factored]:
     """Return per wavenumber a product of its power with s and parameters that is one."""
-    found = {}
+    laws = {}
     for d in tf.kernels.dispersions:
         if d.kind == "bending":
             (w,) = d.wavenumbers
-            found[w] = Factored.generator(tf.ratio.ring, w) ** 4 * 4 / d.characteristic[0]
+            laws[w] = Factored.generator(tf.ratio.ring, w) ** 4 * 4 / d.characteristic[0]
         elif d.kind == "wave":
             (w,) = d.wavenumbers
-            found[w] = Factored.generator(tf.ratio.ring, w) ** 2 / -d.characteristic[0]
-    return found
+            laws[w] = Factored.generator(tf.ratio.ring, w) ** 2 / -d.characteristic[0]
+    return laws
 
 
 def reachable(parts: Iterable[Expression], lines: Iterable[Line]) -> tuple[Line, ...]:
@@ -342,10 +342,10 @@ def reachable(parts: Iterable[Expression], lines: Iterable[Line]) -> tuple[Line,
     known = dict(lines)
     pending, used = list(parts), set()
     while pending:
-        for found in names(pending.pop()):
-            if isinstance(found, Name) and found.name in known and found.name not in used:
-                used.add(found.name)
-                pending.append(known[found.name])
+        for node in names(pending.pop()):
+            if isinstance(node, Name) and node.name in known and node.name not in used:
+                used.add(node.name)
+                pending.append(known[node.name])
     return tuple((name, e) for name, e in known.items() if name in used)
 
 

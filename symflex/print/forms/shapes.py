@@ -203,9 +203,9 @@ class _Signs:
                 continue
             first, second = (of_powers(*powers_of(product_of([t, t]))) for t in (*same, *turned))
             joined = self._sum((first, negative(second)))
-            found = self._rejoined(product_of([joined if f is one else f for f in factors if f is not other]))
-            if any(self.written.get(_texts(f.terms)) is f for f in nodes(found) if isinstance(f, Sum)):
-                return found
+            again = self._rejoined(product_of([joined if f is one else f for f in factors if f is not other]))
+            if any(self.written.get(_texts(f.terms)) is f for f in nodes(again) if isinstance(f, Sum)):
+                return again
         return product
 
     def _sum(self, terms: Sequence[Expression]) -> Expression:
@@ -395,17 +395,17 @@ def _is_decay(factor: Expression) -> bool:
 def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:
     """Return a fraction with ``tanh`` and ``tan`` for what they are quotients of."""
     (front, powers), (below, divisors) = powers_of(num), powers_of(den)
-    found = [dict(powers), dict(divisors)]
+    sides = [dict(powers), dict(divisors)]
     for one, other, ratio in RATIOS:
         for call in [c for c in (*powers, *divisors) if isinstance(c, Call) and c.name == one]:
-            for above, under in (found, found[::-1]):
+            for above, under in (sides, sides[::-1]):
                 n, cofactor = above.get(call, 0), replace(call, name=other)
                 if n and n == under.get(cofactor, 0):
                     above[replace(call, name=ratio)] = n
                     del above[call], under[cofactor]
-    if not front or found == [powers, divisors]:
+    if not front or sides == [powers, divisors]:
         return num, den
-    return of_powers(front, found[0]), of_powers(below, found[1])
+    return of_powers(front, sides[0]), of_powers(below, sides[1])
 
 
 def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
@@ -464,26 +464,26 @@ def _through_argument(form: PrintedForm, argument: str, wave: Name) -> PrintedFo
     front, powers = powers_of(lines[argument])
 
     def through(part: Expression) -> Expression:
-        scale, found = powers_of(part)
-        times = min(found.get(base, 0) // n if n > 0 else 0 for base, n in powers.items())
+        scale, factors = powers_of(part)
+        times = min(factors.get(base, 0) // n if n > 0 else 0 for base, n in powers.items())
         if isinstance(part, Sum | Call) or times < 1:
             return part
         placed: dict[Expression, int] = {}
-        for base, n in found.items():
+        for base, n in factors.items():
             placed |= {Name(argument): times} if base == wave else {}
             placed[base] = n - times * powers.get(base, 0)
         return of_powers(scale / front**times, {base: n for base, n in placed.items() if n})
 
     num, den = (rebuilt(e, through) if len(powers) > 1 else e for e in (form.num, form.den))
-    scale, found = powers_of(quotient(num, den))
-    is_apart = wave in found and not any(wave in names(base) for base in found if base != wave)
+    scale, factors = powers_of(quotient(num, den))
+    is_apart = wave in factors and not any(wave in names(base) for base in factors if base != wave)
     if is_apart and not any(isinstance(n, Call) for n in nodes(own)):
         # A wavenumber without a root is no shorter than what it is.
-        whole = of_powers(*powers_of(plain(of_powers(scale, found), {wave.name: own})))
+        whole = of_powers(*powers_of(plain(of_powers(scale, factors), {wave.name: own})))
         num, den = (whole.numerator, whole.denominator) if isinstance(whole, Quotient) else (whole, number(1))
-    scale, found = powers_of(substitute(lines[argument], {wave.name: own}))
-    ordered = sorted(found, key=lambda base: (base != S, isinstance(base, Call)))
-    line = of_powers(scale, {base: found[base] for base in ordered})
+    scale, factors = powers_of(substitute(lines[argument], {wave.name: own}))
+    ordered = sorted(factors, key=lambda base: (base != S, isinstance(base, Call)))
+    line = of_powers(scale, {base: factors[base] for base in ordered})
     others = [num, den, *(e for name, e in lines.items() if name != argument)]
     is_shorter = length(line) + LINE <= length(lines[argument], own)
     if is_shorter and not any(wave in names(e) for e in others):

@@ -81,7 +81,7 @@ def _shortest(page: _DecayingPage, variants: Sequence[_Variant]) -> PrintedForm:
             for variant in variants
             for value in page.opened(variant)
         ),
-        key=lambda found: found[0],
+        key=lambda candidate: candidate[0],
     )
     return PrintedForm("vaughan", *sides, reachable(sides, page.lines))
 

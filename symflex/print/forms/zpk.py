@@ -36,11 +36,11 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))
-    found = locate(bound, None, digits + GUARD_DIGITS)
-    if found.certificate.is_exceeded:
-        message = f"not all roots of {tf.name} were found: {found.certificate.reason}"
+    located = locate(bound, None, digits + GUARD_DIGITS)
+    if located.certificate.is_exceeded:
+        message = f"not all roots of {tf.name} were found: {located.certificate.reason}"
         raise BudgetError(Diagnostic("SF506", message, None, "allow more time, or ask for another form"))
-    if any(not root.certified for root in (*found.zeros, *found.poles)):
+    if any(not root.certified for root in (*located.zeros, *located.poles)):
         message = f"some roots of {tf.name} could not be told apart, so their factors are not known"
         hint = (
             "'symflex roots' encloses them together; constants may satisfy a relation: write them without it"
@@ -49,9 +49,9 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     gain = _decimal(_gain(bound, digits), digits)
     return PrintedForm(
         "zpk",
-        product_of([gain, *_factors(found.zeros, digits)]),
-        product_of(_factors(found.poles, digits)),
-        stability=found.verdict,
+        product_of([gain, *_factors(located.zeros, digits)]),
+        product_of(_factors(located.poles, digits)),
+        stability=located.verdict,
     )
 
 

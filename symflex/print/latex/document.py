@@ -152,9 +152,9 @@ def _blocks(
     width_mm: float,
 ) -> Iterator[_Block]:
     known = [tf.name for tf in tfs]
-    for found in maps:
-        if found.tf not in known:
-            message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
+    for located in maps:
+        if located.tf not in known:
+            message = f"poles and zeros of '{located.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
     if model.settable:
         values = f"Values are rounded to {VALUE_DIGITS} significant digits."
@@ -174,19 +174,19 @@ def _blocks(
             writer = Writer(form_labels(tf, named))
             pairs = zip(tf.hidden, factors, strict=True)
             hidden = [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in pairs]
-        of_tf = [found for found in maps if found.tf == tf.name]
+        of_tf = [located for located in maps if located.tf == tf.name]
         if hidden and not of_tf:
             yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
-        for found in of_tf:
-            yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, found))) + "\n\n")
+        for located in of_tf:
+            yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, located))) + "\n\n")
             for kind, title in KINDS.items():
-                if roots_of(found, kind):
+                if roots_of(located, kind):
                     yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
-                    table = root_table(found, kind, width_mm=width_mm)
+                    table = root_table(located, kind, width_mm=width_mm)
                     yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
-    if any(found.all_poles for found in maps):
+    if any(located.all_poles for located in maps):
         shown = (
-            "" if all(found.certificate.certified for found in maps) else " The lists are not all certified."
+            "" if all(each.certificate.certified for each in maps) else " The lists are not all certified."
         )
         whose = "the transfer function" if len(maps) == 1 else "at least one of the transfer functions"
         about = f"The modes that are poles of {whose}; number 0 is motion as a rigid body.{shown}"
@@ -261,17 +261,17 @@ def _hidden_mode(
     )
 
 
-def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
-    if not (found.all_poles or found.zeros or found.hidden):
+def _about_roots(tf: AnyTransferFunction, located: PoleZeroMap) -> list[str]:
+    if not (located.all_poles or located.zeros or located.hidden):
         return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
     sentences = []
-    if shown := region_text(found.region):
+    if shown := region_text(located.region):
         sentences.append(f"Listed are {escape_text(shown)}.")
-    for said in filter(None, (found.verdict.sentence, found.verdict.hidden_motion)):
+    for said in filter(None, (located.verdict.sentence, located.verdict.hidden_motion)):
         sentences.append(f"{escape_text(said[:1].upper() + said[1:])}.")
     proved = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
-    reason = escape_text(found.certificate.reason or "no reason given")
-    return [*sentences, proved if found.certificate.certified else f"The list is not certified: {reason}."]
+    reason = escape_text(located.certificate.reason or "no reason given")
+    return [*sentences, proved if located.certificate.certified else f"The list is not certified: {reason}."]
 
 
 def _comment(text: str) -> str:

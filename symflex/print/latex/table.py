@@ -91,7 +91,7 @@ def _heights(texts: Iterable[str], width: float, setting: Setting) -> list[int]:
 
 
 def root_table(
-    found: PoleZeroMap, kind: str, *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
+    located: PoleZeroMap, kind: str, *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
 ) -> str:
     r"""Return the table of poles, zeros or hidden roots: both parts, frequency, damping ratio, multiplicity.
 
@@ -101,7 +101,7 @@ def root_table(
 
     ``kind`` is a key of :data:`~symflex.print.roots.KINDS`.
     """
-    entries = one_of_each_pair(roots_of(found, kind))
+    entries = one_of_each_pair(roots_of(located, kind))
     columns = columns_for(PAPER_COLUMNS, [e.root for e in entries])
     return _table_of(entries, columns, digits, width_mm / EM_MM)
 
@@ -116,8 +116,8 @@ def mode_table(
     from symflex.roots.root import overlap  # imports numpy
 
     modes: list[PrintedRoot] = []
-    for found in maps:
-        for entry in one_of_each_pair(found.all_poles):
+    for located in maps:
+        for entry in one_of_each_pair(located.all_poles):
             same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
             if not same:
                 modes.append(entry)

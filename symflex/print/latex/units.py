@@ -84,7 +84,7 @@ def _factors(unit: str) -> list[tuple[str, str, int]] | None:
     tokens = _tokens(unit)
     if tokens is None:
         return None
-    found: list[tuple[str, str, int]] = []
+    factors: list[tuple[str, str, int]] = []
     # The sign of each open parenthesis, and that of the next factor within the innermost one.
     signs, sign, position = [1], 1, 0
     while position < len(tokens):
@@ -108,8 +108,8 @@ def _factors(unit: str) -> list[tuple[str, str, int]] | None:
             if power is None:
                 return None
             magnitude, below = power.removeprefix("-"), power.startswith("-")
-            found.append((symbol, magnitude, signs[-1] * sign * (-1 if below else 1)))
-    return found
+            factors.append((symbol, magnitude, signs[-1] * sign * (-1 if below else 1)))
+    return factors
 
 
 def _tokens(unit: str) -> list[str] | None:

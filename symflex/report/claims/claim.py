@@ -40,12 +40,12 @@ class Check:
 
     def judge(self, models: Models) -> Finding:
         """Return the finding with what was added."""
-        found = self.predicate(models, self.of)
+        finding = self.predicate(models, self.of)
         condition = self.condition and f"Condition: {self.condition}"
         added = [f" {text}" for text in (self.note, condition) if text]
-        is_conditional = self.condition and found.verdict == "holds"
-        verdict: Verdict = "holds with a condition" if is_conditional else found.verdict
-        return Finding(verdict, (*found.evidence, *added))
+        is_conditional = self.condition and finding.verdict == "holds"
+        verdict: Verdict = "holds with a condition" if is_conditional else finding.verdict
+        return Finding(verdict, (*finding.evidence, *added))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +65,13 @@ class Claim:
         if missing:
             return Finding("not examined", (f"The report has no model {', '.join(missing)}.",))
         try:
-            found = [check.judge(models) for check in self.checks]
+            findings = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
             return Finding("not examined", (f"The models have no {lacking.args[0]} with numbers.",))
         lines: list[Run] = []
-        for one in found:
+        for one in findings:
             lines += ["\n", *one.evidence]
-        return Finding(min((one.verdict for one in found), key=WORST.index), tuple(lines[1:]))
+        return Finding(min((one.verdict for one in findings), key=WORST.index), tuple(lines[1:]))
 
 
 @dataclass(frozen=True, slots=True)

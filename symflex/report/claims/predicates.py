@@ -31,20 +31,20 @@ def modes_at(
     """
     lines, is_true = [], True
     for stem, function in functions(models, of):
-        found = [p.frequency_hz for p in function.poles if p.is_oscillatory]
-        found = found[: len(hertz)] if lowest else found
-        near = all(abs(a - b) < within for a, b in zip(found, hertz, strict=False))
-        is_true = is_true and near and len(found) == len(hertz)
-        which = f"{counted(len(found), 'mode')}, {'the lowest' if lowest else 'all that it has'}"
-        lines.append(f"{stem} has {which}, at {', '.join(f'{f:.2f}' for f in found)} Hz.")
+        frequencies = [p.frequency_hz for p in function.poles if p.is_oscillatory]
+        frequencies = frequencies[: len(hertz)] if lowest else frequencies
+        near = all(abs(a - b) < within for a, b in zip(frequencies, hertz, strict=False))
+        is_true = is_true and near and len(frequencies) == len(hertz)
+        which = f"{counted(len(frequencies), 'mode')}, {'the lowest' if lowest else 'all that it has'}"
+        lines.append(f"{stem} has {which}, at {', '.join(f'{f:.2f}' for f in frequencies)} Hz.")
     return judged(is_true, "\n".join(lines))
 
 
 def counts(models: Models, of: tuple[str, ...], *, zeros: int, poles: int) -> Finding:
     """Tell whether rational functions have so many zeros and poles."""
-    found = [f for _, f in functions(models, of)]
-    is_true = all(f.counts == (zeros, poles) for f in found)
-    return judged(is_true, " ".join(f"{f.tf} has {_counts(f)}." for f in found))
+    facts = [f for _, f in functions(models, of)]
+    is_true = all(f.counts == (zeros, poles) for f in facts)
+    return judged(is_true, " ".join(f"{f.tf} has {_counts(f)}." for f in facts))
 
 
 def arrangement(
@@ -118,8 +118,8 @@ def fewer_zeros_added(models: Models, of: tuple[str, ...]) -> Finding:
 
 def colocated(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether outputs are taken where the input acts, or rigidly joined to it."""
-    found = [f for _, f in functions(models, of)]
-    are, are_not = ([f.tf for f in found if bool(f.colocated) is truth] for truth in (True, False))
+    facts = [f for _, f in functions(models, of)]
+    are, are_not = ([f.tf for f in facts if bool(f.colocated) is truth] for truth in (True, False))
     kinds = ((are, "colocated"), (are_not, "not colocated"))
     said = [f"{' and '.join(tfs)} {'is' if len(tfs) == 1 else 'are'} {kind}." for tfs, kind in kinds if tfs]
     return judged(not are_not, " ".join(said))
@@ -149,10 +149,10 @@ def modes_suffice(models: Models, of: tuple[str, ...]) -> Finding:
 
 def interlacing(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether poles and zeros listed lie on the imaginary axis and take turns there, proved."""
-    found = [f for _, f in functions(models, of)]
-    is_true = all(f.alternates and f.certified for f in found)
+    facts = [f for _, f in functions(models, of)]
+    is_true = all(f.alternates and f.certified for f in facts)
     words = "lie exactly on the axis (proved) and alternate" if is_true else "do not alternate there"
-    listed = [f"{len(f.poles)} poles and {len(f.zeros)} zeros of {f.tf}" for f in found]
+    listed = [f"{len(f.poles)} poles and {len(f.zeros)} zeros of {f.tf}" for f in facts]
     return judged(is_true, "\n".join(f"The {these} listed {words}." for these in listed))
 
 
@@ -175,25 +175,25 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
     A ``count`` of 0 stands for any number.
     """
     lines: list[Run] = []
-    found = functions(models, of)
-    for stem, function in found:
+    facts = functions(models, of)
+    for stem, function in facts:
         right = [f"{z.re:.4g}" for z in function.zeros if z.is_in_right_half_plane]
         zeros = ", ".join(f"{z.re:.4g}{z.im:+.4g}j" for z in function.zeros)
         listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else zeros
         lines += ["\n", f"In {stem}, {function.tf} has zeros at {listed} rad/s."]
         lines += _bracket(function) if function.bracket else ()
-    is_true = all(f.has_mirrored_real_zeros for _, f in found)
-    is_true = is_true and (not count or all(len(f.zeros) == count for _, f in found))
-    return judged(is_true, *lines[1:], condition=any(f.bracket for _, f in found))
+    is_true = all(f.has_mirrored_real_zeros for _, f in facts)
+    is_true = is_true and (not count or all(len(f.zeros) == count for _, f in facts))
+    return judged(is_true, *lines[1:], condition=any(f.bracket for _, f in facts))
 
 
 def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether no zero lies in the right half plane, for all values of the parameters."""
-    found = functions(models, of)
+    facts = functions(models, of)
     words = {True: "minimum phase", False: "nonminimum phase"}
-    said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in found]
+    said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in facts]
     lines = [f"{start}, {f.condition}: {f.reason}." for start, f in said]
-    is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
+    is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in facts)
     return judged(is_true, "\n".join(lines))
 
 
@@ -203,13 +203,13 @@ def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: b
     With ``for_these_values``, what it is for other values of the parameters is left out.
     """
     lines: list[Run] = []
-    found = functions(models, of)
-    for stem, function in found:
+    facts = functions(models, of)
+    for stem, function in facts:
         zeros = counted(function.right_half_plane_zeros, "zero")
         lines += ["\n", f"In {stem}, {function.tf} has {zeros} in the right half plane."]
         lines += () if for_these_values else _bracket(function)
-    is_true = all(not f.is_minimum_phase for _, f in found)
-    has_condition = not for_these_values and any(f.bracket for _, f in found)
+    is_true = all(not f.is_minimum_phase for _, f in facts)
+    has_condition = not for_these_values and any(f.bracket for _, f in facts)
     return judged(is_true, *lines[1:], condition=has_condition)
 
 
@@ -222,10 +222,10 @@ def printed_formula(models: Models, of: tuple[str, ...]) -> Finding:
 
 def _of_one(models: Models, name: str) -> Finding:
     stem, _, tf = name.partition(": ")
-    found = {key: (verdict, changes) for key, verdict, changes in models[stem].audits}
-    if tf not in found:
+    audits = {key: (verdict, changes) for key, verdict, changes in models[stem].audits}
+    if tf not in audits:
         raise KeyError(f"printed formula of {tf}")
-    verdict, changes = found[tf]
+    verdict, changes = audits[tf]
     right = "The formula is proved equal to the derived function."
     wrong = f"The formula is proved not to be the derived function. {changes}."
     if verdict not in ("equal", "differs"):
@@ -272,22 +272,22 @@ def unstable_at_high_gain(models: Models, of: tuple[str, ...]) -> Finding:
 
 def always_stable(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether loops are stable for all gains examined."""
-    found = [(stem, _loop(models, stem).is_always_stable) for stem in of]
-    lines = [f"{stem} is {'' if is_so else 'not '}stable for all gains examined." for stem, is_so in found]
-    return judged(all(is_so for _, is_so in found), "\n".join(lines))
+    loops = [(stem, _loop(models, stem).is_always_stable) for stem in of]
+    lines = [f"{stem} is {'' if is_so else 'not '}stable for all gains examined." for stem, is_so in loops]
+    return judged(all(is_so for _, is_so in loops), "\n".join(lines))
 
 
 def together(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether outputs move with one where the input acts, from the lowest frequency examined."""
-    found = [(_colocation(models, name), models[model_of(name)]) for name in of]
+    colocations = [(_colocation(models, name), models[model_of(name)]) for name in of]
     lines = [
         f"In {facts.stem}, {one.tf} and {one.reference} are together {_up_to(one)}; "
         f"its first mode is at {_first_mode(facts.of(one.tf)):.4g} Hz."
-        for one, facts in found
+        for one, facts in colocations
     ]
-    is_limited = any(one.bandwidth_hz is not None for one, _ in found)
+    is_limited = any(one.bandwidth_hz is not None for one, _ in colocations)
     lines += ["Condition: below that frequency."] if is_limited else []
-    return judged(all(one.is_together for one, _ in found), " ".join(lines), condition=is_limited)
+    return judged(all(one.is_together for one, _ in colocations), " ".join(lines), condition=is_limited)
 
 
 def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
@@ -295,10 +295,10 @@ def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
     lines: list[str] = []
     shares: list[float] = []
     for name in of:
-        found = _colocation(models, name)
-        end = (found.bandwidth_hz or found.examined_hz) if found.is_together else 0.0
-        shares.append(end / _first_mode(models[model_of(name)].of(found.tf)))
-        moves = f"In {model_of(name)}, outputs are together {_up_to(found)}"
+        colocation = _colocation(models, name)
+        end = (colocation.bandwidth_hz or colocation.examined_hz) if colocation.is_together else 0.0
+        shares.append(end / _first_mode(models[model_of(name)].of(colocation.tf)))
+        moves = f"In {model_of(name)}, outputs are together {_up_to(colocation)}"
         lines.append(f"{moves}, {shares[-1]:.2g} times its first mode.")
     return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
 
@@ -317,11 +317,11 @@ def functions(models: Models, of: tuple[str, ...]) -> list[tuple[str, TransferFa
 
     Raises KeyError for one that the models do not have.
     """
-    found: list[tuple[str, TransferFacts]] = []
+    facts: list[tuple[str, TransferFacts]] = []
     for name in of:
         stem, _, tf = name.partition(": ")
-        found += [(stem, f) for f in ((models[stem].of(tf),) if tf else models[stem].functions)]
-    return found
+        facts += [(stem, f) for f in ((models[stem].of(tf),) if tf else models[stem].functions)]
+    return facts
 
 
 def _two(models: Models, of: tuple[str, ...]) -> tuple[TransferFacts, TransferFacts]:
@@ -345,17 +345,17 @@ def _loop(models: Models, stem: str) -> LoopFacts:
 
 def _colocation(models: Models, name: str) -> ColocationFact:
     stem, _, tf = name.partition(": ")
-    return {found.tf: found for found in reversed(models[stem].colocations)}[tf]
+    return {colocation.tf: colocation for colocation in reversed(models[stem].colocations)}[tf]
 
 
 def _first_mode(function: TransferFacts) -> float:
     return min(p.frequency_hz for p in function.poles if p.is_oscillatory)
 
 
-def _up_to(found: ColocationFact) -> str:
-    within = f"within {found.phase_degrees:g} degrees and {found.magnitude_db:g} dB"
-    end = "" if found.bandwidth_hz else ", the end of the band"
-    return f"{within} up to {found.bandwidth_hz or found.examined_hz:.4g} Hz{end}"
+def _up_to(colocation: ColocationFact) -> str:
+    within = f"within {colocation.phase_degrees:g} degrees and {colocation.magnitude_db:g} dB"
+    end = "" if colocation.bandwidth_hz else ", the end of the band"
+    return f"{within} up to {colocation.bandwidth_hz or colocation.examined_hz:.4g} Hz{end}"
 
 
 def _counts(function: TransferFacts) -> str:

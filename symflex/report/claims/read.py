@@ -146,9 +146,9 @@ def _tables(reader: Reader, entry: KeyValue | None, what: str, at: Span | None =
         return []
     value = entry.value
     if isinstance(value, ArrayValue):
-        found = [item for item in value.items if isinstance(item, TableValue)]
-        if found and len(found) == len(value.items):
-            return found
+        tables = [item for item in value.items if isinstance(item, TableValue)]
+        if tables and len(tables) == len(value.items):
+            return tables
     reader.misfit(f"{what} must be an array of tables, not an empty one", value)
     return []
 

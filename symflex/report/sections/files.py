@@ -99,7 +99,7 @@ def _steps(study: Study, drawable: dict[tuple[str, str], AnyBoundFunction]) -> t
     if not model.is_closed_loop or any(figure.kind in ("step", "impulse") for figure in model.figures):
         return ()
     references = {x.name for x in model.inputs if x.kind == "signal"}
-    stable = {found.tf for found in study.maps if found.verdict.word == "stable"}
+    stable = {located.tf for located in study.maps if located.verdict.word == "stable"}
     pairs = [pair for pair in drawable if pair[1] in references and "/".join(pair) in stable]
     # Curves of one input and one quantity share an axis.
     ends = {pair: (drawable[pair].source.input.name, drawable[pair].source.output.unit) for pair in pairs}
@@ -135,16 +135,16 @@ def data_section(study: Study) -> ChapterPart | None:
     blocks: list[Block] = []
     files: dict[str, bytes] = {}
     shown = {"/".join(pair) for figure in study.model.figures if figure.has_data for pair in figure.of}
-    for i, found in enumerate(study.comparisons):
-        measured = found.measured
+    for i, comparison in enumerate(study.comparisons):
+        measured = comparison.measured
         if measured.name not in shown:
-            drawn = draw_measured(measured, found.model, found.unit)
+            drawn = draw_measured(measured, comparison.model, comparison.unit)
             kind = "SYNTHETIC data, computed and not measured," if measured.is_synthetic else "measured data"
             caption = f"{measured.name}: the model over {kind} of {measured.values.size} lines."
             blocks.append(picture(f"{study.stem}_data_{i + 1}", drawn, caption, files))
         band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
         whose = "the synthetic" if measured.is_synthetic else "the measured"
-        misfit = f"{found.decibels:.3g} dB and {found.degrees:.3g} degrees rms"
+        misfit = f"{comparison.decibels:.3g} dB and {comparison.degrees:.3g} degrees rms"
         rest = f" differs from {whose} data by {misfit}, with equal weight for every line."
         blocks.append(text("From ", band, ", ", Code(measured.name), rest))
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
@@ -206,11 +206,11 @@ def export_section(study: Study) -> ChapterPart:
 
 def _names(study: Study, responses: tuple[SampledResponse, ...]) -> list[str]:
     """Return a file's name for each, different also where capitals count as small letters."""
-    found: list[str] = []
+    names: list[str] = []
     for response in responses:
         plain = re.sub(r"[^A-Za-z0-9_]", "_", response.tf.replace("/", "_over_"))
-        found.append(free_name(f"data/{study.stem}_{plain}", found, ".csv"))
-    return found
+        names.append(free_name(f"data/{study.stem}_{plain}", names, ".csv"))
+    return names
 
 
 def _csv(response: SampledResponse) -> bytes:

@@ -48,8 +48,8 @@ LEFT_OUT: Final = (
 
 def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
-    explained = {found.tf: told for _, found, told in study.located}
-    reasons = {found.tf: reason for _, found, reason in study.unexplained}
+    explained = {each.tf: told for _, each, told in study.located}
+    reasons = {each.tf: reason for _, each, reason in study.unexplained}
     derived = attempt(lambda: study.tfs)
     tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
     blocks: list[Block] = []
@@ -57,40 +57,40 @@ def root_section(study: Study) -> ChapterPart:
         blocks.append(text(LEFT_OUT))
     warnings = []
     sections: list[Section] = []
-    for i, found in enumerate(study.maps):
-        tf = tfs.get(found.tf)
-        content = _of(found, explained.get(found.tf))
-        if found.tf in reasons:
-            content = (*content, text(f"What the zeros mean is not examined: {reasons[found.tf]}."))
-        sections.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
-        if not found.certificate.certified:
-            warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
+    for i, each in enumerate(study.maps):
+        tf = tfs.get(each.tf)
+        content = _of(each, explained.get(each.tf))
+        if each.tf in reasons:
+            content = (*content, text(f"What the zeros mean is not examined: {reasons[each.tf]}."))
+        sections.append(Section(each.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
+        if not each.certificate.certified:
+            warnings.append(f"{study.stem}: poles and zeros of {each.tf} are not certified")
     code = 0
     for name, error in study.without_map:
         sections.append(Section(name, (Notice(said(error)),), f"{study.stem}-roots-{len(sections) + 1}"))
         warnings.append(f"{study.stem}: no poles and zeros of {name}: {said(error)}")
         code = max(code, code_of(error))
     blocks += parted(sections)
-    document = {"schema": "symflex.report-roots/1", "roots": [found.to_json_dict() for found in study.maps]}
+    document = {"schema": "symflex.report-roots/1", "roots": [each.to_json_dict() for each in study.maps]}
     data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
     title = "Poles and zeros" if blocks else ""
     return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
 
 
-def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
-    certificate = found.certificate
+def _of(located: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
+    certificate = located.certificate
     if certificate.certified:
         mark = Badge("certified", "good")
         said = f"{certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
     else:
         mark, said = Badge("not certified", "bad"), f"{certificate.reason or 'no reason given'}."
-    shown = f" Listed: {region_text(found.region)}" if region_text(found.region) else ""
-    blocks: list[Block] = [_stability(found.verdict), marked(mark, said + shown)]
-    for part in found.excluded:
+    shown = f" Listed: {region_text(located.region)}" if region_text(located.region) else ""
+    blocks: list[Block] = [_stability(located.verdict), marked(mark, said + shown)]
+    for part in located.excluded:
         place = f"{part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j"
         blocks.append(text(f"Left out: {place}, where roots accumulate."))
     for kind, title in KINDS.items():
-        roots = roots_of(found, kind)
+        roots = roots_of(located, kind)
         entries = one_of_each_pair(roots)
         if entries:
             shown_columns = columns_for(PAGE_COLUMNS, roots)
@@ -99,7 +99,7 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
             heads = columns(*((column.head, "number") for column in shown_columns))
             count = sum(r.multiplicity for r in roots)
             cut = f" ({LONGEST} of {len(entries)} lines)" if len(entries) > LONGEST else ""
-            blocks.append(Table(heads, rows, f"{title}: {count}{cut}", root_table(found, kind)))
+            blocks.append(Table(heads, rows, f"{title}: {count}{cut}", root_table(located, kind)))
         elif kind != "hidden":
             blocks.append(text(f"{title}: none."))
     if told is not None:
@@ -144,16 +144,16 @@ def loop_section(study: Study) -> ChapterPart | None:
     documents = []
     warnings = []
     code = 0
-    for i, found in enumerate(study.loops):
-        if isinstance(found, SymflexError):
-            blocks.append(Notice(found.diagnostics[0].message))
-            warnings.append(f"{study.stem}, loops: {found.diagnostics[0].message}")
-            code = max(code, code_of(found))
+    for i, loop in enumerate(study.loops):
+        if isinstance(loop, SymflexError):
+            blocks.append(Notice(loop.diagnostics[0].message))
+            warnings.append(f"{study.stem}, loops: {loop.diagnostics[0].message}")
+            code = max(code, code_of(loop))
             continue
-        blocks.append(Section(f"Gain {found.gain}", _gains(found), f"{study.stem}-loop-{i + 1}"))
-        documents.append(found.to_json_dict())
-        if not found.certified:
-            warnings.append(f"{study.stem}: the loop with the gain {found.gain} is not certified")
+        blocks.append(Section(f"Gain {loop.gain}", _gains(loop), f"{study.stem}-loop-{i + 1}"))
+        documents.append(loop.to_json_dict())
+        if not loop.certified:
+            warnings.append(f"{study.stem}: the loop with the gain {loop.gain} is not certified")
             code = max(code, UncertifiedError.exit_code)
     for band in study.colocations:
         blocks.append(_together(band))
@@ -162,54 +162,54 @@ def loop_section(study: Study) -> ChapterPart | None:
             code = max(code, UncertifiedError.exit_code)
     if not blocks:
         return None
-    documents += [found.to_json_dict() for found in study.colocations]
+    documents += [loop.to_json_dict() for loop in study.colocations]
     content = {"schema": "symflex.report-loops/1", "loops": documents}
     data = {f"data/{study.stem}_loops.json": json.dumps(content, indent=1).encode()}
     title = "Loops" if study.loops else "Dynamic colocation"
     return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
 
 
-def _gains(found: StabilityMap) -> tuple[Block, ...]:
-    opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
-    if found.certified:
+def _gains(loop: StabilityMap) -> tuple[Block, ...]:
+    opening = marked(Badge("not certified", "bad"), "; ".join(loop.reasons))
+    if loop.certified:
         opening = marked(Badge("certified", "good"), "All poles right of the imaginary axis are counted.")
     blocks: list[Block] = []
-    if found.nominal is not None:
-        blocks.append(_stability(found.verdict, f", with {found.gain} = {float(found.nominal):g}"))
+    if loop.nominal is not None:
+        blocks.append(_stability(loop.verdict, f", with {loop.gain} = {float(loop.nominal):g}"))
     blocks.append(opening)
     rows: list[tuple[Cell, ...]] = []
-    for interval in found.intervals:
+    for interval in loop.intervals:
         mark = stability_mark(interval.poles.word)
         low, high = ("no end" if end is None else decimal(end) for end in (interval.low, interval.high))
         rows.append(((low,), (high,), (str(interval.poles.right),), (str(interval.poles.axis),), (mark,)))
-    unit = f" [{found.unit}]" if found.unit else ""
-    title = f"Closed-loop poles by the gain {found.gain}{unit}"
+    unit = f" [{loop.unit}]" if loop.unit else ""
+    title = f"Closed-loop poles by the gain {loop.gain}{unit}"
     blocks.append(Table(LOOP_HEADS, tuple(rows), title))
-    ends = [(b.gain, [f"{decimal(w / tau)} Hz" for w in b.frequencies]) for b in found.boundaries]
-    places = [f"{found.gain} = {decimal(gain)} at {', '.join(hertz)}" for gain, hertz in ends if hertz]
+    ends = [(b.gain, [f"{decimal(w / tau)} Hz" for w in b.frequencies]) for b in loop.boundaries]
+    places = [f"{loop.gain} = {decimal(gain)} at {', '.join(hertz)}" for gain, hertz in ends if hertz]
     if places:
         blocks.append(text(f"Poles are on the axis for {'; '.join(places)}."))
-    margins = [f"gain margin {decimal(m.factor)}" for m in found.gain_margins]
-    if found.phase_margin is not None:
-        margins.append(f"phase margin {decimal(degrees(found.phase_margin.angle))} degrees")
-    if margins and found.nominal is not None:
-        blocks.append(text(f"With {found.gain} = {float(found.nominal):g}: {', '.join(margins)}."))
-    if found.bandwidth is not None:
-        shown = bandwidth_text(found.gain, found.bandwidth)
+    margins = [f"gain margin {decimal(m.factor)}" for m in loop.gain_margins]
+    if loop.phase_margin is not None:
+        margins.append(f"phase margin {decimal(degrees(loop.phase_margin.angle))} degrees")
+    if margins and loop.nominal is not None:
+        blocks.append(text(f"With {loop.gain} = {float(loop.nominal):g}: {', '.join(margins)}."))
+    if loop.bandwidth is not None:
+        shown = bandwidth_text(loop.gain, loop.bandwidth)
         blocks.append(text(f"Bandwidth with a gain margin of 6 dB: {shown}."))
     return tuple(blocks)
 
 
-def _together(found: DynamicColocation) -> Block:
-    within = f" within {found.phase:g} degrees and {found.magnitude:g} dB"
-    pair = (Code(found.tf), " and ", Code(found.reference))
-    status = () if found.is_decided else (" ", Badge("not certified", "bad"))
-    if not found.begins:
-        return text(*pair, f" are not together{within} at {found.limits[0]:g} Hz.", *status)
-    if found.edge is None:
-        return text(*pair, f" stay together{within} up to {found.limits[1]:g} Hz, the end of the band.")
-    edge = decimal(found.edge / tau)
-    return text(*pair, f" stay together{within} up to {edge} Hz, where {found.parting}.", *status)
+def _together(colocation: DynamicColocation) -> Block:
+    within = f" within {colocation.phase:g} degrees and {colocation.magnitude:g} dB"
+    pair = (Code(colocation.tf), " and ", Code(colocation.reference))
+    status = () if colocation.is_decided else (" ", Badge("not certified", "bad"))
+    if not colocation.begins:
+        return text(*pair, f" are not together{within} at {colocation.limits[0]:g} Hz.", *status)
+    if colocation.edge is None:
+        return text(*pair, f" stay together{within} up to {colocation.limits[1]:g} Hz, the end of the band.")
+    edge = decimal(colocation.edge / tau)
+    return text(*pair, f" stay together{within} up to {edge} Hz, where {colocation.parting}.", *status)
 
 
 def decimal(value: arb) -> str:

@@ -257,17 +257,17 @@ class _AxisDoubles:
 
 def _products(growths: Sequence[Multiples]) -> tuple[tuple[int, int] | None, ...]:
     """Return for exponentials that are products of two before them the positions of these."""
-    found: dict[Multiples, int] = {}
+    positions: dict[Multiples, int] = {}
     products: list[tuple[int, int] | None] = []
     for position, growth in enumerate(growths):
         factors = None
-        for other, i in found.items():
-            rest = found.get(tuple(a - b for a, b in zip(growth, other, strict=True)))
+        for other, i in positions.items():
+            rest = positions.get(tuple(a - b for a, b in zip(growth, other, strict=True)))
             if rest is not None:
                 factors = (i, rest)
                 break
         products.append(factors)
-        found[growth] = position
+        positions[growth] = position
     return tuple(products)
 
 
@@ -277,20 +277,20 @@ def _derived(polynomial: dict[int, arb]) -> dict[int, arb]:
 
 def _by(polynomial: dict[int, arb], rate: Rate) -> dict[int, arb]:
     """Return a polynomial times the derivative of ``p t + q t^2``."""
-    found: dict[int, arb] = {}
+    coefficients: dict[int, arb] = {}
     for n, c in polynomial.items():
         for power, factor in ((n, rate[0]), (n + 1, 2 * rate[1])):
             if factor != 0:
-                found[power] = found.get(power, arb(0)) + c * factor
-    return found
+                coefficients[power] = coefficients.get(power, arb(0)) + c * factor
+    return coefficients
 
 
 def _sum(*polynomials: dict[int, arb]) -> dict[int, arb]:
-    found: dict[int, arb] = {}
+    total: dict[int, arb] = {}
     for polynomial in polynomials:
         for n, c in polynomial.items():
-            found[n] = found.get(n, arb(0)) + c
-    return found
+            total[n] = total.get(n, arb(0)) + c
+    return total
 
 
 def _powers(polynomial: dict[int, arb]) -> Powers:

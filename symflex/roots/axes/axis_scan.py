@@ -53,10 +53,10 @@ def sign_changes(winding: Winding, low: float, high: float, angle: float) -> lis
     """
     turned = angle - BESIDE if angle else 0.0
     sums = winding.function.in_doubles
-    found = None if sums is None else _on_grid(winding, sums, low, high, turned)
-    if found is None:
-        found = list(_step_by_step(winding, low, high, turned))
-    return [complex(place, angle) for place in sorted(found)]
+    arguments = None if sums is None else _on_grid(winding, sums, low, high, turned)
+    if arguments is None:
+        arguments = list(_step_by_step(winding, low, high, turned))
+    return [complex(place, angle) for place in sorted(arguments)]
 
 
 def _on_grid(
@@ -64,7 +64,7 @@ def _on_grid(
 ) -> list[float] | None:
     """Return where factors in the numerator change their signs, ``None`` where doubles do not tell."""
     numbers = [i for i, (_, exponent) in enumerate(winding.function.part.factors) if exponent > 0]
-    found: list[float] = []
+    arguments: list[float] = []
     place = low
     while place < high:
         winding.spend()
@@ -83,13 +83,13 @@ def _on_grid(
                 return None
             changes = whole % 2 == 1
             for i in _dips(sample.size, changes):
-                found += _step_by_step(winding, grid[i - 1], grid[i + 1], turned)
+                arguments += _step_by_step(winding, grid[i - 1], grid[i + 1], turned)
             starts = 1 + np.flatnonzero(changes[1:-1])
             if len(starts):
                 ends = [(grid[i], sample.size[i], sample.phase[i]) for i in (starts, starts + 1)]
-                found += _secants(sums, number, ends, turned)
+                arguments += _secants(sums, number, ends, turned)
         place = end
-    return found
+    return arguments
 
 
 def _dips(size: Doubles, changes: npt.NDArray[np.bool_]) -> list[int]:
@@ -121,8 +121,8 @@ def _crossing(
     low: Doubles | float, below: Doubles | float, high: Doubles | float, above: Doubles | float
 ) -> Doubles:
     """Return where a real function with these logarithms at the ends is about zero."""
-    found: Doubles = low + (high - low) / (1 + np.exp(np.clip(above - below, -MOST, MOST)))
-    return found
+    argument: Doubles = low + (high - low) / (1 + np.exp(np.clip(above - below, -MOST, MOST)))
+    return argument
 
 
 def _step_by_step(winding: Winding, low: float, high: float, turned: float) -> Iterator[float]:
@@ -139,10 +139,10 @@ def _step_by_step(winding: Winding, low: float, high: float, turned: float) -> I
 
 def _sample(winding: Winding, z: complex) -> Sample:
     winding.spend()
-    found = winding.function.at_logarithm(z, is_simple=True)
-    if found is None:
+    sample = winding.function.at_logarithm(z, is_simple=True)
+    if sample is None:
         raise RootOnPathError
-    return found
+    return sample
 
 
 def _pieces(

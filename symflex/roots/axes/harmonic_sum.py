@@ -96,13 +96,13 @@ class ArcSum:
     @cached_property
     def _sizes(self) -> tuple[_Size, ...]:
         """Per exponential the power that is the largest far from 0."""
-        found = []
+        sizes = []
         for term in self.terms:
             n, c = max(term.powers, key=lambda power: power[0])
             number = complex(c)
             size = log(abs(number)) if number else -inf
-            found.append(_Size(complex(term.linear), complex(term.square), n, number, size))
-        return tuple(found)
+            sizes.append(_Size(complex(term.linear), complex(term.square), n, number, size))
+        return tuple(sizes)
 
     @cached_property
     def _power(self) -> int | None:
@@ -373,10 +373,10 @@ def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction |
 
     ``bits`` are the precision of its numbers; up to this it can be evaluated.
     """
-    found = function.exponentials
-    if found is None:
+    exponentials = function.exponentials
+    if exponentials is None:
         return None
-    arguments, sums = found
+    arguments, sums = exponentials
     bound = function.bound
     index = bound.ratio.ring.index
     laws: dict[str, _Law] = {}

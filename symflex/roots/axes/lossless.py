@@ -136,10 +136,10 @@ class LosslessSearch:
             quarters = turn / (arb.pi() / 2)
             if not quarters.is_finite():
                 raise RootOnPathError
-            found = round(float(quarters))
-            if not abs(quarters - found) < HALF:
+            turns = round(float(quarters))
+            if not abs(quarters - turns) < HALF:
                 raise RootOnPathError
-        return found - self.order
+        return turns - self.order
 
     def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
         """Find the lowest modes, and all up to ln of a radius; tell whether these are all."""
@@ -170,8 +170,8 @@ class LosslessSearch:
         high, about = self.function.first_frequency, self._about(modes + 1)
         samples = 0
         while sum(g.exponent for g in guesses) <= modes:
-            found, used = self._guesses(low, high)
-            guesses += found
+            changes, used = self._guesses(low, high)
+            guesses += changes
             samples += used
             if samples > MOST_SAMPLES or high > HIGHEST:
                 break
@@ -200,14 +200,14 @@ class LosslessSearch:
 
     def _guesses(self, low: float, high: float) -> tuple[list[SignChange], int]:
         """Return all sign changes between two abs(s), ascending, and how many samples it took."""
-        found: list[SignChange] = []
+        sign_changes: list[SignChange] = []
         samples = 0
         for source, exponent in self._sources:
             changes, used = self._sign_changes(source, low, high)
             samples += used
-            found += [SignChange(source.natural_frequency(t), t, source, exponent) for t in changes]
-        found.sort(key=lambda guess: guess.frequency)
-        return found, samples
+            sign_changes += [SignChange(source.natural_frequency(t), t, source, exponent) for t in changes]
+        sign_changes.sort(key=lambda guess: guess.frequency)
+        return sign_changes, samples
 
     @np.errstate(all="ignore")  # what is too large for doubles changes no sign
     def _sign_changes(self, source: AxisFunction, low: float, high: float) -> tuple[list[float], int]:
@@ -216,7 +216,7 @@ class LosslessSearch:
         if start == 0:
             start = end * FIRST_PHASE
         count = int(source.fastest(end) * (end - start) / GRID) + 16
-        found: list[float] = []
+        polished: list[float] = []
         last: tuple[float, float] | None = None
         for first in range(0, count, BATCH):
             spend()
@@ -232,8 +232,8 @@ class LosslessSearch:
             last = (float(t[-1]), float(values[-1]))
             at = np.nonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))[0]
             if at.size:
-                found += _polished(source, t[at], t[at + 1], values[at], values[at + 1]).tolist()
-        return found, count
+                polished += _polished(source, t[at], t[at + 1], values[at], values[at + 1]).tolist()
+        return polished, count
 
     def _proved(self, guesses: Sequence[SignChange]) -> list[Root]:
         proved = (self._proved_at(guess.source, guess.t, guess.exponent) for guess in guesses)

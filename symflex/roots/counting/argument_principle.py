@@ -168,13 +168,13 @@ class CertifiedWinding(Winding):
         if by_exponentials is not None:
             if tries_series and (by_exponentials[0] > ROOM or _is_lossy(*by_exponentials)):
                 by_series = self._series.change(centre, reach, here, there, bits)
-                return min(by_series, by_exponentials, key=lambda found: found[0])
+                return min(by_series, by_exponentials, key=lambda values: values[0])
             return by_exponentials
         if self.function.cancels:
             return self._series.change(centre, reach, here, there, bits)
-        found = self.function.enclosed_about(ball, centre, bits)
+        values = self.function.enclosed_about(ball, centre, bits)
         off = 0.0
-        for value, slope, exponent in found:
+        for value, slope, exponent in values:
             size, change = value.abs_lower(), (slope * reach).abs_upper()
             if not change.is_finite() or not size > 0:
                 return inf, arb(0)
@@ -211,7 +211,7 @@ def _is_lossy(off: float, turn: arb) -> bool:
 
 def _whole(turns: arb) -> int:
     """Return the only integer in a ball."""
-    found = turns.unique_fmpz()
-    if found is None:
+    count = turns.unique_fmpz()
+    if count is None:
         raise RootOnPathError
-    return int(found)
+    return int(count)

@@ -140,10 +140,10 @@ class Winding:
         if z not in self._samples:
             self.spend()
             self._samples[z] = self.function.at_logarithm(z)
-        found = self._samples[z]
-        if found is None:
+        kept = self._samples[z]
+        if kept is None:
             raise RootOnPathError
-        return found
+        return kept
 
     def reach(self, z: float) -> float:
         """Return the largest kernel argument at ``abs(s) = exp(z)``."""

@@ -110,14 +110,14 @@ class FunctionFarOut:
     @classmethod
     def of(cls, bound: BoundTransferFunction, sectors: int) -> FunctionFarOut | None:
         """Return what tells how large a function is; None where its wavenumbers have no formula."""
-        found = []
+        functions = []
         with precision(BITS):
             for factor, exponent in bound.ratio.factors:
                 function = _sum_far_out(bound, (factor,), (acb(1),), sectors)
                 if isinstance(function, str):
                     return None
-                found.append((function, exponent))
-            return cls(tuple(found), ball(bound.ratio.unit), sectors)
+                functions.append((function, exponent))
+            return cls(tuple(functions), ball(bound.ratio.unit), sectors)
 
     def least(self, start: float) -> float | None:
         """Return a radius from which on sizes are known, no smaller than a given one; None without one."""
@@ -132,10 +132,10 @@ class FunctionFarOut:
             arguments: list[_Power] = []
             for function, exponent in self.factors:
                 if exponent < 0:
-                    found = function.dominant_terms(radius)
-                    if found is None:
+                    terms = function.dominant_terms(radius)
+                    if terms is None:
                         return None
-                    arguments, dominant = found
+                    arguments, dominant = terms
                     below.append((dominant, -exponent))
                 else:
                     powers = function.powers(radius)
@@ -160,23 +160,23 @@ class FunctionFarOut:
 
 def _product(a: Terms, b: Terms) -> Terms:
     """Return the product of two sums of exponentials."""
-    found: Terms = {}
+    terms: Terms = {}
     for one, amplitude in a.items():
         for other, factors in b.items():
-            own = found.setdefault(_sum((one, 1), (other, 1)), {})
+            own = terms.setdefault(_sum((one, 1), (other, 1)), {})
             for (p, c), (q, d) in product(amplitude.items(), factors.items()):
                 own[p + q] = own.get(p + q, acb(0)) + c * d
-    return found
+    return terms
 
 
 def _sum(*parts: tuple[Exponent, int]) -> Exponent:
     """Return a sum of multiples of exponents."""
-    found: dict[int, tuple[int, int]] = {}
+    sums: dict[int, tuple[int, int]] = {}
     for exponent, times in parts:
         for i, a, b in exponent:
-            re, im = found.get(i, (0, 0))
-            found[i] = (re + times * a, im + times * b)
-    return tuple((i, *own) for i, own in sorted(found.items()) if any(own))
+            re, im = sums.get(i, (0, 0))
+            sums[i] = (re + times * a, im + times * b)
+    return tuple((i, *own) for i, own in sorted(sums.items()) if any(own))
 
 
 def _quotient(
@@ -289,14 +289,14 @@ class _SumFarOut:
         if powers is None:
             return None
         terms, arguments = powers
-        found = {}
+        by_sector = {}
         # Next to the ends a sector is the most likely to fail.
         for i in (self.sectors - 1, 0, *range(1, self.sectors - 1)):
             own = _dominant(terms, _turned(arguments, i), arb(radius))
             if own is None:
                 return None
-            found[i] = own
-        return arguments, [found[i] for i in range(self.sectors)]
+            by_sector[i] = own
+        return arguments, [by_sector[i] for i in range(self.sectors)]
 
     def obstacle(self, radius: float) -> str:
         """Say why no term outweighs the others for large s.
@@ -332,10 +332,10 @@ class _SumFarOut:
             if (wave := _wave(self.kernels, law, radius)) is not None:
                 named[name], to_and_fro[name] = wave[0], wave[1:]
                 continue
-            found = _at_infinity(self.kernels, law.characteristic[0], radius)
-            if found is None:
+            leading = _at_infinity(self.kernels, law.characteristic[0], radius)
+            if leading is None:
                 return None
-            power, value = found
+            power, value = leading
             value = -value if law.kind == "wave" else value / 4
             # Any branch serves, as long as it is the same everywhere.
             start = acb(0)
@@ -357,10 +357,10 @@ class _SumFarOut:
                 known = named[argument.wavenumber]
                 arguments.append(_Power(known.power, known.unit * length))
                 continue
-            found = _at_infinity(self.kernels, argument.rate, radius)
-            if found is None:
+            leading = _at_infinity(self.kernels, argument.rate, radius)
+            if leading is None:
                 return None
-            power, value = found
+            power, value = leading
             linear = _polynomial(self.kernels, argument.rate)
             if linear is not None and len(linear) == LINEAR + 1:
                 value, decays[i] = linear[1], -linear[0] * length
@@ -399,13 +399,13 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
     for factor, exponent in value.factors:
         if any(degree_in(factor, kernels.names.index(n)) for n in kernels.table.generators):
             return None
-        found = acb(0)
+        series_sum = acb(0)
         for coefficient in _coefficients(kernels, factor):
-            found = found * small + coefficient
-        if found.contains(0):
+            series_sum = series_sum * small + coefficient
+        if series_sum.contains(0):
             return None
         power += degree_in(factor, 0) * exponent
-        total = total * found**exponent
+        total = total * series_sum**exponent
     return power, total
 
 
@@ -427,13 +427,13 @@ def _wave(kernels: KernelValues, law: Dispersion, radius: float) -> tuple[_Power
 
 def _polynomial(kernels: KernelValues, value: Factored) -> list[acb] | None:
     """Return the coefficients of a polynomial in s, that of the lowest power first; None of other values."""
-    found = acb_poly([acb(ball(value.unit))])
+    total = acb_poly([acb(ball(value.unit))])
     for factor, exponent in value.factors:
         own = _coefficients(kernels, factor)
         if exponent < 0 and len(own) > 1:
             return None
-        found = found * (acb_poly(own) ** exponent if exponent > 0 else acb_poly([own[0] ** exponent]))
-    return found.coeffs()
+        total = total * (acb_poly(own) ** exponent if exponent > 0 else acb_poly([own[0] ** exponent]))
+    return total.coeffs()
 
 
 def _coefficients(kernels: KernelValues, factor: fmpz_mpoly) -> list[acb]:
@@ -502,18 +502,18 @@ def _together(ring: Ring, factor: fmpz_mpoly) -> list[fmpz_mpoly]:
     A mass with a dashpot, for example, has ``m s^2 X + Y`` and ``b s X``, which leave Y.
     """
     parts = by_powers(ring, factor)
-    s, found = ring.context.gen(0), list[fmpz_mpoly]()
+    s, factors = ring.context.gen(0), list[fmpz_mpoly]()
     for odd in (0, 1):
         half = sum((c * s**p for p, c in parts.items() if p % 2 == odd), ring.constant(0))
-        found += [] if half.is_zero() else [half]
+        factors += [] if half.is_zero() else [half]
     for one, other in ((0, 1), (0, 2), (1, 2)):
-        if len(found) > max(one, other):
-            f, g = found[one], found[other]
+        if len(factors) > max(one, other):
+            f, g = factors[one], factors[other]
             (a, c), (b, d) = ((ring.context.from_dict({h.monoms()[0]: 1}), h.coeffs()[0]) for h in (f, g))
             common = a.gcd(b)
             rest = f * (b // common) * d - g * (a // common) * c
-            found += [] if rest.is_zero() else [rest]
-    return found
+            factors += [] if rest.is_zero() else [rest]
+    return factors
 
 
 @dataclass(frozen=True, slots=True)
@@ -546,17 +546,17 @@ class _SumsOnAxis:
                     return False
                 growth = tuple((i, g, 0) for i, g, _ in own if g)
                 terms.append((growth, {i: n for i, _, n in own if n}, _summed(amplitude, numbers)))
-            found = _fastest(terms, sizes, radius)
-            if found is None:
+            fastest = _fastest(terms, sizes, radius)
+            if fastest is None:
                 return False
             waves: dict[int, acb] = {}
-            for phase, size in found[0]:
+            for phase, size in fastest[0]:
                 n = gcd(*phase.values()) * (-1 if min(phase.items(), default=(0, 1))[1] < 0 else 1)
                 base = base or tuple((i, x // n, 0) for i, x in phase.items())
                 if phase != {i: x * n for i, x, _ in base if n}:
                     return False  # of two phases no limit is known
                 waves[n] = waves.get(n, acb(0)) + size
-            sums.append((waves, acb(arb(0, found[1]), arb(0, found[1]))))
+            sums.append((waves, acb(arb(0, fastest[1]), arb(0, fastest[1]))))
         step = 2 * arb.pi() / PHASES
         turned = [acb(0, (step * i).union(step * (i + 1))) for i in range(PHASES)]
         return all(
@@ -572,10 +572,10 @@ class _SumsOnAxis:
         named = {LAPLACE: (2, Fraction(1), arb(1))}
         kernels = self.values.evaluator
         for law in (law for law in kernels.table.dispersions if law.wavenumbers):
-            found = _on_axis(kernels, law.characteristic[0], radius) if law.kind in SINGLE else None
-            if found is None:
+            first = _on_axis(kernels, law.characteristic[0], radius) if law.kind in SINGLE else None
+            if first is None:
                 return None
-            order, power, value = SINGLE[law.kind], found[0], found[1] / (4 if law.kind == "bending" else -1)
+            order, power, value = SINGLE[law.kind], first[0], first[1] / (4 if law.kind == "bending" else -1)
             if not (abs(value) > 0 and power > 0):
                 return None
             turn = 0 if value > 0 else 4 // order
@@ -585,13 +585,13 @@ class _SumsOnAxis:
 
 def _summed(amplitude: Valued, named: Mapping[str, _Power]) -> dict[Fraction, acb]:
     """Return an amplitude as a sum of powers of s or omega."""
-    found: dict[Fraction, acb] = {}
+    by_power: dict[Fraction, acb] = {}
     for number, powers in amplitude:
         power, total = Fraction(0), number
         for name, e in powers:
             power, total = power + named[name].power * e, total * named[name].unit ** e
-        found[power] = found.get(power, acb(0)) + total
-    return found
+        by_power[power] = by_power.get(power, acb(0)) + total
+    return by_power
 
 
 def _fastest(
@@ -615,26 +615,26 @@ def _fastest(
         value = arb(radius) ** ball(power - highest)
         return arb(0).union(value) if power < highest else value
 
-    found, error = [], arb(0)
+    dominant, error = [], arb(0)
     for growth, phase, factors in terms:
         faded = _faded(_sum((growth, 1), (fastest, -1)), sizes, arb(radius))
         if faded is None or any(p > highest and not -faded[1] > ball(p - highest) for p in factors):
             return None
         size = sum((c * bounded(p) for p, c in factors.items()), acb(0))
         if growth == fastest:
-            found.append((phase, size))
+            dominant.append((phase, size))
         else:
             error += abs(size).upper() * faded[0].upper()
-    return found, error.upper()
+    return dominant, error.upper()
 
 
 def _on_axis(kernels: KernelValues, value: Factored, radius: float) -> tuple[int, arb] | None:
     """Return a power of omega and what a value is times it from a radius on, None unless it is even in s."""
-    found = _at_infinity(kernels, value, radius)
+    leading = _at_infinity(kernels, value, radius)
     parities = [{dict(monomial).get(0, 0) % 2 for monomial, _ in terms_of(f)} for f, _ in value.factors]
-    if found is None or found[0] % 2 or any(len(own) > 1 for own in parities):
+    if leading is None or leading[0] % 2 or any(len(own) > 1 for own in parities):
         return None  # each factor is even or odd, and the highest power is even
-    return found[0], found[1].real * (-1) ** (found[0] // 2)
+    return leading[0], leading[1].real * (-1) ** (leading[0] // 2)
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,27 +95,27 @@ class Count:
         ``innermost`` is ln of the radius of a disc about 0 within which none was sought.
         """
         if not are_apart(located):
-            found = count_roots(located)
-            return Proof(found, found, TOUCHING)
+            count = count_roots(located)
+            return Proof(count, count, TOUCHING)
         cells, holes = parts(domain, self.left, self.holes)
-        found, unsure = 0, False
+        count, unsure = 0, False
         deciders, hole_deciders = [decider(cell) for cell in cells], [decider(hole) for hole in holes]
         for root in located:
             positions = [is_inside(root) for is_inside in deciders]
             unsure = unsure or (not any(positions) and None in positions)
             if any(positions) and not any(is_inside(root) for is_inside in hole_deciders):
-                found += root.multiplicity
+                count += root.multiplicity
         if unsure:
-            return Proof(found, found, "a root lies on the boundary of what was searched")
+            return Proof(count, count, "a root lies on the boundary of what was searched")
         is_disc = domain.low == -inf
         try:
             turns = self.turns(domain) - (self.order if is_disc else 0)
         except RootOnPathError:
-            return Proof(found, found, UNPROVED)
+            return Proof(count, count, UNPROVED)
         counted, rest = divmod(turns, self.winding.function.power)
         if rest or not (is_disc or self.is_empty_within(innermost)):
-            return Proof(found, found, UNPROVED)
-        return Proof(counted + (count_roots(at_zero) if is_disc else 0), found)
+            return Proof(count, count, UNPROVED)
+        return Proof(counted + (count_roots(at_zero) if is_disc else 0), count)
 
     def right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
@@ -148,20 +148,20 @@ def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
     >>> round(hole.low, 6), round(hole.high, 6)
     (-0.05, 0.05995)
     """
-    found: list[Cell] = []
+    holes: list[Cell] = []
     for point in points:
         z, e = complex(log(abs(point)), phase(point)), NEIGHBOURHOOD
         joined = Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
-        while meeting := next((h for h in found if _meet(h, joined)), None):
-            found.remove(meeting)
+        while meeting := next((h for h in holes if _meet(h, joined)), None):
+            holes.remove(meeting)
             joined = Cell(
                 min(meeting.low, joined.low),
                 max(meeting.high, joined.high),
                 min(meeting.right, joined.right),
                 max(meeting.left, joined.left),
             )
-        found.append(joined)
-    return tuple(found)
+        holes.append(joined)
+    return tuple(holes)
 
 
 def _meet(a: Cell, b: Cell) -> bool:
@@ -300,17 +300,17 @@ def roots_at_zero(
 def turns_about_zero(winding: CertifiedWinding, left: float, holes: Sequence[Cell]) -> tuple[float, int]:
     """Return ln of a small radius, and how many roots are proved to lie within it."""
     lowest = winding.smallest(left, holes)
-    found: tuple[float, int] | None = None
+    best: tuple[float, int] | None = None
     for depth in DEPTHS:
         try:
             turns, rest = divmod(winding.count_within(lowest - depth, left), winding.function.power)
         except RootOnPathError:
             continue
         if not rest:
-            found = (lowest - depth, turns)
+            best = (lowest - depth, turns)
         if not turns:
             break
-    if found is None:
+    if best is None:
         message = f"the order of the root of {winding.function.bound.name} at s = 0 could not be determined"
         raise UncertifiedError(Diagnostic("SF404", message))
-    return found
+    return best

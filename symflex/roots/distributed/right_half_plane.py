@@ -136,7 +136,7 @@ def _end(side: Side, reached: float) -> tuple[float, str]:
     return radius, ""
 
 
-def gaps_text(found: Iterable[RightHalfPlane]) -> str:
+def gaps_text(half_planes: Iterable[RightHalfPlane]) -> str:
     """Say why roots of several functions may be missing, each reason once and how far all are known.
 
     Examples
@@ -145,7 +145,7 @@ def gaps_text(found: Iterable[RightHalfPlane]) -> str:
     'known up to 1.592 Hz only: no end'
     """
     reached: dict[str, float] = {}
-    for each in found:
+    for each in half_planes:
         if each.unproved:
             reached[each.unproved] = min(reached.get(each.unproved, each.reached), each.reached)
     return "; ".join(

@@ -215,13 +215,13 @@ class Side:
         if not isinstance(self._search, RootSearch):
             return
         self._scans = False
-        found = self._search.ring(low, high, right, left)
-        self.missing, cell = found.missing, found.cell
+        ring = self._search.ring(low, high, right, left)
+        self.missing, cell = ring.missing, ring.cell
         if cell is not None and low <= smallest and is_whole_ring(cell, self._search.left, self.holes):
             # A whole disc is easier to count than a ring whose inner circle is very small.
             cell = replace(cell, low=-inf)
         self._domain = cell
-        self._set(found.roots)
+        self._set(ring.roots)
 
     def numbered(self, number: int) -> Root | None:
         """Return one mode by its number, from 1, in order of natural frequency; ``None`` without so many.
@@ -264,8 +264,8 @@ class Side:
     def prove(self, region: Region) -> Proof:
         """Count the roots of the domain that was searched; subdivide it with proof if one is missing."""
         if self._search is None:
-            found = count_roots(self.roots)
-            return Proof(found, found)
+            count = count_roots(self.roots)
+            return Proof(count, count)
         if self.engine != SUBDIVISION:
             proof = self.counted()
             if proof.is_complete or SUBDIVISION not in self._engines:
@@ -284,13 +284,13 @@ class Side:
 
     def _subdivided(self) -> Proof:
         """Return what was found in cells that were all counted with proof."""
-        found = count_roots(self._located)
+        count = count_roots(self._located)
         if not (isinstance(self._search, RootSearch) and self._count.is_empty_within(self._innermost)):
-            return Proof(found, found, UNPROVED)
+            return Proof(count, count, UNPROVED)
         if not are_apart(self._located):
-            return Proof(found, found, TOUCHING)
+            return Proof(count, count, TOUCHING)
         reason = None if not self.missing else f"{self.missing} roots were counted but not found"
-        return Proof(found + self.missing, found, reason)
+        return Proof(count + self.missing, count, reason)
 
     def restore(self) -> None:
         """Put back what was taken out of :attr:`roots`."""
@@ -316,12 +316,12 @@ class Side:
 
     def _set(self, located: Sequence[Root]) -> None:
         even = self._search is not None and self._search.is_even
-        found: list[Root] = []
+        distinct: list[Root] = []
         for root in self._proved(mirror_images(located, even=even)):
             # What could not be told apart may have been met more than once.
-            if root.certified or not any(overlap(root, other) for other in found if not other.certified):
-                found.append(root)
-        self._located = [*self._origin, *found]
+            if root.certified or not any(overlap(root, other) for other in distinct if not other.certified):
+                distinct.append(root)
+        self._located = [*self._origin, *distinct]
         self._known = None
         self.roots = list(self._located)
 

@@ -79,13 +79,13 @@ class ExponentialValues:
     @cached_property
     def matrices(self) -> tuple[tuple[tuple[tuple[tuple[str, int], ...], ...], acb_mat], ...]:
         """Per sum what its amplitudes are made of, and by what that is multiplied: a row per amplitude."""
-        found = []
+        by_monomial = []
         for amplitudes in self.coefficients:
             monomials = sorted({powers for amplitude in amplitudes for _, powers in amplitude}) or [()]
             rows = [{powers: number for number, powers in amplitude} for amplitude in amplitudes]
             entries = [[row.get(powers, acb(0)) for powers in monomials] for row in rows]
-            found.append((tuple(monomials), acb_mat(entries)))
-        return tuple(found)
+            by_monomial.append((tuple(monomials), acb_mat(entries)))
+        return tuple(by_monomial)
 
     def valued(self, amplitude: Amplitude, halvings: int = 0) -> Valued:
         """Return an amplitude over a power of two with the values of all constants in place."""
@@ -139,9 +139,9 @@ class ExponentialValues:
         if order:
             rows = [[v[i] for i in range(order)] for v in (v + acb_series([], order) for v in values)]
         sums = (matrix * acb_mat(rows)).tolist()
-        found: list[Value] = [acb_series(row, order) if order else row[0] for row in sums]
-        place.amplitudes[number] = found
-        return found
+        amplitudes: list[Value] = [acb_series(row, order) if order else row[0] for row in sums]
+        place.amplitudes[number] = amplitudes
+        return amplitudes
 
     def exponents(self, number: int, place: Place, less: Exponent = REAL) -> list[Value | None]:
         """Return the exponents of all terms of one sum, less another one; ``None`` for 0."""
@@ -291,8 +291,8 @@ class _Amplitudes:
         for row, powers in enumerate(self._powers):
             for name, e in powers:
                 monomials[row] *= values[name] if e == 1 else values[name] ** e
-        found: Numbers = self._numbers @ monomials
-        return found
+        sums: Numbers = self._numbers @ monomials
+        return sums
 
 
 class _SampledTerms:

@@ -121,11 +121,11 @@ class KernelFunction:
         """Return how often s = 0 is a root of F to the :attr:`power` that makes it one function, or None."""
         table = self.bound.kernels
         for terms in SERIES_TERMS:
-            found = OriginSeries(self.part.ring, table, terms=terms).order(self.part**self.power)
-            if found is None and any(law.matrix for law in table.dispersions):
-                found = self._leading(terms)
-            if found is not None:
-                return found
+            order = OriginSeries(self.part.ring, table, terms=terms).order(self.part**self.power)
+            if order is None and any(law.matrix for law in table.dispersions):
+                order = self._leading(terms)
+            if order is not None:
+                return order
         return None
 
     def _leading(self, terms: int) -> int | None:
@@ -164,16 +164,16 @@ class KernelFunction:
 
         With ``is_simple``, every factor in the numerator counts once.
         """
-        found = self._settled(lambda: acb(z.real, z.imag).exp())
-        if found is None:
+        settled = self._settled(lambda: acb(z.real, z.imag).exp())
+        if settled is None:
             return None
-        factors, s = found
+        factors, s = settled
         return self._sample([(f, d, min(e, 1)) for f, d, e in factors] if is_simple else factors, s)
 
     def at_point(self, s: acb) -> Sample | None:
         """Return the sample at an exact ``s``, with the slope in ln(s)."""
-        found = self._settled(lambda: s)
-        return None if found is None else self._sample(*found)
+        settled = self._settled(lambda: s)
+        return None if settled is None else self._sample(*settled)
 
     def order_at_zero(self) -> float:
         """Return the order of the root at s = 0, close to an integer; NaN when it is not found."""
@@ -300,11 +300,11 @@ class KernelFunction:
                         if power:
                             part = part * Factored.generator(part.ring, law.wavenumbers[0]) ** -power
                             turned = turned / step**power
-                    found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), None)
-                    if found is None or not turned.rel_accuracy_bits() >= SETTLED_BITS:
+                    turns = next((n for n in BRANCHES if (turned**n - 1).contains(0)), None)
+                    if turns is None or not turned.rel_accuracy_bits() >= SETTLED_BITS:
                         message = f"a part of {self.bound.name} has no value of its own for every s"
                         raise UncertifiedError(Diagnostic("SF404", message))
-                    order = lcm(order, found)
+                    order = lcm(order, turns)
         return part, order
 
     def reach(self, s: float) -> float:
@@ -338,9 +338,9 @@ class KernelFunction:
             low, high = (middle, high) if self.reach(exp(middle)) < waves else (low, middle)
         return exp(high)
 
-    def _sample(self, found: list[tuple[acb, acb, int]], s: acb) -> Sample:
+    def _sample(self, factors: list[tuple[acb, acb, int]], s: acb) -> Sample:
         total, slope = 0j, 0j
-        for value, derivative, exponent in found:
+        for value, derivative, exponent in factors:
             middle = value.mid()
             total += exponent * complex(float(abs(middle).log()), float(middle.arg()))
             slope += exponent * complex(s * derivative / value)
@@ -350,11 +350,11 @@ class KernelFunction:
         for bits in precisions(self._bits, LAST_BITS):
             with precision(bits):
                 s = point()
-                found = self._factors(s, bits)
-                if any(f == 0 for f, _, _ in found):
+                factors = self._factors(s, bits)
+                if any(f == 0 for f, _, _ in factors):
                     return None
-                if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in found):
-                    return found, s
+                if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in factors):
+                    return factors, s
         return None
 
     def _spend(self, bits: int) -> None:
@@ -415,28 +415,28 @@ def other_branches(
         (k.wavenumber, k.function, id(k.length)): values[k.generator] for k in named
     }
     turn = acb(0, 1) if law.kind == "bending" else acb(-1)
-    found: list[dict[str, Value]] = []
+    branches: list[dict[str, Value]] = []
     for wavenumber in law.wavenumbers:
         branch: dict[str, Value] = {wavenumber: turn * values[wavenumber]}
         for k in (k for k in kernels if k.wavenumber == wavenumber):
             twin = TWINS[k.function] if law.kind == "bending" else k.function
             source = known.get((wavenumber, twin, id(k.length)), values[k.generator])
             branch[k.generator] = turn * source if k.function in ("sinh", "sin") else source
-        found.append(branch)
+        branches.append(branch)
     if len(law.wavenumbers) > 1:
         first, second = law.wavenumbers
         branch = {first: values[second], second: values[first]}
         for k in kernels:
             other = second if k.wavenumber == first else first
             branch[k.generator] = known.get((other, k.function, id(k.length)), values[k.generator])
-        found.append(branch)
-    return found
+        branches.append(branch)
+    return branches
 
 
 def _parity(polynomial: fmpz_mpoly) -> int | None:
     """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
-    found = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
-    return found.pop() if len(found) == 1 else None
+    parities = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
+    return parities.pop() if len(parities) == 1 else None
 
 
 def divisors_in_s(law: Dispersion) -> list[Factored]:

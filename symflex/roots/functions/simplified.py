@@ -122,12 +122,12 @@ def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
 
     def by_moving(f: fmpz_mpoly) -> dict[tuple[tuple[int, int], ...], Factored]:
         """Return numbers by what they are multiplied with, in falling powers of s."""
-        found: dict[tuple[tuple[int, int], ...], Factored] = {}
+        by_exponents: dict[tuple[tuple[int, int], ...], Factored] = {}
         for monomial, c in terms_of(f):
             key = tuple((i, e) for i, e in monomial if i in moving)
             term = prod((own[i] ** e for i, e in monomial if i not in moving), start=own[0] ** 0 * int(c))
-            found[key] = found[key] + term if key in found else term
-        return dict(sorted(found.items(), key=lambda item: -dict(item[0]).get(0, 0)))
+            by_exponents[key] = by_exponents[key] + term if key in by_exponents else term
+        return dict(sorted(by_exponents.items(), key=lambda item: -dict(item[0]).get(0, 0)))
 
     own = [Factored.generator(ring, name) for name in ring.names]
     hidden = [Factored(ring, Fraction(1), ((h.polynomial, h.multiplicity),)) for h in bound.hidden]
@@ -244,14 +244,14 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
         name = coordinates.ring.names[factor.degrees().index(1)]
         if name in coordinates.coordinates.index:
             return [(coordinates.coordinates.generator(name), 1)]
-    found = []
+    factors = []
     for polynomial, times in coordinates.transform(factor).factors:
         if len(polynomial) > MOST_TERMS:
             return None
         is_coordinate = len(polynomial) == 1
         pieces = [(polynomial, 1)] if is_coordinate else square_free_factors(polynomial)[1]
-        found += [(piece, e * times) for piece, e in pieces]
-    return found
+        factors += [(piece, e * times) for piece, e in pieces]
+    return factors
 
 
 def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factored:

@@ -66,11 +66,11 @@ def roots_in_disc(
     entered_budget().progress.report(0.0, "sizing the disc")
     radius = search.radius_of(2 * wanted + SPARE)
     for _ in range(ROUNDS):
-        found = _roots(search, radius, digits)
-        if found.holds(wanted) or not search.may_grow(radius * GROWTH, wanted):
+        in_disc = _roots(search, radius, digits)
+        if in_disc.holds(wanted) or not search.may_grow(radius * GROWTH, wanted):
             break
         radius *= GROWTH
-    return found
+    return in_disc
 
 
 def wanted_modes(region: Region) -> int:

@@ -61,9 +61,9 @@ def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
         return None
     rows: list[dict[int, nmod_poly]] = []
     for row in cramer.entries[:size]:
-        found = {j: field.rational(c, c.ring.names, values) for j, c in row.items() if j < size}
-        rows.append({j: x for j, x in found.items() if x is not None and not x.is_zero()})
-        if any(x is None for x in found.values()):
+        residues = {j: field.rational(c, c.ring.names, values) for j, c in row.items() if j < size}
+        rows.append({j: x for j, x in residues.items() if x is not None and not x.is_zero()})
+        if any(x is None for x in residues.values()):
             return None
     order = _order(rows, field)
     if order is None or size != len(cramer.entries) - 1:
@@ -80,10 +80,10 @@ def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly]
         return None
     values = {name: field.constant(x) for name, x in point.items()} | {LAPLACE: field.power(1)}
     for name, value in equations.definitions:
-        found = field.rational(value, value.ring.names, values)
-        if found is None:
+        residue = field.rational(value, value.ring.names, values)
+        if residue is None:
             return None
-        values[name] = found
+        values[name] = residue
     propagation = equations.propagation
     if propagation is None:
         return values

@@ -125,10 +125,10 @@ class Level:
                 seen = known[id(balls)] if turn is None else known[id(balls)].turned(turn)
                 held += seen.held
                 add_member(rows, member.ends, seen.blocks)
-            found = pivots(rows, self.counter.order, range(size, size + len(self.borders)))
-            receptances = tuple(arb(0) if x is None else -x for x in found.borders)
-            determinant = arb(1) if found.determinant is None else found.determinant
-            return NetworkSample(value, held + found.negative, determinant, receptances)
+            elimination = pivots(rows, self.counter.order, range(size, size + len(self.borders)))
+            receptances = tuple(arb(0) if x is None else -x for x in elimination.borders)
+            determinant = arb(1) if elimination.determinant is None else elimination.determinant
+            return NetworkSample(value, held + elimination.negative, determinant, receptances)
 
 
 def _turn(direction: Sequence[arb]) -> arb_mat | None:

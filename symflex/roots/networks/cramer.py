@@ -95,8 +95,8 @@ class CramerEquations:
         form = LinearForm.total([read.form])
         below = _denominator(form)
         rows.append({places[v]: c for v, c in (form * below).terms if v in places})
-        found = equations.memo[output, source] = CramerEquations(equations, rows, read.divisor * below)
-        return found
+        cramer = equations.memo[output, source] = CramerEquations(equations, rows, read.divisor * below)
+        return cramer
 
     # -------------------------------------------------------------------------------- values at points
 
@@ -133,11 +133,11 @@ class CramerEquations:
     @cached_property
     def moving_names(self) -> frozenset[str]:
         """The generators that are no constants."""
-        found = {LAPLACE, *(name for group in self.waves.values() for name, _ in group)}
+        moving = {LAPLACE, *(name for group in self.waves.values() for name, _ in group)}
         for name, value in self.equations.definitions:
-            if _uses(value, found):
-                found.add(name)
-        return frozenset(found)
+            if _uses(value, moving):
+                moving.add(name)
+        return frozenset(moving)
 
     @cached_property
     def _moving(self) -> list[tuple[int, ...]]:
@@ -218,7 +218,7 @@ class CramerEquations:
             return self._plans[key][1]
         constant, powers, sums = acb(fmpq(value.unit.numerator, value.unit.denominator)), [], []
         for factor, exponent in value.factors:
-            found: dict[tuple[tuple[str, int], ...], acb] = {}
+            by_moving: dict[tuple[tuple[str, int], ...], acb] = {}
             for monomial, coefficient in terms_of(factor):
                 term, moving = acb(coefficient), []
                 for name, power in ((value.ring.names[i], e) for i, e in monomial):
@@ -226,13 +226,13 @@ class CramerEquations:
                         moving.append((name, power))
                     else:
                         term *= values[name] ** power
-                found[tuple(moving)] = found.get(tuple(moving), ZERO) + term
-            if len(found) == 1:
-                ((alone, term),) = found.items()
+                by_moving[tuple(moving)] = by_moving.get(tuple(moving), ZERO) + term
+            if len(by_moving) == 1:
+                ((alone, term),) = by_moving.items()
                 constant *= term**exponent
                 powers += [(name, power * exponent) for name, power in alone]
             else:
-                sums.append((id(factor), [(term, of) for of, term in found.items()], exponent))
+                sums.append((id(factor), [(term, of) for of, term in by_moving.items()], exponent))
         self._plans[key] = value, (constant, powers, sums)
         return self._plans[key][1]
 
@@ -249,9 +249,9 @@ class CramerEquations:
                 # Mostly nothing is wanting but bits.
                 if current_bits() < 2 * bits:
                     raise
-        found = eliminate(rows, size)
-        self._orders[size] = found.order, current_bits()
-        return _determinants(found)
+        eliminated = eliminate(rows, size)
+        self._orders[size] = eliminated.order, current_bits()
+        return _determinants(eliminated)
 
     def alone(self, s: acb, bits: int, *, is_num: bool) -> acb:
         """Return numerator or denominator at an exact s, also where it vanishes."""
@@ -298,9 +298,9 @@ class CramerEquations:
         return values
 
 
-def _determinants(found: Eliminated) -> tuple[acb, acb]:
-    size = len(found.order)
-    return found.determinant, found.rows[size].get(size, ZERO) if len(found.rows) > size else ZERO
+def _determinants(solved: Eliminated) -> tuple[acb, acb]:
+    size = len(solved.order)
+    return solved.determinant, solved.rows[size].get(size, ZERO) if len(solved.rows) > size else ZERO
 
 
 def _uses(value: Factored, names: Collection[str]) -> bool:

@@ -105,8 +105,8 @@ class DiscSide:
 
     def all_roots(self, digits: int) -> list[Root]:
         """Return all roots of the disc but those at 0."""
-        found = [self.root(box, count, digits) for box, count in self.roots]
-        return mirror_images(found, even=self.is_even)
+        roots = [self.root(box, count, digits) for box, count in self.roots]
+        return mirror_images(roots, even=self.is_even)
 
 
 def images(box: acb, *, is_even: bool) -> int:
@@ -321,9 +321,9 @@ def _clusters(
     series: DiscSeries, guesses: Sequence[acb], boxes: Sequence[tuple[acb, int]]
 ) -> list[tuple[acb, int]]:
     """Return discs about guesses too close together to be told apart, with how many roots they hold."""
-    found: list[tuple[acb, int]] = []
+    clusters: list[tuple[acb, int]] = []
     for guess in guesses:
-        if any(box.contains(guess) for box, _ in found):
+        if any(box.contains(guess) for box, _ in clusters):
             continue
         near = [g for g in guesses if abs(g - guess) < abs(guess) * 2.0**-8]
         size = max(float(abs(g - guess).upper()) for g in near) * 4 + float(abs(guess).upper()) * 2.0**-30
@@ -332,9 +332,9 @@ def _clusters(
         except RootNearCircleError:
             continue
         box = acb(arb(guess.real.mid(), size), arb(guess.imag.mid(), size))
-        if number and abs(box) < 1 and not any(box.overlaps(b) for b, _ in (*boxes, *found)):
-            found.append((box, number))
-    return found
+        if number and abs(box) < 1 and not any(box.overlaps(b) for b, _ in (*boxes, *clusters)):
+            clusters.append((box, number))
+    return clusters
 
 
 def circle_values(
@@ -342,18 +342,18 @@ def circle_values(
 ) -> list[CramerValue]:
     """Return values on a circle, mirrored in the real axis; ``symmetric`` ones in the imaginary axis, too."""
     half = count // 2
-    found = {0: value(acb(radius)), half: value(acb(-radius))}
-    signs = _parities(found[0], found[half]) if symmetric else None
+    values = {0: value(acb(radius)), half: value(acb(-radius))}
+    signs = _parities(values[0], values[half]) if symmetric else None
     for k in range(1, half):
-        across = found.get(half - k)
+        across = values.get(half - k)
         if across is not None and signs is not None:
             den, num = signs
-            found[k] = CramerValue(den * across.den.conjugate(), num * across.num.conjugate())
+            values[k] = CramerValue(den * across.den.conjugate(), num * across.num.conjugate())
         else:
-            found[k] = value(radius * acb(0, 2 * arb.pi() * k / count).exp())
-    below = (found[k] for k in reversed(range(1, half)))
+            values[k] = value(radius * acb(0, 2 * arb.pi() * k / count).exp())
+    below = (values[k] for k in reversed(range(1, half)))
     return [
-        *(found[k] for k in range(half + 1)),
+        *(values[k] for k in range(half + 1)),
         *(CramerValue(v.den.conjugate(), v.num.conjugate()) for v in below),
     ]
 

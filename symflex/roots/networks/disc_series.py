@@ -98,11 +98,11 @@ class DiscSeries:
 
     def first_about(self, x: acb, count: int) -> list[acb]:
         """Return so few of these that the values of derivatives take less time."""
-        found, derivative, factorial = [], self.polynomial, 1
+        coefficients, derivative, factorial = [], self.polynomial, 1
         for k in range(count):
-            found.append(derivative(x) / factorial)
+            coefficients.append(derivative(x) / factorial)
             derivative, factorial = derivative.derivative(), factorial * (k + 1)
-        return found
+        return coefficients
 
     # -------------------------------------------------------------------------------------- counting
 

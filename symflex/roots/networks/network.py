@@ -111,20 +111,20 @@ class PlacedNumbers:
     def known(self) -> dict[str, arb_poly]:
         """Return the values of the ring's generators at the current precision."""
         equations = self.equations
-        found = {LAPLACE: arb_poly([0, 1]), "pi": arb_poly([arb.pi()])}
+        polynomials = {LAPLACE: arb_poly([0, 1]), "pi": arb_poly([arb.pi()])}
         values: dict[str, Callable[[], arb]] = {"pi": arb.pi}
         for constant in equations.constants:
-            found[constant.generator] = arb_poly([later(constant.expression, values)()])
+            polynomials[constant.generator] = arb_poly([later(constant.expression, values)()])
         for name, value in equations.definitions:
-            found[name] = self.polynomial(value, found)
-        return found
+            polynomials[name] = self.polynomial(value, polynomials)
+        return polynomials
 
     def even(self, value: Factored, known: Mapping[str, arb_poly]) -> tuple[arb, arb]:
         """Return a and b of a value ``a + b*lambda``; OtherNetworkError if it is none."""
-        found = self.polynomial(value, known)
-        if found.degree() > 2 or not found[1].is_zero():  # noqa: PLR2004
+        polynomial = self.polynomial(value, known)
+        if polynomial.degree() > 2 or not polynomial[1].is_zero():  # noqa: PLR2004
             raise OtherNetworkError(LOSES)
-        return found[0], -found[2]
+        return polynomial[0], -polynomial[2]
 
 
 def network_of(equations: Equations, output: str, source: str) -> Network:
@@ -218,14 +218,14 @@ class _NetworkReading:
 
     def _signals(self, rows: Mapping[Variable, Terms]) -> dict[Variable, Terms]:
         """Return signals as forms of the other variables; those that feed back are not told apart."""
-        found: dict[Variable, Terms] = {}
+        signals: dict[Variable, Terms] = {}
         pending = deque(rows)
         waited = 0
         while pending:
             variable = pending.popleft()
             row = rows[variable]
             others = {v: c for v, c in row.items() if v != variable}
-            if any(v in rows and v not in found for v in others):
+            if any(v in rows and v not in signals for v in others):
                 pending.append(variable)
                 waited += 1
                 if waited > len(pending):
@@ -233,8 +233,8 @@ class _NetworkReading:
                 continue
             waited = 0
             own = row[variable]
-            found[variable] = put_in({v: c / -own for v, c in others.items()}, found)
-        return found
+            signals[variable] = put_in({v: c / -own for v, c in others.items()}, signals)
+        return signals
 
     def _take_members(self, rows: Mapping[Variable, Terms]) -> None:
         """Check that members deliver into the balances of their ends and nowhere else, and take them out."""
@@ -245,7 +245,7 @@ class _NetworkReading:
                     _refuse(f"the force '{variable}' of a member is fed back")
 
     def _members(self, position: Mapping[Variable, int]) -> tuple[NetworkMember, ...]:
-        found = []
+        members = []
         for continuum in self.equations.continua:
             half = len(continuum.initial) // 2
             ends = (*continuum.initial[:half], *(v for v, _ in continuum.final[:half]))
@@ -256,8 +256,8 @@ class _NetworkReading:
             axes = continuum.system.axes
             system = continuum.system.matrix if axes is None else axes.own.matrix
             direction = () if axes is None else (axes.cos, axes.sin)
-            found.append(NetworkMember(continuum.name, system, continuum.length, places, direction))
-        return tuple(found)
+            members.append(NetworkMember(continuum.name, system, continuum.length, places, direction))
+        return tuple(members)
 
     def _power(self, value: Factored) -> int:
         return value.exponent_of(value.ring.generator(LAPLACE))

@@ -170,21 +170,21 @@ class _Sought:
         """Find all roots in a disc that holds the region."""
         region = self.region
         try:
-            found = roots_in_disc(cramer, region, self.digits, symmetric=self.symmetric)
+            in_disc = roots_in_disc(cramer, region, self.digits, symmetric=self.symmetric)
         except BudgetError as error:
             return self.nothing("; ".join(d.message for d in error.diagnostics), error.diagnostics[0].code)
         except EssentialSingularityError:
             return self.nothing(ACCUMULATE)
         except UndecidedError:
             return self.nothing(NOT_COUNTED)
-        poles, zeros = (chosen(roots, region) for roots in (found.poles, found.zeros))
-        known = [*found.poles, *(r for r in found.shared if not r.is_zero)]
-        beyond = REACHED.format(found.radius / (2 * pi))
-        at_rest = [r for r in found.shared if r.is_zero]
+        poles, zeros = (chosen(roots, region) for roots in (in_disc.poles, in_disc.zeros))
+        known = [*in_disc.poles, *(r for r in in_disc.shared if not r.is_zero)]
+        beyond = REACHED.format(in_disc.radius / (2 * pi))
+        at_rest = [r for r in in_disc.shared if r.is_zero]
         verdict = judge(known, self.unsure if self.proof else beyond, self.proof, at_rest)
-        roots = (poles, zeros, _hidden(found.shared, poles, region))
-        reasons = () if found.holds(wanted_modes(region)) else (TOO_FEW,)
-        return self.found(CRAMER, roots, verdict, reasons, right_beyond(found.poles, poles))
+        roots = (poles, zeros, _hidden(in_disc.shared, poles, region))
+        reasons = () if in_disc.holds(wanted_modes(region)) else (TOO_FEW,)
+        return self.found(CRAMER, roots, verdict, reasons, right_beyond(in_disc.poles, poles))
 
 
 def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tuple[HiddenRoot, ...]:

@@ -79,14 +79,14 @@ def prove_simple(
     is_even = function.is_even if even is None else even
     wanted = bits_for_digits(digits + 2) + GUARD_BITS
     first, used = max(LEAST_BITS, wanted, first_bits), 0
-    found: Box | None = None
+    proved: Box | None = None
     for bits in precisions(first, MOST_TIMES * first):
         try:
             box = _box(function, s, (first_bits, bits), factor, even=is_even)
         except _SlowError:
             break
         if box is not None:
-            found = box
+            proved = box
             with precision(bits):
                 size = acb(box.re, box.im).abs_lower()
                 error = box.re.rad() + box.im.rad()
@@ -94,10 +94,10 @@ def prove_simple(
                     return _root(box, box.exponent, certified=True)
                 s = acb(box.re.mid(), box.im.mid())
         used = bits
-    if found is None:
+    if proved is None:
         return None
-    total = found.exponent
-    for other in found.touching:
+    total = proved.exponent
+    for other in proved.touching:
         try:
             beside = _box(function, s, (first_bits, used), other, even=is_even)
         except _SlowError:
@@ -105,7 +105,7 @@ def prove_simple(
         if beside is None:
             return None
         total += beside.exponent
-    return _root(found, total, certified=not found.touching)
+    return _root(proved, total, certified=not proved.touching)
 
 
 def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:

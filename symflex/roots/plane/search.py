@@ -115,9 +115,9 @@ class RootSearch:
                 entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             reach = self._winding.reach
             width = RING if reach(self.reached + FADED) > reach(self.reached) else FADED
-            high, found = self._ring(self.reached, self.passing(self.reached + width))
-            self.roots.extend(found.roots)
-            self.missing += found.missing
+            high, ring = self._ring(self.reached, self.passing(self.reached + width))
+            self.roots.extend(ring.roots)
+            self.missing += ring.missing
             self.reached = high
 
     def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
@@ -139,12 +139,12 @@ class RootSearch:
                 entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             high = self.reached + (RING if known < FEW else RING / 4)
             try:
-                found = self.on_axes(self.reached, high)
+                on_axes = self.on_axes(self.reached, high)
             except RootOnPathError:
                 return False
-            self.roots.extend(found)
+            self.roots.extend(on_axes)
             self.reached = high
-            fruitful = high if found else fruitful
+            fruitful = high if on_axes else fruitful
             if high - checked > UNCHECKED * RING or reach(high) - reach(fruitful) > BARREN:
                 if not is_complete():
                     return False
@@ -153,7 +153,7 @@ class RootSearch:
 
     def on_axes(self, low: float, high: float) -> list[Root]:
         """Return the roots on both axes where an even function changes its sign, between ln of two radii."""
-        found: list[Root] = []
+        roots: list[Root] = []
         for angle in (0.0, pi / 2):
             last: Root | None = None
             for z in sign_changes(self._winding, low, high, angle):
@@ -162,9 +162,9 @@ class RootSearch:
                 root = prove_simple(self.function, s, self.digits, even=True)
                 # Newton's method may have gone to the same root twice.
                 if root is not None and (last is None or not overlap(root, last)):
-                    found.append(root)
+                    roots.append(root)
                     last = root
-        return found
+        return roots
 
     def passing(self, radius: float) -> float:
         """Return ln of a radius, at least the one given, whose circle passes all holes."""
@@ -188,10 +188,10 @@ class RootSearch:
         """Return the roots in a whole ring, whose outer radius may move to pass between roots."""
         for nudge in NUDGES:
             try:
-                found = self._search(Cell(low, high + nudge, -MARGIN, self.left + MARGIN))
+                searched = self._search(Cell(low, high + nudge, -MARGIN, self.left + MARGIN))
             except RootOnPathError:
                 continue
-            return high + nudge, found
+            return high + nudge, searched
         message = f"roots do not separate near {exp(high).real:g} rad/s"
         raise BudgetError(Diagnostic("SF505", message, None, "ask for a band that ends elsewhere"))
 
@@ -206,8 +206,8 @@ class RootSearch:
         roots: list[Root] = []
         missing = 0
         for part, count in counted:
-            found, lost = self._separate(part, count)
-            roots.extend(found)
+            separated, lost = self._separate(part, count)
+            roots.extend(separated)
             missing += lost
         return Found(tuple(roots), missing, cell)
 
@@ -220,14 +220,14 @@ class RootSearch:
             part, number = pending.pop()
             if number == 0:
                 continue
-            found = self._together(part, number) if number > 0 else None
+            separated = self._together(part, number) if number > 0 else None
             parts = None
-            if found is None and part.size > CLOSEST and number > 0:
+            if separated is None and part.size > CLOSEST and number > 0:
                 parts = self._split(part, number)
-            if found is None and parts is None and number > 0:
-                found = self._as_one(part, number)
-            if found is not None:
-                roots.extend(found)
+            if separated is None and parts is None and number > 0:
+                separated = self._as_one(part, number)
+            if separated is not None:
+                roots.extend(separated)
             elif parts is not None:
                 pending.extend(parts)
             else:
@@ -297,8 +297,8 @@ class RootSearch:
         """Return all roots next to a point as one, in a disc proved to hold so many."""
         with precision(FIRST_BITS):
             size = (s.abs_upper() * NEIGHBOURS).mid()
-        found = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
-        return None if found is None else [found]
+        root = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
+        return None if root is None else [root]
 
 
 def _is_in(cell: Cell, root: Root) -> bool:

@@ -257,8 +257,8 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     ['1.000000000000', '0.000000000000']
     """
     guesses = tuple(guess_by_laguerre(polynomial))
-    found = sum(1 if guess.imag == 0 else 2 for guess in guesses)
-    return guesses if found == polynomial.degree() else None
+    count = sum(1 if guess.imag == 0 else 2 for guess in guesses)
+    return guesses if count == polynomial.degree() else None
 
 
 def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
@@ -268,19 +268,19 @@ def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
     scaled = acb_poly([polynomial[i] * arb(2) ** (shift * i) for i in range(degree + 1)])
     first, second = scaled.derivative(), scaled.derivative().derivative()
     moduli = _polygon_moduli(scaled, degree)
-    found = np.empty(degree, dtype=np.complex128)
+    roots = np.empty(degree, dtype=np.complex128)
     scale = arb(2) ** shift
     known, start = 0, 0j
     while known < degree:
         # A start next to a cluster drowns in rounding; the Newton polygon tells where the next root may lie.
         starts = (start, *(cmath.rect(moduli[known], angle) for angle in FRESH_ANGLES))
-        attempts = (_find_one((scaled, first, second), found[:known], each) for each in starts)
+        attempts = (_find_one((scaled, first, second), roots[:known], each) for each in starts)
         root = next((each for each in attempts if each is not None), None)
         if root is None:
             return
         root = complex(root.real, 0.0 if known == degree - 1 else abs(root.imag))
         pair = (root, root.conjugate()) if root.imag else (root,)
-        found[known : known + len(pair)] = pair
+        roots[known : known + len(pair)] = pair
         known += len(pair)
         yield acb(arb(root.real) * scale, arb(root.imag) * scale)
         start = root * (1 + RESTART) or complex(RESTART)
@@ -320,11 +320,11 @@ def _turns_up(a: tuple[int, float], b: tuple[int, float], c: tuple[int, float]) 
 
 
 def _find_one(
-    derivatives_of: tuple[acb_poly, acb_poly, acb_poly], found: npt.NDArray[np.complex128], start: complex
+    derivatives_of: tuple[acb_poly, acb_poly, acb_poly], roots: npt.NDArray[np.complex128], start: complex
 ) -> complex | None:
     """Return one more root than those found, snapped to the real axis when it is nearly real."""
     p, first, second = derivatives_of
-    remaining = int(p.degree()) - len(found)
+    remaining = int(p.degree()) - len(roots)
     z, last = start, complex(math.inf)
     for iteration in range(ITERATIONS):
         spend()
@@ -332,7 +332,7 @@ def _find_one(
         if derivatives is None:
             break
         with np.errstate(all="ignore"):
-            inverse = 1 / (z - found[found != z])
+            inverse = 1 / (z - roots[roots != z])
             g = derivatives[0] - complex(inverse.sum())
             h = derivatives[1] - complex((inverse * inverse).sum())
         discriminant = (remaining - 1) * (remaining * h - g * g)

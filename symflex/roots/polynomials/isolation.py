@@ -122,10 +122,10 @@ def _certify(
     discs = [level.polish(guess, goal) for guess in guesses]
     if last and not complete(discs, level.degree):
         middles = [(middle_of(group), group) for group in groups(with_mirrors(discs))]
-        found = [
+        enclosures = [
             group[0] if len(group) == 1 else level.surround(middle, len(group))
             for middle, group in middles
             if not middle.imag < 0  # others are mirror images
         ]
-        discs = [disc for disc in found if disc is not None]
+        discs = [disc for disc in enclosures if disc is not None]
     return tuple(discs) if complete(discs, level.degree) else None

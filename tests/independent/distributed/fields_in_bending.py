@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-from tests.independent.distributed.case import (
-    BEAM,
-    DAMPED,
-    EULER,
-    LOSSES,
-    SLENDER,
-    STOCKY,
-    THICK,
-    Case,
-    ode,
-)
+from tests.independent.distributed.case import BEAM, DAMPED, EULER, LOSSES, SLENDER, STOCKY, THICK, Case, ode
 from tests.independent.distributed.span import (
     beam_with_load,
     clamped,
@@ -82,11 +72,7 @@ FIELDS_IN_BENDING = (
         "Kelvin-Voigt cantilever with tip mass and dashpot",
         BEAM | LOSSES | {"m": "0.11 kg", "b": "0.6 N*s/m"},
         ode(
-            DAMPED,
-            "w(0) = 0",
-            "w'(0) = 0",
-            "w''(l) = 0",
-            "E*I*(1 + eta*s)*w'''(l) = (m*s^2 + b*s)*w(l) - u",
+            DAMPED, "w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*(1 + eta*s)*w'''(l) = (m*s^2 + b*s)*w(l) - u"
         ),
         "w(l)",
         *SLENDER,

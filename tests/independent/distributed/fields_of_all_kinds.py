@@ -59,10 +59,7 @@ def two_rods(v: Values, s: Number) -> Number:
     second = problem.line(rod(v | {"E": v["E_2"], "rho": v["rho_2"]}, s))
     u, tension = first.at(v["l_1"])
     problem.require(
-        first.start[0],
-        u - second.start[0],
-        tension - second.start[1],
-        second.at(v["l"] - v["l_1"])[1] - 1,
+        first.start[0], u - second.start[0], tension - second.start[1], second.at(v["l"] - v["l_1"])[1] - 1
     )
     return problem.solve()(u)
 
@@ -92,12 +89,7 @@ def flowing(v: Values, s: Number) -> Rows:
     fluid, total = v["m_f"], v["m_f"] + v["m_p"]
     stiffness = v["E"] * v["I"]
     last = [-total * s**2, -2 * fluid * v["U"] * s, -fluid * v["U"] ** 2, 0, 0]
-    return [
-        [0, 1, 0, 0, 0],
-        [0, 0, 1, 0, 0],
-        [0, 0, 0, 1, 0],
-        [x / stiffness for x in last],
-    ]
+    return [[0, 1, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0], [x / stiffness for x in last]]
 
 
 def pipe_with_tail(v: Values, s: Number) -> Number:
@@ -160,10 +152,7 @@ FIELDS_OF_ALL_KINDS = (
         "Timoshenko cantilever as a system of two unknowns",
         THICK,
         system(
-            (
-                "kappa*G*A*(w'' - phi') = rho*A*s^2*w",
-                "E*I*phi'' + kappa*G*A*(w' - phi) = rho*I*s^2*phi",
-            ),
+            ("kappa*G*A*(w'' - phi') = rho*A*s^2*w", "E*I*phi'' + kappa*G*A*(w' - phi) = rho*I*s^2*phi"),
             ("w(0) = 0", "phi(0) = 0", "phi'(l) = 0", "kappa*G*A*(w'(l) - phi(l)) = u"),
             "beam",
             ("w", "phi"),
@@ -191,11 +180,7 @@ FIELDS_OF_ALL_KINDS = (
     Case(
         "free-free rod with losses, displacement inside",
         ROD | {"eta": "3e-7 s", "c_f": "700 N*s/m^2", "x_s": "0.2 m"},
-        ode(
-            "E*A*(1 + eta*s)*w'' = (rho*A*s^2 + c_f*s)*w",
-            "E*A*(1 + eta*s)*w'(0) = -u",
-            "w'(l) = 0",
-        ),
+        ode("E*A*(1 + eta*s)*w'' = (rho*A*s^2 + c_f*s)*w", "E*A*(1 + eta*s)*w'(0) = -u", "w'(l) = 0"),
         "w(x_s)",
         *AXIAL,
         span(
@@ -265,10 +250,7 @@ FIELDS_OF_ALL_KINDS = (
             "R_l": "75 ohm",
         },
         system(
-            ("v' = -(L*s + R)*i", "i' = -(C*s + G)*v"),
-            ("v(0) = u", "v(l) = R_l*i(l)"),
-            "line",
-            ("v", "i"),
+            ("v' = -(L*s + R)*i", "i' = -(C*s + G)*v"), ("v(0) = u", "v(l) = R_l*i(l)"), "line", ("v", "i")
         ),
         "v(l)",
         3.1e6,
@@ -277,13 +259,7 @@ FIELDS_OF_ALL_KINDS = (
     ),
     Case(
         "heated wall",
-        {
-            "kappa": "0.8 W/(m*K)",
-            "rho": "1900 kg/m^3",
-            "c": "840 J/(kg*K)",
-            "l": "0.3 m",
-            "h": "8 W/(m^2*K)",
-        },
+        {"kappa": "0.8 W/(m*K)", "rho": "1900 kg/m^3", "c": "840 J/(kg*K)", "l": "0.3 m", "h": "8 W/(m^2*K)"},
         ode("kappa*w'' = rho*c*s*w", "-kappa*w'(0) = u", "-kappa*w'(l) = h*w(l)"),
         "w(0)",
         1e-5,

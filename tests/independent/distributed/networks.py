@@ -118,11 +118,9 @@ def delayed_spring(v: Values, s: Number) -> Number:
 def delayed_arm(v: Values, s: Number) -> Number:
     """Cantilever whose tip velocity is fed back as a force on the tip, with delay."""
     loop = v["k_v"] * s * mp.exp(-s * v["T"])
-    return span(
-        clamped,
-        lambda w, slope, moment, shear, v, s: (moment, shear + 1 - w * loop),
-        second_end(0),
-    )(v, s)
+    return span(clamped, lambda w, slope, moment, shear, v, s: (moment, shear + 1 - w * loop), second_end(0))(
+        v, s
+    )
 
 
 def delayed_rod(v: Values, s: Number) -> Number:
@@ -181,13 +179,7 @@ NETWORKS = (
     Case(
         "Timoshenko root, rigid body, slender tip",
         THICK
-        | {
-            "I_2": "7.2e-10 m^4",
-            "A_2": "2.4e-4 m^2",
-            "l_2": "0.5 m",
-            "m": "0.8 kg",
-            "J_b": "6e-4 kg*m^2",
-        },
+        | {"I_2": "7.2e-10 m^4", "A_2": "2.4e-4 m^2", "l_2": "0.5 m", "m": "0.8 kg", "J_b": "6e-4 kg*m^2"},
         elements(
             root=f'{THICK_ELEMENT}, between = ["ground", "joint"], l = "l"',
             body='type = "rigid_body", at = "joint", m = "m", J = "J_b", cg = "0"',

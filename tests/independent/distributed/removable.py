@@ -58,10 +58,7 @@ REMOVABLE = (
     # lambda_1^2 = lambda_2^2: N^2 = 4 E I rho A s^2, and N + rho I s^2 likewise
     (cantilever("beam in tension", BEAM, BEAM_ELEMENT, {"N": "2 N"}, BENDING), 1),
     (cantilever("beam in tension", BEAM, BEAM_ELEMENT, {"N": "2 N"}, BENDING), -1),
-    (
-        cantilever("Rayleigh beam", BEAM, BEAM_ELEMENT + ', theory = "rayleigh"', {}, RAYLEIGH),
-        2,
-    ),
+    (cantilever("Rayleigh beam", BEAM, BEAM_ELEMENT + ', theory = "rayleigh"', {}, RAYLEIGH), 2),
     (
         cantilever(
             "Rayleigh beam in tension", BEAM, BEAM_ELEMENT + ', theory = "rayleigh"', {"N": "1 N"}, RAYLEIGH

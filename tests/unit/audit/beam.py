@@ -23,13 +23,7 @@ VAUGHAN = {
 }
 KRYLOV = {"mu": "(rho*A*s^2/(4*E*I))^(1/4)", "q": "mu*l"}
 
-VALUES = {
-    "E": "200 GPa",
-    "I": "4000 mm^4",
-    "rho": "7850 kg/m^3",
-    "A": "480 mm^2",
-    "l": "1.086 m",
-}
+VALUES = {"E": "200 GPa", "I": "4000 mm^4", "rho": "7850 kg/m^3", "A": "480 mm^2", "l": "1.086 m"}
 _BEAM = """
 symflex = 1
 parameters = { %s }

@@ -231,11 +231,7 @@ LINE_SLIPS = {
         {"C": "K*(1 + T*s)", "w": "(k/m)^(1/4)"},
         "line w: (k/m)^(1/4), (k/m)^(1/2)",
     ),
-    "one left out": (
-        "C/(m*s^2 + b*s + k + C)",
-        {"C": "K*T*s"},
-        "line C: K*T*s, K*(1 + T*s)",
-    ),
+    "one left out": ("C/(m*s^2 + b*s + k + C)", {"C": "K*T*s"}, "line C: K*T*s, K*(1 + T*s)"),
     "another name for s is right": (
         "C/(m*q + b*p + k + C)",
         {"p": "s", "q": "s", "C": "K*(1 + T*s)"},

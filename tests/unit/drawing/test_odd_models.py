@@ -115,10 +115,7 @@ ODD = {
     ),
     "five beams side by side": driven(many(5, f'{BEAM}, between = ["p", "x"]')),
     "a star of beams": driven(many(5, BEAM + ', between = ["x", "p_{i}"]')),
-    "a ring of beams": driven(
-        many(4, BEAM + ', between = ["p_{i}", "p_{j}"]').replace("p_4", "p_0"),
-        "p_0",
-    ),
+    "a ring of beams": driven(many(4, BEAM + ', between = ["p_{i}", "p_{j}"]').replace("p_4", "p_0"), "p_0"),
     "three supports at a node": driven(
         f'b = {{ {BEAM}, between = ["p", "x"] }}\n'
         + "".join(f'{kind}_1 = {{ type = "{kind}", at = "p" }}\n' for kind in ("pin", "slider", "fixed"))

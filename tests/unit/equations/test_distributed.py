@@ -115,10 +115,7 @@ conditions = ["v*c(0) - D_0*c'(0) = v*u", "c'(l) = 0"]
 
 @pytest.mark.parametrize(
     ("unknowns", "equations", "static"),
-    [
-        ('["a", "b"]', '["a\' = s*b", "b = 2*a"]', "b"),
-        ('["a"]', "[\"a' - a' + s*a = 0\"]", "a"),
-    ],
+    [('["a", "b"]', '["a\' = s*b", "b = 2*a"]', "b"), ('["a"]', "[\"a' - a' + s*a = 0\"]", "a")],
 )
 def test_an_unknown_without_derivatives_is_refused_at_its_field(unknowns, equations, static):
     text = f"""

@@ -124,10 +124,7 @@ def _grown(children):
 
 # Numbers with a short decimal, so that they are read back as numbers.
 built = st.recursive(
-    st.one_of(
-        st.integers(-20, 20).map(lambda k: number(Fraction(k, 4))),
-        st.sampled_from([a, b, c]),
-    ),
+    st.one_of(st.integers(-20, 20).map(lambda k: number(Fraction(k, 4))), st.sampled_from([a, b, c])),
     _grown,
     max_leaves=15,
 )

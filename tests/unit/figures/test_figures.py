@@ -241,10 +241,7 @@ def test_a_unit_becomes_a_label():
 def test_the_level_is_relative_to_the_unit_and_different_units_stand_in_the_legend(tfs):
     assert drawn("bode", tfs[:1]).axes[0].get_ylabel() == r"Magnitude [dB, 0 dB = 1 $\mathrm{m/N}$]"
     labels = [text.get_text() for text in drawn("bode", tfs).axes[0].get_legend().get_texts()]
-    assert labels == [
-        r"$X_{\mathrm{tip}}/F$ [$\mathrm{m/N}$]",
-        r"$V_{\mathrm{act}}/F$ [$\mathrm{m/(N\,s)}$]",
-    ]
+    assert labels == [r"$X_{\mathrm{tip}}/F$ [$\mathrm{m/N}$]", r"$V_{\mathrm{act}}/F$ [$\mathrm{m/(N\,s)}$]"]
 
 
 @pytest.mark.slow

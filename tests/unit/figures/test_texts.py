@@ -28,9 +28,7 @@ def bounds_of(model):
         pytest.param("classics/quarter_car", ["modes", "nyquist"], marks=pytest.mark.slow),
         # six functions
         pytest.param(
-            "eppinger1988/loops/lumped_bending_beam_position",
-            ["bode", "poles_zeros"],
-            marks=pytest.mark.slow,
+            "eppinger1988/loops/lumped_bending_beam_position", ["bode", "poles_zeros"], marks=pytest.mark.slow
         ),
         pytest.param("eppinger1988/sliding_free_beam", ["modes", "poles_zeros"], marks=pytest.mark.slow),
         pytest.param("frames/portal_frame", ["modes"], marks=pytest.mark.slow),
@@ -52,10 +50,7 @@ def test_texts_of_a_figure_of_a_loop_keep_apart():
 def loop(expression, **parameters):
     values = {"K": 1, **parameters}
     return symflex.Model(
-        parameters=values,
-        signals={"y": f"K*({expression})*(r - y)"},
-        inputs={"r": {}},
-        outputs={"Y": "y"},
+        parameters=values, signals={"y": f"K*({expression})*(r - y)"}, inputs={"r": {}}, outputs={"Y": "y"}
     )
 
 

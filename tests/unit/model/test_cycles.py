@@ -135,7 +135,7 @@ def test_every_use_that_could_be_read_either_way_is_told_with_its_place():
 def test_a_time_is_read_in_cycles_and_told():
     lag = '[blocks]\nL = { type = "lead_lag", T_1 = "1/f_c", T_2 = "2 s" }'
     assert readings(loaded("L*u", lag)) == [
-        (9, "1/f_c", "'f_c', in 'Hz', is read in cycles here: without 2*pi"),
+        (9, "1/f_c", "'f_c', in 'Hz', is read in cycles here: without 2*pi")
     ]
 
 

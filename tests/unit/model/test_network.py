@@ -58,12 +58,7 @@ Y = "p"
 Q = "p.theta"
 """
     values = {tf.name: pipeline.bind(tf)(1 + 0j) for tf in pipeline.derive_all(pipeline.loads(text))}
-    assert values == {
-        "Y/F": pytest.approx(1 / 7),
-        "Y/M": 0,
-        "Q/F": 0,
-        "Q/M": pytest.approx(1 / 10),
-    }
+    assert values == {"Y/F": pytest.approx(1 / 7), "Y/M": 0, "Q/F": 0, "Q/M": pytest.approx(1 / 10)}
 
 
 def test_a_node_used_in_two_domains_is_refused():

@@ -530,11 +530,7 @@ def test_dashpots_of_a_rope_stand_beside_its_impedance():
         (HEAVY_SPRING, ("tanh(q)", "k*q"), ["q = s*sqrt(M/k)"]),
         (PIPE, ("rho*c*tanh(q)", "1"), ["q = s*L/c"]),
         # The sum h W + g T only travels, and T - W decays at the rate h + g: exp(-s*l/v) (g + h D^2)/(h + g).
-        (
-            COFLOW,
-            ("(h*D^2 + g)*exp(-l*(2*s + h + g)/(2*v))", "D*(h + g)"),
-            ["D = exp(-l*(h + g)/(2*v))"],
-        ),
+        (COFLOW, ("(h*D^2 + g)*exp(-l*(2*s + h + g)/(2*v))", "D*(h + g)"), ["D = exp(-l*(h + g)/(2*v))"]),
     ],
     ids=["a heavy spring", "an open pipe", "pipes that flow alike"],
 )

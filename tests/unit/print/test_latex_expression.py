@@ -7,16 +7,7 @@ from fractions import Fraction
 import pytest
 
 from symflex.errors import Source, Span, Text
-from symflex.expressions import (
-    Attribute,
-    Equation,
-    Name,
-    Number,
-    Product,
-    Sum,
-    parse,
-    product_of,
-)
+from symflex.expressions import Attribute, Equation, Name, Number, Product, Sum, parse, product_of
 from symflex.print.latex import latex_expression
 from symflex.print.latex.expression import Writer, break_lines
 

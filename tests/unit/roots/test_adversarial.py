@@ -153,9 +153,7 @@ X = "w(0)"
 
 HELD_ROD = spec(f'bar = {{ {ROD}, between = ["ground", "x"], l = "1 m" }}\n')
 
-KELVIN_VOIGT = spec(
-    f'bar = {{ {ROD}, between = ["ground", "x"], l = "1 m", eta = "0.1 s" }}\n',
-)
+KELVIN_VOIGT = spec(f'bar = {{ {ROD}, between = ["ground", "x"], l = "1 m", eta = "0.1 s" }}\n')
 
 
 # ---------------------------------------------------------------------------------------- expectations

@@ -556,10 +556,7 @@ PASSIVE = {
     ),
     "pulled, the end guided": (PULLED, [*CLAMPED, "w'(l) = 0", "EI*w'''(l) = -F"]),
     "pulled by its end": (PULLED, [*FREE[:3], "EI*w'''(l) - T*w'(l) = -F"]),
-    "pulled along x": (
-        "EI*w'''' - (T*(1 - x^2/l^2)*w')' + rhoA*s^2*w = 0",
-        [*FREE[:3], "EI*w'''(l) = -F"],
-    ),
+    "pulled along x": ("EI*w'''' - (T*(1 - x^2/l^2)*w')' + rhoA*s^2*w = 0", [*FREE[:3], "EI*w'''(l) = -F"]),
     "with inertia of rotation": (
         "EI*w'''' - J*s^2*w'' + rhoA*s^2*w = 0",
         [*FREE[:3], "EI*w'''(l) - J*s^2*w'(l) = -F"],
@@ -586,10 +583,7 @@ NOT_PASSIVE = {
     ),
     "a string that moves along": ("T*w'' = rhoA*(s^2*w + 2*v*s*w' + v^2*w'')", FIXED),
     "a negative loss": ("EI*(1 - eta*s)*w'''' + rhoA*s^2*w = 0", [*FREE[:3], "w'''(l) = -F/EI"]),
-    "a condition that an s in the right half plane meets": (
-        STRING,
-        ["w(0) = 0", "(s*l/v - 1)*T*w'(l) = F"],
-    ),
+    "a condition that an s in the right half plane meets": (STRING, ["w(0) = 0", "(s*l/v - 1)*T*w'(l) = F"]),
     "not what a slope does": ("EI*w'''' - T*x/l*w'' + rhoA*s^2*w = 0", FREE),
 }
 

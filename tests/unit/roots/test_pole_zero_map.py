@@ -10,23 +10,8 @@ from flint import arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots import (
-    Band,
-    Mode,
-    Modes,
-    PolynomialInS,
-    RootProblem,
-    find_pole_zero_map,
-    pole_zero_map,
-)
-from symflex.roots.pole_zero_map import (
-    ON_AXIS,
-    Certificate,
-    Exclusion,
-    PoleZeroMap,
-    judge,
-    right_beyond,
-)
+from symflex.roots import Band, Mode, Modes, PolynomialInS, RootProblem, find_pole_zero_map, pole_zero_map
+from symflex.roots.pole_zero_map import ON_AXIS, Certificate, Exclusion, PoleZeroMap, judge, right_beyond
 from symflex.roots.region import Everything
 from symflex.roots.root import Root
 from tests.unit.roots.root_problems import problem, with_root_of_two

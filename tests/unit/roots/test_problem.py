@@ -77,11 +77,7 @@ def test_equal_roots_of_different_factors_merge():
         (PolynomialInS.from_rationals(from_roots([-1, -2])), 1),
         (PolynomialInS.from_rationals(from_roots([-2, -2, -3])), 3),
     )
-    assert parts_of(RootProblem(factors)) == [
-        ((1, 1), 1, False),
-        ((2, 1), 7, False),
-        ((3, 1), 3, False),
-    ]
+    assert parts_of(RootProblem(factors)) == [((1, 1), 1, False), ((2, 1), 7, False), ((3, 1), 3, False)]
 
 
 def test_the_even_part_holds_axis_pairs_and_mirrored_roots_only():

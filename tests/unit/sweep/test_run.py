@@ -85,10 +85,7 @@ def test_progress_says_how_much_is_left():
     task, design = task_and_design(2)
     shown, clock = Shown(), iter([0.0, 10.0, 20.0])
     run_sweep(task, design, progress=shown, clock=lambda: next(clock))
-    assert shown.said == [
-        (0.5, "1 of 2 points, 10 s left"),
-        (1.0, "2 of 2 points, 0 s left"),
-    ]
+    assert shown.said == [(0.5, "1 of 2 points, 10 s left"), (1.0, "2 of 2 points, 0 s left")]
 
 
 def test_what_a_journal_holds_is_not_solved_again(tmp_path, monkeypatch):

@@ -114,9 +114,7 @@ def test_the_static_limit_is_that_of_the_tables():
 
 def test_a_uniform_load_bends_a_clamped_beam_by_q_l4_over_384_ei():
     tf = field(
-        "E*I*w'''' + rho*A*s^2*w = F",
-        ["w(0) = 0", "w'(0) = 0", "w(l) = 0", "w'(l) = 0"],
-        'X = "w(l/2)"',
+        "E*I*w'''' + rho*A*s^2*w = F", ["w(0) = 0", "w'(0) = 0", "w(l) = 0", "w'(l) = 0"], 'X = "w(l/2)"'
     )["X/F"]
     assert abs(pipeline.bind(tf)(0j).real / float(LENGTH**4 / (384 * EI)) - 1) < 1e-13
 

@@ -65,9 +65,7 @@ def nested(text):
 def dense(s, source):
     """Return the displacements of the chain from its matrix."""
     w, v = 400 + 5 * s, 800
-    a = np.array(
-        [[s**2 + w, -w, 0], [-w, 2 * s**2 + w + v, -v], [0, -v, 3 * s**2 + v]],
-    )
+    a = np.array([[s**2 + w, -w, 0], [-w, 2 * s**2 + w + v, -v], [0, -v, 3 * s**2 + v]])
     return np.linalg.solve(a, np.eye(3)[{"F": 0, "G": 2}[source]])
 
 

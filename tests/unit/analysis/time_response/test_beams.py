@@ -197,10 +197,7 @@ def damped_step(beta, weights, eta, c, k, times, derivative=0):
 
 LOSSES = {
     "to a viscous fluid": ('c_f = "2 N*s/m^2"', (0, 2, 0)),
-    "to both, on a foundation": (
-        'eta = "0.002 s", c_f = "3 N*s/m^2", k_f = "7 N/m^2"',
-        (0.002, 3, 7),
-    ),
+    "to both, on a foundation": ('eta = "0.002 s", c_f = "3 N*s/m^2", k_f = "7 N/m^2"', (0.002, 3, 7)),
     "not at all, on a foundation": ('k_f = "7 N/m^2"', (0, 0, 7)),
 }
 

@@ -69,10 +69,7 @@ STEPS = {
         ),
     ),
     # X/F = tanh(s/2)/(2 s): images change sign at the clamp
-    "a rod that is clamped": (
-        rod,
-        TIMES / 2 + sum((-1) ** k * after(TIMES, k) for k in range(1, 8)),
-    ),
+    "a rod that is clamped": (rod, TIMES / 2 + sum((-1) ** k * after(TIMES, k) for k in range(1, 8))),
     "a string that is clamped": (
         lambda: rod(kind="string"),
         TIMES / 2 + sum((-1) ** k * after(TIMES, k) for k in range(1, 8)),
@@ -247,9 +244,7 @@ def test_where_nobody_says_how_long_a_slow_loop_is_followed_until_it_has_settled
 
 
 @pytest.mark.parametrize(
-    ("gain", "law", "kind"),
-    [(1.2, "a*(u - D*x)", "step"), (1.7, "x", "ramp")],
-    ids=["through", "unstable"],
+    ("gain", "law", "kind"), [(1.2, "a*(u - D*x)", "step"), (1.7, "x", "ramp")], ids=["through", "unstable"]
 )
 @pytest.mark.slow
 def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind):

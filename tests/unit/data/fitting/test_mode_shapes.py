@@ -49,8 +49,7 @@ def shapes_of(data, driving=DRIVEN, **asked):
 
 
 @pytest.mark.parametrize(
-    ("power", "unit", "factor"),
-    [(1, "m/(N*s)", 1.0), (0, "mm/N", 1000.0), (2, "1/kg", 1.0)],
+    ("power", "unit", "factor"), [(1, "m/(N*s)", 1.0), (0, "mm/N", 1000.0), (2, "1/kg", 1.0)]
 )
 def test_shapes_are_the_eigenvectors_normalised_by_mass(power, unit, factor):
     found = shapes_of(responses(power, unit, factor))

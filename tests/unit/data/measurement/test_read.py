@@ -221,11 +221,7 @@ def test_an_archive_that_grows_beyond_the_limit_is_refused(write):
 
 
 def test_damaged_files_of_every_format_are_refused_without_a_traceback(write):
-    files = {
-        ".npz": npz(f=FREQUENCY, H=VALUES),
-        ".mat": mat(f=FREQUENCY, H=VALUES),
-        ".csv": PLAIN.encode(),
-    }
+    files = {".npz": npz(f=FREQUENCY, H=VALUES), ".mat": mat(f=FREQUENCY, H=VALUES), ".csv": PLAIN.encode()}
     if find_spec("pyuff") is not None:
         files[".uff"] = measurement_bytes(MeasuredResponse("a/b", FREQUENCY, VALUES), "a.uff")
     assert files.keys() <= READERS.keys()

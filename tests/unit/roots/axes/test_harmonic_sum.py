@@ -15,12 +15,7 @@ from symflex.balls import precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.functions.kernel_function import KernelFunction
-from tests.unit.roots.distributed_models import (
-    DELAY_LOOP,
-    KELVIN_VOIGT,
-    ON_A_FOUNDATION,
-    bound,
-)
+from tests.unit.roots.distributed_models import DELAY_LOOP, KELVIN_VOIGT, ON_A_FOUNDATION, bound
 from tests.unit.roots.lossless_functions import CONSTANT, DEGREES, RATES, function_of
 
 

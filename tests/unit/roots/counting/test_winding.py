@@ -13,12 +13,7 @@ from flint import acb, arb
 from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError
-from symflex.roots.counting.argument_principle import (
-    CertifiedWinding,
-    LogarithmicLine,
-    _angle,
-    _whole,
-)
+from symflex.roots.counting.argument_principle import CertifiedWinding, LogarithmicLine, _angle, _whole
 from symflex.roots.counting.local_series import BLURRED, MOST, LocalSeries, SeriesSteps, _followed
 from symflex.roots.counting.winding import (
     FORGETTING,

@@ -103,10 +103,7 @@ def test_poles_of_a_kelvin_voigt_beam_solve_a_quadratic_per_mode():
     eta = mpf("0.004")
     result = found(KELVIN_VOIGT, Modes(2))
     omega = [(n * pi) ** 2 for n in (1, 2)]
-    agree(
-        upper(result.poles),
-        [-eta * w**2 / 2 + mpc(0, w * sqrt(1 - (eta * w / 2) ** 2)) for w in omega],
-    )
+    agree(upper(result.poles), [-eta * w**2 / 2 + mpc(0, w * sqrt(1 - (eta * w / 2) ** 2)) for w in omega])
     # They accumulate far away, at -1/eta.
     assert result.excluded == ()
 

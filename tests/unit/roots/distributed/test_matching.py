@@ -54,11 +54,7 @@ def matched(poles, zeros):
 
 
 def test_what_poles_and_zeros_share_is_neither_and_all_else_stays():
-    assert matched([root(-1, 2)], [root(-1, 3), root(-2, 2)]) == (
-        [],
-        [(-1, 2, 1)],
-        [(-1, 3, 1), (-2, 2, 1)],
-    )
+    assert matched([root(-1, 2)], [root(-1, 3), root(-2, 2)]) == ([], [(-1, 2, 1)], [(-1, 3, 1), (-2, 2, 1)])
     poles, zeros = [root(-1, 2), root(-3, 0)], [root(-4, 0), root(-1, 2)]
     assert matched(poles, zeros) == ([(-1, 2, 1)], [(-3, 0, 1)], [(-4, 0, 1)])
 

@@ -16,13 +16,7 @@ from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.distributed import proof
-from symflex.roots.distributed.proof import (
-    TOUCHING,
-    UNPROVED,
-    Proof,
-    roots_at_zero,
-    turns_about_zero,
-)
+from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Proof, roots_at_zero, turns_about_zero
 from symflex.roots.distributed.side import Side, accumulation_points, require_lowest
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.locate import locate

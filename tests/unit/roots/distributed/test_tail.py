@@ -382,11 +382,7 @@ def test_one_term_outweighs_the_others_from_a_radius_on():
         ({LEVEL: powers(p1=1), GROWING: powers(p0=5)}, TURNING, 5),
         ({LEVEL: powers(p1=2), GROWING: powers(p0=5), DECAYING: powers(p0=3)}, TURNING, 4),
         # an exponent of the root of s falls, if more slowly
-        (
-            {GROWING: powers(p0=1), LEVEL: powers(p0=3)},
-            [_Power(Fraction(1, 2), acb(2))],
-            (log(3) / 2) ** 2,
-        ),
+        ({GROWING: powers(p0=1), LEVEL: powers(p0=3)}, [_Power(Fraction(1, 2), acb(2))], (log(3) / 2) ** 2),
         # of exp((2 + j) (1 +- j) r) the one with minus is the larger: exp(3 r) > 5 exp(r)
         (
             {((0, 1, 1),): powers(p0=5), ((0, 1, -1),): powers(p0=1)},

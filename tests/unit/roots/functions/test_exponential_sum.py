@@ -235,10 +235,6 @@ def test_wavenumbers_in_doubles_solve_their_equations():
         assert list(found) == list(names), (kind, c)
         # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
         for (q,) in found.values():
-            rest = {
-                "wave": q**2 + c[0],
-                "bending": 4 * q**4 - c[0],
-                "pair": q**4 + c[-1] * q**2 + c[0],
-            }[kind]
+            rest = {"wave": q**2 + c[0], "bending": 4 * q**4 - c[0], "pair": q**4 + c[-1] * q**2 + c[0]}[kind]
             assert abs(rest) < 1e-12, (kind, c)
         assert len({complex(np.round(q[0] ** 2, 9)) for q in found.values()}) == len(names), (kind, c)

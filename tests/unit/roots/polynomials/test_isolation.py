@@ -9,11 +9,7 @@ from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import PolynomialInS
-from symflex.roots.polynomials.isolation import (
-    first_bits,
-    goal_of,
-    isolations,
-)
+from symflex.roots.polynomials.isolation import first_bits, goal_of, isolations
 from tests.unit.roots.root_problems import with_pi
 
 # (s - 1)(s + 2)((s + 3)^2 + 16), and the roots in the closed upper half plane
