@@ -44,7 +44,7 @@ from symflex.analysis.time_response.sampled import (
     Sampled,
     is_precise,
 )
-from symflex.analysis.time_response.settling import settled
+from symflex.analysis.time_response.settling import falls_off, settled
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.balls import at_centre, bits_for_digits, precision
 from symflex.budget import spend
@@ -247,8 +247,11 @@ def _by_settling(asked: Asked) -> Plan | Refused:
         return Refused()
     if not asked.integrations:
         return Refused("the bound on all other poles is one on steps and ramps")
+    if not falls_off(asked.quotient):
+        return Refused("delayed terms do not fall off at high frequencies")
     goal = asked.digits + EFFORT.guard_digits
-    return partial(_closely, asked, partial(settled, asked.bound, asked.quotient, asked.integrations, goal))
+    find = partial(settled, asked.bound, asked.quotient, asked.integrations, goal)
+    return partial(_closely, asked, find, "the poles right of a line are not told apart")
 
 
 def _by_wave_echoes(asked: Asked) -> Plan | Refused:
@@ -306,7 +309,11 @@ def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | 
     )
 
 
-def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -> Sampled | Refused:
+def _closely(
+    asked: Asked,
+    find: Callable[[SampleTimes, int], Sampled | None],
+    reason: str = "the poles between the delays lie too close together",
+) -> Sampled | Refused:
     """Return a response from ever more digits and sharper times, until it is precise."""
     times, wanted = asked.times, asked.digits + EFFORT.guard_digits
     for _ in range(EFFORT.attempts):
@@ -317,7 +324,7 @@ def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -
                 return sampled
             times = times if times.is_exact else times.one_by_one()
         wanted *= 2
-    return Refused("the poles between the delays lie too close together")
+    return Refused(reason)
 
 
 def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransferFunction]]:

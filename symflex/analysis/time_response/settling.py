@@ -120,6 +120,12 @@ def _at(parts: Sequence[LatePolynomial], s: acb) -> acb:
     return sum((acb_poly(p.polynomial)(s) * (-s * p.seconds).exp() for p in parts), acb(0))
 
 
+def falls_off(quotient: DelayedQuotient) -> bool:
+    """Tell whether delayed terms, and H without what passes straight through, fall off far out."""
+    with precision(EFFORT.bits):
+        return _Loop(quotient, EFFORT.pole_digits).falls_off
+
+
 def late_response(
     bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int, integrations: int = 1
 ) -> LateResponse | None:
