@@ -297,7 +297,16 @@ def _fit(
         reasons = ("the time budget ended before the fit was complete", *reasons)
     elif not fitted.order and np.median([fit.misfit_db(r) for r in range(len(bases))]) > DROWNED_DB:
         reasons = (*reasons, "the data show no resonance, and noise as large as the response")
-    return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
+    reasons = (*reasons, *_poor(fit))
+    if reasons:
+        # What a poor fit leaves is taken for noise, within which a function may have any magnitude.
+        tests = tuple(
+            replace(test, verdict="undetermined", with_phase=None)
+            if test.bands and test.is_minimum_phase
+            else test
+            for test in tests
+        )
+    return replace(fit, phase_tests=tests, warnings=_warnings(fit), poor=reasons)
 
 
 def _settled(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
