@@ -204,4 +204,7 @@ def formula(block: PlacedBlock) -> Expression | None:
     >>> format_expression(formula(PlacedBlock("G", BLOCKS["lag"], (("k", number(1)), ("T", Name("tau"))))))
     '1/(1 + tau*s)'
     """
-    return plain(block.formula, dict(block.values)) if block.formula else None
+    try:
+        return plain(block.formula, dict(block.values)) if block.formula else None
+    except ZeroDivisionError:
+        return None  # it divides by zero, which `derive` refuses

@@ -263,6 +263,16 @@ def test_broken_models_are_refused_with_a_sentence_and_its_place(tmp_path, capsy
         assert not (tmp_path / "odd.svg").exists(), name
 
 
+def test_a_block_that_divides_by_zero_is_a_box_with_its_name():
+    drawing = drawing_of(pipeline.loads("""
+symflex = 1
+blocks.G = { type = "tf", num = ["1"], den = ["0"] }
+inputs.u = {}
+outputs.y = "G*u"
+"""))  # fmt: skip
+    assert count(drawing, "block", "G") == 1
+
+
 def test_of_a_long_chain_the_ends_and_the_number_are_drawn():
     drawing = drawing_of(pipeline.loads(f"symflex = 1\n{chain(200)}"))
     shown = [i.name for i in drawing.of_kind("element") if i.name.startswith("m_")]
