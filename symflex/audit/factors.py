@@ -135,7 +135,7 @@ def full_angles(field: Arithmetic, ring: Ring, factor: fmpz_mpoly) -> Factored |
 
 
 TERMS = (8, 16, 32, 64)
-"""Of a power series, tried in turn."""
+"""Numbers of terms of a power series, tried in turn."""
 LARGEST_FACTOR = 60
 MOST_WAVES = 3
 """Larger factors take too long; the limit is then left open."""

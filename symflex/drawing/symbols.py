@@ -386,8 +386,8 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
 }
 """By the type of an element; a new element is a line."""
 
-# Of an input between two nodes: a distance that is given; two arrows, to the right into the second end and to
-# the left into the first; a motor without a circuit, whose two arrows turn the ends against each other.
+# Inputs between two nodes are drawn as a distance that is given; as two arrows, to the right into the second
+# end and to the left into the first; and as a motor without a circuit, which turns its ends apart.
 MOTION_BETWEEN: Final = branch(26.0, "span 0,0 1,0")
 FORCE_BETWEEN: Final = branch(30.0, "push .42,0 0,0; push .58,0 1,0")
 TORQUE_BETWEEN: Final = branch(

@@ -163,7 +163,7 @@ class DimensionSystem:
         self._uses: dict[str, list[Use]] = {}
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
-        # Of x, by what varies along it.
+        # The measure of x, by what varies along it.
         self._axes = dict.fromkeys(scope.along, Measure(unit_of("m").dimension))
         self._coordinate: Measure | None = None
         # What terms with a written number tell, if no such number in the model has a unit.

@@ -222,8 +222,12 @@ class Study:
     @cached_property
     def loops(self) -> tuple[StabilityMap | SymflexError, ...]:
         """Stable values of every gain that a figure names, or why there are none."""
+
+        def stable(gain: str) -> StabilityMap:
+            return find_stable_gains(self.loop(gain))
+
         gains = dict.fromkeys(figure.gain for figure in self.model.figures if figure.gain)
-        return tuple(attempt(lambda g=gain: find_stable_gains(self.loop(g))) for gain in gains)  # type: ignore[misc]
+        return tuple(attempt(partial(stable, gain)) for gain in gains)
 
     def loop(self, gain: str) -> AnyLoop:
         """Return the characteristic function as a polynomial in a gain.

@@ -9,12 +9,13 @@ it is made of at first, as exponentials.
 with the residues at poles right of that line. The integral is at most ``e^(-c t)`` times that of abs(H/s)
 over pi. The poles right of the line are counted by how often ``F = 1 + D_1/D_0 e^(-s d_1) + ...`` turns about
 zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0. What passes straight
-through, such as 1 in ``s/(s + e^(-s))``, is no part of the integral: once it came, its residue is all of it.
+through, such as 1 in ``s/(s + e^(-s))``, is left out of the integral: after that only its residue remains.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
@@ -44,12 +45,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LateResponse:
-    """A step response within ``size * e^(-rate t)`` of some terms, once what passes straight through came."""
+    """A step response within ``size * e^(-rate t)`` of some terms, after what passes straight through."""
 
     terms: tuple[ExponentialTerm, ...]
     size: arb
     rate: arb
-    passed: tuple[arb, ...]  # times when that comes [s]
+    passed: tuple[arb, ...]  # when that arrives [s]
 
 
 @dataclass(frozen=True)
@@ -86,8 +87,13 @@ class _Loop:
             self.above.append(LatePolynomial(arb_poly(left), part.seconds))
             self.above += [LatePolynomial(-c * p.polynomial, part.seconds + p.seconds) for p in self.below]
             self.passed.append(part.seconds)
-        exact = durations.exact(quotient.below[self.first])
-        self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
+        self._exact, self._digits = durations.exact(quotient.below[self.first]), digits
+
+    @cached_property
+    def poles(self) -> tuple[Root, ...]:
+        """The roots of D_0."""
+        problem = RootProblem(((self._exact, 1),))
+        return find_polynomial_roots(problem, self._digits) if self._exact.degree else ()
 
     @property
     def falls_off(self) -> bool:

@@ -59,7 +59,7 @@ CLOSE = 1e-6
 MOST_WORK = 200_000
 """Terms summed on intervals for one number, a second: a mode that rings a thousand times takes some each."""
 ECHO_DERIVATIVES = 8
-"""Of pieces of a response with delays: six echoes of a pole close to 0 may cancel to 1e-13."""
+"""Terms of Taylor's polynomial of a piece with echoes: six of a pole close to 0 may cancel to 1e-13."""
 HALVINGS = 50
 MORE_DIGITS = 10
 """Of poles: differences of their terms lose some."""
