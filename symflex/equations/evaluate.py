@@ -231,8 +231,9 @@ class ExactEvaluator:
     def _block(self, expression: Name | Attribute, name: str) -> Factored:
         if name not in self.blocks:
             # Only while kernels are surveyed: everywhere else every block has a value.
-            message = f"a delay (block '{name}') inside a field's equation or a length is not available"
-            hint = f'a delayed load may come from a signal: [signals] load = "{name}*..."'
+            message = "a dead time inside a field's equation or a length is not available"
+            hint = "wavenumbers would depend on it; a delayed load may come from a signal: "
+            hint += '[signals] load = "exp(-s*T)*..."'
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         return self.blocks[name]
 

@@ -50,6 +50,8 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
     places = [e for use in draft.elements for _, e in use.values]
     for group in (draft.definitions, draft.signals, draft.outputs):
         places += [x.expression for x in group]
+    equations = [e for field in draft.fields for e in (*field.equations, *field.conditions)]
+    places += [side for e in equations for side in (e.left, e.right)]
     ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     places += ratios.values()
     times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) is not None}
@@ -89,6 +91,7 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
         signals=tuple(replace(x, expression=put_in(x.expression)) for x in draft.signals),
         outputs=tuple(replace(x, expression=put_in(x.expression)) for x in draft.outputs),
         blocks=(*(with_values(x) for x in draft.blocks if x.name not in late), *blocks.values()),
+        fields=tuple(field.rewritten(put_in) for field in draft.fields),
     )
 
 

@@ -128,8 +128,9 @@ def test_what_is_not_available_is_said_with_what_is():
             "blocks may be added, multiplied, divided and raised to integer powers",
         ),
         (
-            {}, "G", "a delay (block 'G') inside a field's equation or a length is not available",
-            'a delayed load may come from a signal: [signals] load = "G*..."',
+            {}, "G", "a dead time inside a field's equation or a length is not available",
+            "wavenumbers would depend on it; a delayed load may come from a signal: "
+            '[signals] load = "exp(-s*T)*..."',
         ),
     ]:  # fmt: skip
         with pytest.raises(ModelError) as caught:

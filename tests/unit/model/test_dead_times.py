@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import cmath
 
+import mpmath
 import pytest
 
 from symflex import pipeline, transfer
-from symflex.errors import SpecError
+from symflex.errors import ModelError, SpecError
+from symflex.roots import Modes
 
 TEXT = """symflex = 1
 parameters = {{ K = 3, T = "0.2 s" }}
@@ -78,3 +80,42 @@ def test_definitions_that_would_double_without_end_are_not_written_out():
     text = f'symflex = 1\nparameters.T = 1\n[definitions]\nA0 = "exp(-s*T)"\n{doubled}\n'
     with pytest.raises(SpecError, match="exp of an expression in s is not available yet"):
         pipeline.loads(text + '[signals]\ny = "A59*r"\n[inputs]\nr = {}\n[outputs]\nY = "y"\n')
+
+
+RIJKE = """symflex = 1
+parameters = { rho = "1.2 kg/m^3", c = "343 m/s", L = "1 m", x_f = "0.25 m", n = 0.1, tau = "1 ms" }
+definitions.Q = "n*exp(-s*tau)"
+inputs.p_0 = { unit = "Pa" }
+outputs.p_f = "p2(x_f)"
+[fields.cold]
+domain = ["0", "x_f"]
+unknowns = ["p1", "u1"]
+equations = ["p1' = -rho*s*u1", "u1' = -s/(rho*c^2)*p1"]
+conditions = ["p1(0) = p_0", "p1(x_f) = p2(x_f)"]
+[fields.hot]
+domain = ["x_f", "L"]
+unknowns = ["p2", "u2"]
+equations = ["p2' = -rho*s*u2", "u2' = -s/(rho*c^2)*p2"]
+conditions = ["u2(x_f) = HEAT*u1(x_f)", "p2(L) = 0"]
+"""
+
+
+def test_a_dead_time_is_written_in_a_condition_of_a_field():
+    def determinant(s):  # waves p_1 = sinh(s*x/c), p_2 = sinh(s*(L - x)/c) about the heat source
+        return mpmath.sinh(s / 343) + 0.1 * mpmath.exp(-s / 1000) * mpmath.cosh(s / 1372) * mpmath.sinh(
+            3 * s / 1372
+        )
+
+    growing = [mpmath.findroot(determinant, start) for start in (14 + 1086j, 2 + 3250j)]
+    for heat in ("(1 + n*exp(-s*tau))", "(1 + exp(-tau*s)*n)", "(1 + Q)"):
+        (bound,) = pipeline.derive_bound(pipeline.loads(RIJKE.replace("HEAT", heat)), [("p_f", "p_0")])
+        found = [complex(r) for r in pipeline.roots(bound, Modes(3)).poles if r.re > 0 and r.im > 0]
+        assert found == pytest.approx([complex(s) for s in growing], rel=1e-12)
+
+
+def test_a_dead_time_in_an_equation_of_a_field_is_refused_with_its_reason():
+    text = RIJKE.replace("HEAT", "1").replace("definitions.Q", "# ")
+    text = text.replace("-s/(rho*c^2)*p2", "-s/(rho*c^2)*(1 + n*exp(-s*tau))*p2")
+    with pytest.raises(ModelError, match="a dead time inside a field's equation") as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    assert caught.value.diagnostics[0].span.line == 14
