@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import exp, inf, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from flint import acb, arb
 
@@ -26,7 +26,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symflex.loops.loop import LoopFunction, LoopValue
+    from symflex.loops.loop import LoopFunction
 
 
 BITS = 96
@@ -43,6 +43,16 @@ STALLED = 0.99
 """Share of an enclosure that the last step leaves."""
 
 
+Place = TypeVar("Place")
+
+
+class AlongAxis(Protocol[Place]):
+    """What has values along an axis."""
+
+    def on(self, omega: arb, bits: int) -> tuple[Place, Place]:
+        """Return the values on a ball, and those in its middle."""
+
+
 @dataclass(frozen=True, slots=True)
 class AxisRoots:
     """What was found between two frequencies."""
@@ -52,9 +62,9 @@ class AxisRoots:
 
 
 def find_on_axis(
-    function: LoopFunction,
-    equation: Callable[[LoopValue], tuple[arb, arb]],
-    is_excluded: Callable[[LoopValue], bool],
+    function: AlongAxis[Place],
+    equation: Callable[[Place], tuple[arb, arb]],
+    is_excluded: Callable[[Place], bool],
     limits: tuple[float, float],
     digits: int,
 ) -> AxisRoots:
@@ -107,7 +117,7 @@ def pieces(low: float, high: float, ratio: float) -> list[tuple[float, float]]:
 
 
 def _refined(
-    function: LoopFunction, equation: Callable[[LoopValue], tuple[arb, arb]], ball: arb, digits: int
+    function: AlongAxis[Place], equation: Callable[[Place], tuple[arb, arb]], ball: arb, digits: int
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 

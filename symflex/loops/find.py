@@ -23,7 +23,7 @@ from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
 from symflex.loops.distributed import SHRINKINGS, DistributedFactors
-from symflex.loops.locus import closed_loop_roots
+from symflex.loops.locus import closed_loop_roots, is_straight
 from symflex.loops.loop import Loop, LoopFunction
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkLoop
@@ -39,7 +39,7 @@ from symflex.loops.stability_map import (
 )
 from symflex.roots import find_polynomial_roots
 from symflex.roots.distributed.far_out import NEUTRAL
-from symflex.roots.pole_zero_map import WITHOUT_END
+from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 
@@ -84,7 +84,7 @@ def find_stable_gains(
         return _at_nominal(loop, (low, high), digits, along.reasons[-1])
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
-    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
+    crossings = _lumped_crossings(loop, lumped, digits + GUARD_DIGITS)
     if along is not None:
         crossings += along.crossings(digits + GUARD_DIGITS)
     search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
@@ -120,7 +120,7 @@ def find_stable_gains(
     # counted up to a frequency, poles beyond it may lie on the axis.
     is_open = stability.is_passive and not is_complete
     if nominal is not None and (is_alone or is_open or NEUTRAL in stability.reasons):
-        stability = replace(stability, at_nominal=closed_loop_roots(loop, nominal).verdict)
+        stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = beyond = None
@@ -143,11 +143,22 @@ def find_stable_gains(
     )
 
 
+def _lumped_crossings(loop: Loop, lumped: Sequence[LumpedFactor], digits: int) -> list[Crossing]:
+    """Return where poles of factors without kernels may cross the axis."""
+    if loop.rooted is None or loop.functions is None:
+        return [c for factor in lumped for c in factor.crossings(digits)]
+    power, sign = loop.functions.root or 1, loop.functions.sign
+    factors = [LumpedFactor.of(loop.rooted.bound, f) for f in _split(loop.rooted)[0] if f.degree]
+    found = [c for factor in factors for c in factor.crossings(digits) if not c.gain < 0]
+    with precision(max([BITS, *(c.gain.bits() for c in found)])):
+        return [replace(c, gain=sign * c.gain**power) for c in found]
+
+
 def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> StabilityMap:
     """Return what is known where the range of the gain is not searched: whether its own value is stable."""
     verdict = None
     if loop.nominal is not None:
-        verdict = closed_loop_roots(loop, loop.nominal).verdict
+        verdict = _verdict_at(loop, loop.nominal)
         spend()  # a search that ends with its time returns what it proved, perhaps nothing
     return StabilityMap(
         loop.gain.name,
@@ -161,6 +172,14 @@ def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> Stab
         at_nominal=verdict,
         tf=loop.bound.name if isinstance(loop, Loop) else "",
     )
+
+
+def _verdict_at(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
+    """Return what holds at one gain, also at one for which there is no solution."""
+    try:
+        return closed_loop_roots(loop, gain).verdict
+    except ModelError as error:
+        return StabilityVerdict("unknown", None, False, error.diagnostics[0].message)
 
 
 def _holds_smallest(
@@ -179,7 +198,7 @@ def _factors(
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
     low, high = _limits(loop, limits, is_distributed=bool(mixed))
-    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain if factor.degree]
+    lumped = [LumpedFactor.of(loop.bound, factor, loop, (low, high)) for factor in plain if factor.degree]
     if not mixed:
         return lumped, None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
@@ -216,8 +235,14 @@ def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits
         if low is not None and high is not None and not low < high:
             message = f"the range of '{loop.gain.name}' must end above its start"
             raise UsageError(Diagnostic("SF804", message))
+        limits = given
+    else:
+        limits = None if loop.gain.assume == "real" else Fraction(0), None
+    if loop.functions is not None:
+        return loop.functions.domain(limits, is_endless=loop.rooted is not None and not is_distributed)
+    if given is not None:
         return given
-    low = None if loop.gain.assume == "real" else Fraction(0)
+    low, _ = limits
     if not is_distributed:
         return low, None
     if not loop.nominal:
@@ -276,15 +301,19 @@ class _GainSearch:
         counted = self.along.radius[0] * 1.01 if self.along is not None and is_open else inf
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
             # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
-            # that cross it above the highest frequency counted only seem to.
+            # that cross it above the highest frequency counted only seem to. Where the order is lower, or
+            # nothing is a solution, what holds on both sides need not hold.
             turns = any(not omega > counted for c in group for omega in c.frequencies)
-            if counts[i] == counts[i + 1] and not (counts[i].is_stable and turns):
+            is_lower = any(c.is_infinite or c.is_singular for c in group)
+            is_same, where = counts[i] == counts[i + 1], f"near a gain of {float(gain.mid()):.6g}"
+            if is_same and counts[i].is_stable and any(c.is_open for c in group):
+                self.reasons.append(f"it could not be decided whether poles touch the axis {where}")
+            if is_same and not is_lower and not (counts[i].is_stable and turns):
                 continue
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))
             known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
             if is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
-                where = f"near a gain of {float(gain.mid()):.6g}"
                 self.reasons.append(f"poles enter from above the highest frequency counted, {where}")
             start = gain
         intervals.append(GainInterval(start, ends[-1], counts[-1]))
@@ -356,10 +385,9 @@ def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
 
 def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> LoopGain | None:
     """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
-    with_gain = loop.with_gain
-    if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
+    if not is_straight(loop):
         return None
-    (factor,) = with_gain
+    (factor,) = loop.with_gain
     if along is not None and factor in along.factors:
         return LoopGain(along.with_gain[0], along, digits)
     return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits)

@@ -112,9 +112,13 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
     """Return B and A, both divided by what divides the characteristic function."""
     one = Factored.number(loop.bound.ratio.ring, 1)
     above = below = one
-    if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
-        message = f"the characteristic function is not linear in '{loop.gain.name}'"
-        hint = "use the parameter as the gain of one loop"
+    if not is_straight(loop):
+        name = loop.gain.name
+        message = f"the characteristic function is not linear in '{name}'"
+        hint = (
+            f"use the parameter as the gain of one loop, or follow the poles by value: 'symflex sweep FILE "
+            f"--over {name}=FROM:TO:lin:20 -o RUN.csv', then 'symflex plot sweep'"
+        )
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
     for factor in loop.factors:
         if factor.degree:
@@ -129,9 +133,17 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
     return above, below
 
 
+def is_straight(loop: Loop) -> bool:
+    """Tell whether the characteristic function is a straight line in the gain, which closes one loop."""
+    return [(f.degree, f.multiplicity) for f in loop.with_gain] == [(1, 1)]
+
+
 def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTransferFunction:
     """Return a function of the given parts, whose poles are those of the model with a gain."""
     bound = loop.bound
+    if den.is_zero:
+        message = f"the equations have no unique solution for {loop.gain.name} = {float(gain):.6g}"
+        raise ModelError(Diagnostic("SF231", message, loop.gain.span))
     parts = (num, den) if bound.kernels else None
     own = (loop.gain.name, ExactValue(gain))
     values = tuple(own if name == loop.gain.name else (name, value) for name, value in bound.values)
@@ -145,6 +157,8 @@ def closed_loop_roots(loop: AnyLoop, gain: Fraction, region: Region | None = Non
     """
     if isinstance(loop, NetworkLoop):
         return loop.located(gain, region or Modes(loop.modes))
+    if not is_straight(loop):
+        return locate(loop.bound_at(gain), region, 15)
     located = locate(closed_loop(loop, gain), region, 15)
     apart = poles_apart(loop.bound, loop.factors)
     return replace(located, verdict=located.verdict.beside(apart.verdict))

@@ -9,7 +9,7 @@ what it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
@@ -19,11 +19,15 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
+from symflex.algebra.ring import coefficients_of
 from symflex.balls import Value, expansion, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.expressions import names_among
+from symflex.loops.gain_functions import GainFunctions
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
+from symflex.transfer.bind import values_for
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -45,15 +49,31 @@ class GainPolynomial:
     coefficients: tuple[Factored, ...]
     multiplicity: int  # how often the factor occurs
     is_hidden: bool = False  # it cancelled from the transfer function the loop was read from
+    # Where functions of the gain occur: the exponents of the gain and of these, coefficient by coefficient.
+    exponents: tuple[tuple[int, ...], ...] = ()
+    symbolic: fmpz_mpoly | None = None  # the factor over the ring of the transfer function
 
     @property
     def degree(self) -> int:
-        """In the gain."""
-        return len(self.coefficients) - 1
+        """In the gain; at least 2 where functions of it occur, as it is no straight line in the gain then."""
+        return 2 if self.exponents else len(self.coefficients) - 1
+
+    @property
+    def terms(self) -> list[tuple[tuple[int, ...], Factored]]:
+        """The coefficients with their exponents."""
+        exponents = self.exponents or tuple((i,) for i in range(len(self.coefficients)))
+        return list(zip(exponents, self.coefficients, strict=True))
 
     def at(self, gain: Fraction) -> Factored:
         """Return the factor for one value of the gain, a function of s."""
         return sum((c * gain**i for i, c in enumerate(self.coefficients[1:], 1)), self.coefficients[0])
+
+    def bound_at(self, loop: Loop, gain: Fraction) -> tuple[BoundTransferFunction, Factored]:
+        """Return the same with what carries its ring, where functions of the gain have the values there."""
+        if not self.exponents or self.symbolic is None:
+            return loop.bound, self.at(gain)
+        bound = loop.bound_at(gain)
+        return bound, bind_polynomials(loop.source, bound, [self.symbolic])[0]
 
 
 @dataclass(frozen=True)
@@ -65,6 +85,11 @@ class Loop:
     nominal: Fraction | None  # the gain's value, where it is a rational number
     # Whose product the characteristic function is, up to what has no roots.
     factors: tuple[GainPolynomial, ...]
+    source: TransferFunction  # with the gain as a symbol
+    given: Mapping[str, Given] = field(default_factory=dict)  # values in place of declared ones
+    functions: GainFunctions | None = None  # of the gain, which the factors hold
+    # The same in the root of the gain of which all functions are powers.
+    rooted: Loop | None = None
 
     def __repr__(self) -> str:
         return f"<Loop of {self.bound.name} with gain {self.gain.name}>"
@@ -73,6 +98,10 @@ class Loop:
     def model(self) -> Model:
         """Whose characteristic function it is."""
         return self.bound.source.model
+
+    def bound_at(self, gain: Fraction) -> BoundTransferFunction:
+        """Return the transfer function for one value of the gain."""
+        return bind(self.source, {**self.given, self.gain.name: gain})
 
     @property
     def with_gain(self) -> tuple[GainPolynomial, ...]:
@@ -88,23 +117,42 @@ def characteristic_loop(
     Any of the model's will do, with the gain as a symbol. SF801 the closed loop does not depend on the gain,
     or the gain shapes waves or delays.
     """
-    position = tf.ratio.ring.index.get(gain.name)
-    if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
+    ring, given = tf.ratio.ring, dict(values or {})
+    calls = {c.generator: c.expression for c in tf.constants if c.generator in gain_generators(tf, gain.name)}
+    positions = [ring.index[name] for name in (gain.name, *calls)] if gain.name in ring.index else []
+    if any(value.depends_on(ring.names[i]) for value in tf.kernels.values for i in positions):
         message = f"'{gain.name}' is part of a wavenumber, a length or a delay and cannot be a gain"
         raise no_loop("SF801", message, gain)
     factors = [(f, e, False) for f, e in tf.den.factors]
     factors += [(h.polynomial, h.multiplicity, True) for h in tf.hidden]
-    if position is None or not any(degree_in(f, position) for f, _, _ in factors):
+    if not any(degree_in(f, i) for f, _, _ in factors for i in positions):
         message = f"no pole of the model depends on '{gain.name}'"
         raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
-    bound = _bound(tf, gain, dict(values or {}))
-    nominal = dict(bound.values)[gain.name] if gain.value is not None or gain.name in (values or {}) else None
+    bound = _bound(tf, gain, given)
+    known = dict(bound.all_values)
+    # Bound it may have another value, where nothing is singular.
+    declared = gain.value is not None or gain.name in given
+    nominal = dict(values_for(tf.model, (gain,), given))[gain.name] if declared else None
+    rational = None if nominal is None or nominal.pi_power else nominal.rational
     polynomials: list[GainPolynomial] = []
     for factor, exponent, is_hidden in factors:
-        pieces = bind_polynomials(tf, bound, tuple(tf.ratio.ring.coefficients(factor, position)))
-        polynomials.append(GainPolynomial(pieces, exponent, is_hidden))
-    rational = None if nominal is None or nominal.pi_power else nominal.rational
-    return Loop(bound, gain, rational, tuple(polynomials))
+        parts = dict(sorted(coefficients_of(ring, factor, positions).items()))
+        exponents = tuple(parts)
+        if not any(any(key[1:]) for key in parts):
+            rest, exponents = (0,) * len(calls), ()
+            parts = {(i,): parts.get((i, *rest), ring.constant(0)) for i in range(max(parts)[0] + 1)}
+        pieces = bind_polynomials(tf, bound, tuple(parts.values()))
+        polynomials.append(GainPolynomial(pieces, exponent, is_hidden, exponents, factor))
+    inside = {name: v for name, v in known.items() if any(names_among(c, {name}) for c in calls.values())}
+    is_plain = not any(factor.exponents for factor in polynomials)
+    functions = None if is_plain else GainFunctions(gain.name, calls, inside, rational)
+    return Loop(bound, gain, rational, tuple(polynomials), tf, given, functions)
+
+
+def gain_generators(tf: TransferFunction, gain: str) -> frozenset[str]:
+    """Return the generators that depend on a gain: itself, and functions of constants that hold it."""
+    names = {gain, *(c.generator for c in tf.constants if names_among(c.expression, {gain}))}
+    return frozenset(names & set(tf.ratio.ring.index))
 
 
 def no_loop(code: str, message: str, gain: ModelParameter) -> ModelError:

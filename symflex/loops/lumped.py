@@ -10,14 +10,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial, reduce
 from math import lcm
 from typing import TYPE_CHECKING
 
 from flint import arb, fmpz_mpoly
 
-from symflex.algebra import Ring, degree_in
-from symflex.balls import precision, value_at
-from symflex.errors import Diagnostic, UncertifiedError
+from symflex.algebra import Ring, degree_in, irreducible_factors
+from symflex.balls import bits_for_digits, precision, value_at
+from symflex.budget import spend
+from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots
 from symflex.roots.pole_zero_map import count_right
@@ -26,7 +28,10 @@ from symflex.roots.problem import problem_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.loops.loop import GainPolynomial
+    from flint import arb_series
+
+    from symflex.loops.gain_functions import GainFunctions
+    from symflex.loops.loop import GainPolynomial, Loop
     from symflex.transfer import BoundTransferFunction
 
 W, K = 0, 1
@@ -48,20 +53,32 @@ class LumpedFactor:
     even: fmpz_mpoly
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
+    loop: Loop | None = None  # whose factor it is
+    # Of a factor with functions of the gain, which follow it in the ring: these, and the range examined.
+    functions: GainFunctions | None = None
+    limits: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
 
     @classmethod
-    def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:
-        """Return a factor without kernels as E and O."""
+    def of(
+        cls,
+        bound: BoundTransferFunction,
+        factor: GainPolynomial,
+        loop: Loop | None = None,
+        limits: tuple[Fraction | None, Fraction | None] = (None, None),
+    ) -> LumpedFactor:
+        """Return a factor without kernels as E and O; of one with functions of the gain limits are known."""
         terms = _integer_terms(factor)
         constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
         names = bound.ratio.ring.names[1 : 1 + len(constants)]
         used = [i for i, _ in enumerate(names) if any(key[2][i] for key in terms)]
-        ring = Ring(("w", "K", *(names[i] for i in used)))
+        functions = None if loop is None or not factor.exponents else loop.functions
+        own = [] if functions is None else [f"{name} of the gain" for name in functions.calls]
+        ring = Ring(("w", "K", *own, *(names[i] for i in used)))
         zeros = min(s for s, _, _ in terms)
         parts: tuple[dict[tuple[int, ...], int], ...] = ({}, {})
         for (s, k, rest), number in terms.items():
             half, is_odd = divmod(s - zeros, 2)
-            place = (half, k, *(rest[i] for i in used))
+            place = (half, *k, *(rest[i] for i in used))
             parts[is_odd][place] = number * (-1) ** half
         even, odd = (ring.context.from_dict(part) for part in parts)
         common = even.gcd(odd) if len(odd) else even
@@ -73,14 +90,25 @@ class LumpedFactor:
             even / common,
             odd / common if len(odd) else odd,
             common,
+            loop,
+            functions,
+            (limits[0] or Fraction(0), limits[1] or Fraction(0)),
         )
+
+    def _moves(self, *polynomials: fmpz_mpoly) -> bool:
+        """Tell whether one of some polynomials depends on the gain."""
+        end = len(self.ring.names) - len(self.constants)
+        return any(degree_in(f, i) for f in polynomials for i in range(K, end))
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
         crossings: list[Crossing] = []
         whole = self.even * self.common, self.odd * self.common
-        if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
+        if not self._moves(*whole):
             return []
+        content = reduce(fmpz_mpoly.gcd, (c for f in whole for c in self.ring.coefficients(f, W)))
+        crossings += [Crossing(gain, (), is_singular=True) for gain in self._gains(content, digits)]
+        whole = whole[0] / content, whole[1] / content
         if degree_in(whole[0], W) or len(whole[1]):
             at_zero = self.ring.coefficients(whole[0], W)[0]
             crossings += [Crossing(gain, (arb(0),)) for gain in self._gains(at_zero, digits)]
@@ -96,9 +124,11 @@ class LumpedFactor:
         """Return where poles that mirror each other in the axis meet, on it or beside it."""
         w, k = (str(self.ring.context.gen(i)) for i in (W, K))
         simple = self.common / self.common.gcd(self.common.derivative(w))
-        if degree_in(simple, W) < 2 or degree_in(simple, K) == 0:  # noqa: PLR2004 (two roots can meet)
+        if degree_in(simple, W) < 2 or not self._moves(simple):  # noqa: PLR2004 (two roots can meet)
             return []
         slope = simple.derivative(w)
+        if self.functions is not None:
+            return self._with_functions(simple.discriminant(w), (simple, slope), digits, is_symmetric=True)
         gains = self._real_roots(simple.discriminant(w), K, digits)
         squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
         meetings = ((gain.re, self._frequencies(gain, squares, (simple, slope))) for gain in gains)
@@ -107,8 +137,11 @@ class LumpedFactor:
     def _on_axis(self, digits: int) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
         even, odd = (self.ring.coefficients(f, K) for f in (self.even, self.odd))
-        if not len(self.odd) or len(even) == len(odd) == 1:
+        if not len(self.odd) or not self._moves(self.even, self.odd):
             return []
+        if self.functions is not None:
+            resultant = self.even.resultant(self.odd, str(self.ring.context.gen(W)))
+            return self._with_functions(resultant, (self.even, self.odd), digits)
         if max(len(even), len(odd)) <= 2:  # noqa: PLR2004 (affine)
             zero = self.ring.constant(0)
             even, odd = ([*f, zero][:2] for f in (even, odd))
@@ -120,6 +153,44 @@ class LumpedFactor:
         gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits)
         meetings = ((gain.re, self._frequencies(gain, squares, (self.even, self.odd))) for gain in gains)
         return [Crossing(gain, near) for gain, near in meetings if near]
+
+    def _with_functions(
+        self,
+        polynomial: fmpz_mpoly,
+        both: tuple[fmpz_mpoly, fmpz_mpoly],
+        digits: int,
+        *,
+        is_symmetric: bool = False,
+    ) -> list[Crossing]:
+        """Return where a polynomial in the gain and functions of it vanishes, and two others with it.
+
+        At such a gain these have a root in common, which need not be a positive w.
+        """
+        lowest = min((f for f in both if degree_in(f, W)), key=lambda f: degree_in(f, W))
+        crossings = []
+        for gain in self._gains(polynomial, 2 * digits + SPARE_DIGITS):
+            with precision(max(gain.bits(), bits_for_digits(digits))):
+                known = [RealConstant(str(i), partial(arb, x)) for i, x in enumerate(self._numbers(gain))]
+            ring = Ring(self.ring.names[1:])
+            images = [ring.constant(0), *ring.context.gens()]
+            parts = [ring.compose(c, images) for c in self.ring.coefficients(lowest, W)]
+            problem = RootProblem(((PolynomialInS(tuple(parts), ring.context, tuple(known)), 1),))
+            try:
+                squares = [r for r in find_polynomial_roots(problem, digits) if r.is_real and r.re > 0]
+            except SymflexError:
+                spend()
+                crossings.append(Crossing(gain, (), is_symmetric=is_symmetric, is_open=True))
+                continue
+            is_open = gain.rel_accuracy_bits() < bits_for_digits(digits)
+            near = [w for w in squares if all(self._value(f, w.re, gain).contains(0) for f in both)]
+            frequencies = tuple(w.re.sqrt() for w in near)
+            crossings.append(Crossing(gain, frequencies, is_symmetric=is_symmetric, is_open=is_open))
+        return crossings
+
+    def _numbers(self, gain: arb) -> list[arb]:
+        """Return the gain, its functions and the constants, at the current precision."""
+        own = [gain] if self.functions is None else [x[0] for x in self.functions.at(gain)]
+        return [*own, *(constant.evaluate() for constant in self.constants)]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
@@ -146,7 +217,7 @@ class LumpedFactor:
 
     def _value(self, polynomial: fmpz_mpoly, square: arb, gain: arb) -> arb:
         """Return a polynomial of the ring at w and K, at the current precision."""
-        values = [square, gain, *(constant.evaluate() for constant in self.constants)]
+        values = [square, *self._numbers(gain)]
         return value_at(polynomial, values.__getitem__, arb)
 
     def _leading(self, parts: tuple[fmpz_mpoly, fmpz_mpoly]) -> fmpz_mpoly:
@@ -157,7 +228,19 @@ class LumpedFactor:
         return self.ring.coefficients(chosen, W)[power]
 
     def _gains(self, polynomial: fmpz_mpoly, digits: int) -> list[arb]:
-        return [root.re for root in self._real_roots(polynomial, K, digits)]
+        """Return gains at which a polynomial without w vanishes, and narrow ranges where it may."""
+        if self.functions is None:
+            return [root.re for root in self._real_roots(polynomial, K, digits)]
+        functions, gains = self.functions, list[arb]()
+        for factor, _ in irreducible_factors(polynomial)[1] if self._moves(polynomial) else ():
+            if self._moves(factor):
+
+                def value(gain: arb, factor: fmpz_mpoly = factor) -> arb_series:
+                    return functions.value(factor, gain, [c.evaluate() for c in self.constants])
+
+                for zeros in functions.zeros(value, self.limits, digits):
+                    gains += zeros
+        return gains
 
     def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int) -> list[Root]:
         """Return the real roots of a polynomial in one of w and K; each once."""
@@ -171,8 +254,11 @@ class LumpedFactor:
 
         SF802 when a root cannot be told from one on the axis.
         """
-        factors = [(f, e) for f, e in self.factor.at(gain).factors if e > 0]
-        roots = find_polynomial_roots(problem_of(self.bound, factors), COUNT_DIGITS)
+        bound, whole = (
+            (self.bound, self.factor.at(gain)) if self.loop is None else self.factor.bound_at(self.loop, gain)
+        )
+        factors = [(f, e) for f, e in whole.factors if e > 0]
+        roots = find_polynomial_roots(problem_of(bound, factors), COUNT_DIGITS)
         if any(root.re.contains(0) and not root.on_imaginary_axis for root in roots):
             message = "it could not be decided on which side of the imaginary axis a pole lies"
             raise UncertifiedError(Diagnostic("SF802", message))
@@ -189,10 +275,10 @@ class LumpedFactor:
         return PolynomialInS(tuple(moved), small.context, self.constants)
 
 
-def _integer_terms(factor: GainPolynomial) -> dict[tuple[int, int, tuple[int, ...]], int]:
+def _integer_terms(factor: GainPolynomial) -> dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]:
     """Return powers of s, K and constants with integer coefficients, scaled by what has no roots."""
-    rational: dict[tuple[int, int, tuple[int, ...]], Fraction] = {}
-    for k, coefficient in enumerate(factor.coefficients):
+    rational: dict[tuple[int, tuple[int, ...], tuple[int, ...]], Fraction] = {}
+    for k, coefficient in factor.terms:
         if coefficient.is_zero:
             continue
         above, below = coefficient.numerator(), coefficient.denominator()

@@ -299,6 +299,7 @@ class StabilityMap:
             "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
             "through_infinity": any(c.is_infinite for c in boundary.crossings),
             "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
+            "no_solution": any(c.is_singular for c in boundary.crossings),
             "poles_entering_right_half_plane": self.change(index),
         }
 
@@ -340,6 +341,8 @@ class Crossing:
     is_infinite: bool = False  # a pole passes through infinity: the highest power of s vanishes
     # Poles that mirror each other in the axis for every gain meet on it, and leave it or enter it.
     is_symmetric: bool = False
+    is_singular: bool = False  # the equations have no unique solution there
+    is_open: bool = False  # it is not decided whether poles are on the axis there
 
 
 @dataclass(frozen=True, slots=True)
@@ -472,12 +475,14 @@ def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
     boundary = stability.boundaries[index]
     printed = decimals(boundary.gain, arb(0), stability.digits).told
     change = stability.change(index)
-    passing = f"{change:+d}" if change else "touch the axis"
+    passing = f"{change:+d}" if change else "touch the axis" if boundary.frequencies else "0"
     return (printed.re, printed.radius, *_places(boundary, stability.digits), passing)
 
 
 def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     if not boundary.frequencies:
+        if any(c.is_singular for c in boundary.crossings):
+            return ("no solution", "")
         infinite = any(c.is_infinite for c in boundary.crossings)
         return ("infinite" if infinite else "on the axis", "")
     omegas = [decimals(w, arb(0), digits).told.re for w in boundary.frequencies]

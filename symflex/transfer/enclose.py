@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, arb_series
 
 from symflex.algebra import FUNCTIONS, terms_of
 from symflex.balls import Arithmetic, ball, raised
@@ -99,6 +99,60 @@ def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) ->
         power=lambda base, exponent: base ** _enclose(exponent, values),
         call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
     )
+
+
+def first_order(value: arb, slope: arb | int = 0) -> arb_series:
+    """Return ``value + slope*x``, to first order in x."""
+    return arb_series([value, arb(slope)], 2)
+
+
+def constant_tangent(
+    expression: Expression, values: Mapping[str, arb_series], *, is_real: bool = False
+) -> arb_series:
+    """Return an expression of constants to first order, at the current precision.
+
+    Not finite where the expression has no derivative, such as ``sqrt(k)`` at ``k = 0``. Roots are those of
+    the positive part of a ball where all that is meant ``is_real``.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Call, Name
+    >>> root = Call("sqrt", Name("k"))
+    >>> constant_tangent(root, {"k": first_order(arb(4), 1)})
+    2.00000000000000 + 0.250000000000000*x + O(x^2)
+    """
+    return fold(
+        expression,
+        number=lambda value: first_order(ball(value)),
+        name=lambda name: first_order(arb.pi()) if name == "pi" else values[name],
+        power=lambda base, exponent: _real_power(base, constant_tangent(exponent, values)),
+        call=lambda call, argument: _called(call, argument, is_real=is_real),
+        quotient=_quotient,
+    )
+
+
+def _called(call: Call, argument: arb_series, *, is_real: bool) -> arb_series:
+    function = FUNCTIONS[call.name]
+    if is_real and call.name == "sqrt" and argument[0].contains(0) and argument[0].upper() > 0:
+        return first_order(arb(0).union(argument[0].upper().sqrt()), arb("nan"))
+    # A constant argument has no slope, also where the function has none.
+    slope = arb(0) if argument[1].is_zero() else function.derivative(argument[0]) * argument[1]
+    return first_order(function.evaluate(argument[0]), slope)
+
+
+def _quotient(above: arb_series, below: arb_series) -> arb_series:
+    quotient = above[0] / below[0]
+    return first_order(quotient, (above[1] - quotient * below[1]) / below[0])
+
+
+def _real_power(base: arb_series, exponent: arb_series) -> arb_series:
+    value = base[0] ** exponent[0]
+    slope = arb(0)
+    if not base[1].is_zero():
+        slope = slope + exponent[0] * base[0] ** (exponent[0] - 1) * base[1]
+    if not exponent[1].is_zero():
+        slope = slope + value * base[0].log() * exponent[1]
+    return first_order(value, slope)
 
 
 def principal_values(

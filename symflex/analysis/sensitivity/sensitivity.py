@@ -15,10 +15,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from flint import acb, acb_mat, acb_series, arb, arb_series, fmpz_mpoly
+from flint import acb, acb_mat, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import (
-    FUNCTIONS,
     LAPLACE,
     NO_KERNELS,
     Factored,
@@ -33,14 +32,13 @@ from symflex.balls import (
     Arithmetic,
     EvaluationPlan,
     Value,
-    ball,
     bits_for_digits,
     plan,
     precision,
     precisions,
 )
 from symflex.budget import spend
-from symflex.expressions import Call, Expression, fold
+from symflex.expressions import Call, Expression
 from symflex.loops import pick_gain
 from symflex.loops.stability_map import real_json
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
@@ -48,7 +46,7 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer.enclose import enclosure, later
+from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.enclose_varying import VaryingMatrices
 from symflex.transfer.of_model import derive_all
@@ -562,52 +560,3 @@ def _series(value: acb, slope: acb) -> acb_series:
 
 def _lifted(value: acb | acb_series) -> acb_series:
     return _series(value, acb(0)) if isinstance(value, acb) else value
-
-
-def first_order(value: arb, slope: arb | int = 0) -> arb_series:
-    """Return ``value + slope*x``, to first order in x."""
-    return arb_series([value, arb(slope)], 2)
-
-
-def constant_tangent(expression: Expression, values: Mapping[str, arb_series]) -> arb_series:
-    """Return an expression of constants to first order, at the current precision.
-
-    Not finite where the expression has no derivative, such as ``sqrt(k)`` at ``k = 0``.
-
-    Examples
-    --------
-    >>> from symflex.expressions import Name
-    >>> root = Call("sqrt", Name("k"))
-    >>> constant_tangent(root, {"k": first_order(arb(4), 1)})
-    2.00000000000000 + 0.250000000000000*x + O(x^2)
-    """
-    return fold(
-        expression,
-        number=lambda value: first_order(ball(value)),
-        name=lambda name: first_order(arb.pi()) if name == "pi" else values[name],
-        power=lambda base, exponent: _real_power(base, constant_tangent(exponent, values)),
-        call=_called,
-        quotient=_quotient,
-    )
-
-
-def _called(call: Call, argument: arb_series) -> arb_series:
-    function = FUNCTIONS[call.name]
-    # A constant argument has no slope, also where the function has none.
-    slope = arb(0) if argument[1].is_zero() else function.derivative(argument[0]) * argument[1]
-    return first_order(function.evaluate(argument[0]), slope)
-
-
-def _quotient(above: arb_series, below: arb_series) -> arb_series:
-    quotient = above[0] / below[0]
-    return first_order(quotient, (above[1] - quotient * below[1]) / below[0])
-
-
-def _real_power(base: arb_series, exponent: arb_series) -> arb_series:
-    value = base[0] ** exponent[0]
-    slope = arb(0)
-    if not base[1].is_zero():
-        slope = slope + exponent[0] * base[0] ** (exponent[0] - 1) * base[1]
-    if not exponent[1].is_zero():
-        slope = slope + value * base[0].log() * exponent[1]
-    return first_order(value, slope)
