@@ -44,12 +44,13 @@ STALLED = 0.99
 
 
 Place = TypeVar("Place")
+AnyPlace = TypeVar("AnyPlace", covariant=True)
 
 
-class AlongAxis(Protocol[Place]):
+class AlongAxis(Protocol[AnyPlace]):
     """What has values along an axis."""
 
-    def on(self, omega: arb, bits: int) -> tuple[Place, Place]:
+    def on(self, omega: arb, bits: int) -> tuple[AnyPlace, AnyPlace]:
         """Return the values on a ball, and those in its middle."""
 
 
