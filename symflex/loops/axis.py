@@ -44,13 +44,13 @@ STALLED = 0.99
 
 
 Place = TypeVar("Place")
-AnyPlace = TypeVar("AnyPlace", covariant=True)
+Place_co = TypeVar("Place_co", covariant=True)
 
 
-class AlongAxis(Protocol[AnyPlace]):
+class AlongAxis(Protocol[Place_co]):
     """What has values along an axis."""
 
-    def on(self, omega: arb, bits: int) -> tuple[AnyPlace, AnyPlace]:
+    def on(self, omega: arb, bits: int) -> tuple[Place_co, Place_co]:
         """Return the values on a ball, and those in its middle."""
 
 
