@@ -2,7 +2,14 @@
 
 Dimensions of signals and free inputs are unknowns of linear equations over the exponents of the SI base
 units (a product adds exponents), solved exactly; an equation that contradicts the others is an error at its
-expression. A parameter given as a bare number has no unit and stops the check where it stands.
+expression. A parameter without unit is an unknown, too; a bare number is a pure number if its places leave it
+open, and fits any unit if they ask for several. A number written beside a parameter with a unit is pure; as a
+gain, a pole or a time it may have a unit:
+
+    m*s^2*x + 2*c*x = F         refused: an s is missing, with the 2 as without it
+    F + 2*x                     refused: N and m
+    (s + 2)*x, F - 0.1*s*x      read as they stand: 2 is in 1/s, 0.1 in N*s/m
+    u = 100*x - 3*motor.i       read as it stands: every term has a gain
 
 Hz, rpm and rev count cycles. A value in them is angular (2 pi enters, exactly) where an angular quantity is
 needed or where it is added to terms in s; it is left as cycles where the expression converts it itself with a
@@ -56,7 +63,7 @@ from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of, unit_slip
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.model.scope import ModelScope
@@ -69,6 +76,9 @@ SECOND = unit_of("s").dimension
 EXTREME_EXPONENT = 10**6
 """Of a unit, larger than any meant in earnest: definitions that square each other reach it after twenty."""
 
+TIMED = PARAMETER = 2
+"""What :class:`Measure` calls a number that is a pole or a time, and a parameter with a unit."""
+
 LONGEST_TERM = 32
 """Characters up to which a message repeats a term of a sum."""
 
@@ -79,8 +89,10 @@ class Measure:
 
     dimension: Dimension = DIMENSIONLESS  # known part
     unknowns: tuple[tuple[Variable, Fraction], ...] = ()  # variables of yet unknown dimension, with exponents
-    open: bool = False  # true when a number without unit takes part: nothing can be checked
-    literal: bool = False  # true when a written number takes part, which may stand for any unit in a sum
+    open: bool = False  # true when something takes part that fits any unit: nothing can be checked
+    written: int = 0  # 1 when a written number takes part, TIMED when it must be a pole or a time
+    weight: int = 0  # 1 when names take part, PARAMETER when one of them is a parameter with a unit
+    laplace: Fraction = Fraction(0)  # exponent of a written s
     # cycles and pis: exponents of the cycle and of a written ``pi``.
     cycles: Fraction = Fraction(0)
     pis: Fraction = Fraction(0)
@@ -95,11 +107,33 @@ class Measure:
             self.dimension * other.dimension,
             tuple((v, e) for v, e in merged.items() if e),
             self.open or other.open,
-            self.literal or other.literal,
+            max(self.written, other.written),
+            max(self.weight, other.weight),
+            self.laplace + other.laplace,
             self.cycles + other.cycles,
             self.pis + other.pis,
             self.cyclic | other.cyclic,
         )
+
+    @property
+    def is_gain(self) -> bool:
+        """Whether a written number may have a unit: beside no parameter that has one, or as a pole."""
+        return self.written > (self.weight == PARAMETER)
+
+    @property
+    def has_factor(self) -> bool:
+        """Whether a parameter without unit stands beside one with a unit."""
+        return self.weight == PARAMETER and any(map(_is_bare, self.unknowns))
+
+    @property
+    def core(self) -> tuple[Dimension, frozenset[tuple[Variable, Fraction]]]:
+        """What remains without s and parameters without unit: ``m*s^2*x`` and ``alpha*m*s*x`` share it."""
+        return self.dimension * SECOND**self.laplace, frozenset(u for u in self.unknowns if not _is_bare(u))
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the known part is a power of a time."""
+        return self.dimension != DIMENSIONLESS and self.dimension == SECOND**self.dimension.s
 
     @property
     def is_extreme(self) -> bool:
@@ -114,9 +148,26 @@ class Measure:
             self,
             dimension=self.dimension**e,
             unknowns=tuple((v, x * e) for v, x in self.unknowns),
+            laplace=self.laplace * e,
             cycles=self.cycles * e,
             pis=self.pis * e,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two terms of a sum in which numbers take part, compared when all others have been."""
+
+    whole: Expression
+    first: tuple[Expression, Measure]
+    second: tuple[Expression, Measure]
+    is_free: bool = True  # whether its numbers fit any unit
+    may_lack: bool = False  # whether a bare number must not stand for an s that is missing
+
+    @property
+    def ratio(self) -> Measure:
+        """What should be a pure number."""
+        return self.second[1].times(self.first[1].power(-1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +203,8 @@ class DimensionSystem:
         known: Mapping[Variable, Dimension],  # variables whose dimension their domain fixes
         blocks: Mapping[str, Measure | Expression],  # how blocks are measured, or what is measured alike
         laplace: Dimension = PER_SECOND,
+        *,
+        infers: bool = False,  # whether parameters without unit are unknowns; if not, they fit any
     ) -> None:
         self._scope = scope
         self._quantities = quantities
@@ -166,8 +219,9 @@ class DimensionSystem:
         # The measure of x, by what varies along it.
         self._axes = dict.fromkeys(scope.along, Measure(unit_of("m").dimension))
         self._coordinate: Measure | None = None
-        # What terms with a written number tell, if no such number in the model has a unit.
-        self._guesses: list[Measure] = []
+        self._infers = infers
+        self._pairs: list[Pair] = []
+        self.lacks_an_s = False
         self._sound_points: set[tuple[str, Expression, tuple[Dimension, ...]]] = set()
         self.problems: list[Diagnostic] = []
 
@@ -195,7 +249,7 @@ class DimensionSystem:
         if measure.open or not names(expression):
             return
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
-        if not self._learn(reduced):
+        if not self._learn(reduced) and not (reduced.written == TIMED and reduced.is_time):
             given = self._reduce(measure).dimension
             message = f"{what} is in '{given}'; {a_what} is in '{unit}'"
             hint = self._declaration(expression, given, wanted.dimension)
@@ -212,7 +266,9 @@ class DimensionSystem:
         if measure.open or not names(expression):
             return
         left = self.variable(variable)
-        if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
+        if measure.is_gain:
+            self._pairs.append(Pair(expression, (expression, measure), (expression, left)))
+        elif not self._learn(self._reduce(measure.times(left.power(-1)))):
             given, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
             message = f"'{variable}' is used in '{wanted}' but its expression is in '{given}'"
             hint = _gain_hint(expression, given, wanted) or f"a gain in '{wanted / given}' makes it fit"
@@ -225,6 +281,7 @@ class DimensionSystem:
         if measured:
             before = len(self.problems)
             axis = self.measure(measured[0] if len(measured) == 1 else Sum(tuple(measured)))
+            axis = Measure(axis.dimension, axis.unknowns, axis.open)
             if len(self.problems) > before:
                 axis = Measure(open=True)
         self._axes.update(dict.fromkeys(unknowns, axis))
@@ -235,7 +292,7 @@ class DimensionSystem:
         terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
         self._coordinate = self._axes[unknowns[0]] if unknowns else None
         before = len(self.problems)
-        measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms))
+        measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms), is_equation=True)
         self._coordinate = None
         if any(d.code == "SF203" for d in self.problems[before:]):
             # What stands beside a function of a wrong argument disagrees for that reason alone.
@@ -247,11 +304,36 @@ class DimensionSystem:
         reduced = self._reduce(measure)
         return None if reduced.unknowns or reduced.open else reduced.dimension
 
+    def settle(self, numbers: Iterable[str]) -> None:
+        """Compare terms with numbers; if nothing speaks against it, the bare ``numbers`` are pure ones."""
+        guesses = [_bare(name) for name in numbers]
+        for pair in sorted(self._pairs, key=lambda p: p.may_lack):
+            ratio = self._reduce(pair.ratio)
+            is_bare = [v.kind == "parameter" for v, _ in ratio.unknowns]
+            lacks = pair.may_lack and ratio.is_time and is_bare in ([], [True])
+            is_gain = pair.first[1].is_gain or pair.second[1].is_gain
+            is_guess = is_gain or pair.is_free or (ratio.written and any(is_bare))
+            if is_guess:
+                guesses.append(pair.ratio)
+            is_open = is_guess and (is_bare or pair.is_free or (is_gain and ratio.is_time))
+            if lacks or not (is_open or self._learn(ratio)):
+                self.lacks_an_s |= lacks
+                self._disagree(pair)
+        before = dict(self._solved)
+        if not all(self._learn(self._reduce(guess)) for guess in guesses):
+            self._solved = before
+
+    def _disagree(self, pair: Pair) -> None:
+        (one, first), (term, second) = pair.first, pair.second
+        here, there = self._reduce(second).dimension, self._reduce(first).dimension
+        message = f"terms of a sum disagree: {_said(one)}'{there}' and {_said(term)}'{here}'"
+        hint = _gain_hint(pair.whole, here, there)
+        if pair in self._pairs:
+            hint = "a number beside them is a pure number; one with a unit is a parameter with that unit"
+        self._note("SF205", message, term.span or pair.whole.span, hint)
+
     def finish(self) -> Mapping[str, CycleReading]:
         """Return how every parameter given in cycles is read; contradictions become problems."""
-        before = dict(self._solved)
-        if not all(self._learn(self._reduce(ratio)) for ratio in self._guesses):
-            self._solved = before
         angular = {name: uses[0] for name, uses in self._uses.items()}
         for name, uses in self._uses.items():
             other = next((u for u in uses if u.angular != uses[0].angular), None)
@@ -310,7 +392,7 @@ class DimensionSystem:
             case Measured(quantity=quantity):
                 return Measure(quantity.dimension)
             case Number():
-                return Measure(literal=True)
+                return Measure(written=1)
             case QuantityLiteral(quantity):
                 return Measure(quantity.dimension)
             case Name() | Attribute():
@@ -376,7 +458,7 @@ class DimensionSystem:
         if meaning is None:
             return Measure(open=True)
         if meaning.kind == "laplace":
-            return Measure(self._laplace)
+            return Measure(self._laplace, laplace=Fraction(1))
         if meaning.kind == "pi":
             return Measure(pis=Fraction(1))
         if meaning.kind == "parameter":
@@ -386,6 +468,9 @@ class DimensionSystem:
         if meaning.kind == "block":
             return self._block(meaning.name)
         return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
+
+    def _without_unit(self, name: str) -> Measure:
+        return _bare(name) if self._infers else Measure(open=True)
 
     def _varies(self, expression: Expression) -> bool:
         """Tell whether a name is a node, signal or input: a function of it is refused as not linear."""
@@ -397,18 +482,20 @@ class DimensionSystem:
     def _parameter(self, name: str) -> Measure:
         quantity = self._quantities.get(name)
         if quantity is None:
-            return Measure(open=True)
+            return self._without_unit(name)
         cyclic = frozenset({name} if quantity.cycles else ())
-        return Measure(quantity.dimension, cycles=Fraction(quantity.cycles), cyclic=cyclic)
+        weight = 1 if quantity.dimension == DIMENSIONLESS else PARAMETER
+        return Measure(quantity.dimension, weight=weight, cycles=Fraction(quantity.cycles), cyclic=cyclic)
 
     def definition(self, name: str) -> Measure:
-        """Return what a definition is measured in; a bare number fits any unit, as it does in its place."""
+        """Return what a definition is measured in; a bare number is one as among the parameters."""
         if name not in self._defined:
             self._defined[name] = Measure(open=True)
             expression = self._definitions[name]
             measure = self.measure(expression)
             has_unit = bool(names(expression)) or isinstance(expression, QuantityLiteral)
-            self._defined[name] = measure if has_unit and not measure.is_extreme else Measure(open=True)
+            measure = measure if has_unit else self._without_unit(name)
+            self._defined[name] = Measure(open=True) if measure.is_extreme else measure
         return self._defined[name]
 
     def _block(self, name: str) -> Measure:
@@ -416,14 +503,16 @@ class DimensionSystem:
         gain = self._blocks.get(name, Measure(open=True))
         if not isinstance(gain, Measure):
             measure = self._reduce(self.measure(gain))
-            gain = Measure(measure.dimension, measure.unknowns, measure.open or measure.literal)
-            self._blocks[name] = gain
+            is_open = measure.open or measure.written > measure.weight
+            gain = self._blocks[name] = Measure(
+                measure.dimension, measure.unknowns, is_open, weight=measure.weight
+            )
         return gain
 
     def variable(self, variable: Variable) -> Measure:
         """Return what a variable is measured in."""
         known = self._known.get(variable)
-        return Measure(known) if known is not None else Measure(unknowns=((variable, Fraction(1)),))
+        return Measure(known or DIMENSIONLESS, () if known else ((variable, Fraction(1)),), weight=1)
 
     def _call(self, name: str, argument: Expression) -> Measure:
         inner = self.measure(argument)
@@ -433,12 +522,15 @@ class DimensionSystem:
             return inner.power(Fraction(1, 2))
         self._read_cycles(inner, True, argument.span)
         reduced = self._reduce(inner)
-        if not (reduced.open or reduced.unknowns or reduced.literal) and reduced.dimension != DIMENSIONLESS:
+        is_free = reduced.open or reduced.unknowns or (reduced.written and reduced.is_time)
+        if not is_free and reduced.dimension != DIMENSIONLESS:
             message = f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number"
             self._note("SF203", message, argument.span, f"divide it by a value in '{reduced.dimension}'")
         return Measure()
 
-    def _sum(self, expression: Expression, terms: tuple[Expression, ...]) -> Measure:
+    def _sum(
+        self, expression: Expression, terms: tuple[Expression, ...], *, is_equation: bool = False
+    ) -> Measure:
         measures = [(t, self.measure(t)) for t in terms if not is_number(t, 0)]
         if not measures:
             return Measure(open=True)
@@ -453,20 +545,30 @@ class DimensionSystem:
                 return Measure(open=True)
             return replace(measures[0][1], cyclic=cyclic)
         # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
-        first_term, first = min(closed, key=lambda each: (each[1].literal, bool(each[1].unknowns)))
+        first_term, first = min(closed, key=lambda m: (m[1].is_gain, bool(m[1].unknowns), m[1].written))
+        others = [m for _, m in closed]
+        # Where all terms have numbers, or no term of an equation a unit, they are gains and coefficients.
+        is_free = all(m.written for m in others) or (
+            is_equation and all(m.weight < PARAMETER for m in others)
+        )
+        cores, written = [m.core for m in others], first.written
         for term, measure in closed:
             is_alike = (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns)
             if term is first_term or is_alike:
                 continue
-            ratio = measure.times(first.power(-1))
-            if measure.literal or first.literal:
-                self._guesses.append(ratio)
-            elif not self._learn(self._reduce(ratio)):
-                here, there = self._reduce(measure).dimension, self._reduce(first).dimension
-                message = f"terms of a sum disagree: {_said(first_term)}'{there}' and {_said(term)}'{here}'"
-                hint = _gain_hint(expression, here, there)
-                self._note("SF205", message, term.span or expression.span, hint)
-        result = self._reduce(first)
+            both = (first, measure)
+            is_alone = any(m.written and not m.weight for m in both)
+            fits = is_free or is_alone or any(m.is_gain and m.laplace for m in both)
+            may_lack = [cores.count(m.core) for m in both if m.has_factor] == [1]
+            pair = Pair(expression, (first_term, first), (term, measure), fits, may_lack)
+            ratio = self._reduce(pair.ratio)
+            if is_alone and ratio.is_time and not ratio.unknowns:
+                written = TIMED
+            if ratio.written or first.has_factor or measure.has_factor:
+                self._pairs.append(pair)
+            elif not self._learn(ratio):
+                self._disagree(pair)
+        result = replace(self._reduce(first), written=written)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
         return replace(result, cyclic=cyclic)
@@ -539,6 +641,15 @@ class DimensionSystem:
                 unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
                 return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
         return None
+
+
+def _bare(name: str) -> Measure:
+    """Return the measure of a parameter without unit."""
+    return Measure(unknowns=((Variable("parameter", name), Fraction(1)),), weight=1)
+
+
+def _is_bare(unknown: tuple[Variable, Fraction]) -> bool:
+    return unknown[0].kind == "parameter"
 
 
 def _said(term: Expression) -> str:

@@ -41,17 +41,19 @@ def check_units(
     unsound: Collection[Span | None],
     fields_placed: Collection[str],
     laplace: Dimension = PER_SECOND,
+    *,
+    infers: bool = True,
 ) -> DimensionSystem:
     """Measure every expression; of one that is unsound, only what disagrees within it is noted.
 
-    Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there.
+    Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there. Unless it
+    ``infers`` them, parameters without unit fit any.
     """
     quantities = declared_quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_gain(b) for b in draft.blocks}
-    system = DimensionSystem(
-        scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks, laplace
-    )
+    definitions = {d.name: d.expression for d in draft.definitions}
+    system = DimensionSystem(scope, quantities, definitions, known, blocks, laplace, infers=infers)
 
     def require(expression: Expression, unit: str, what: str, doc: str, *, varies: bool = False) -> None:
         if expression.span in unsound:
@@ -88,11 +90,15 @@ def check_units(
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
         system.read(output.expression)
-    has_units = any((placed, draft.fields, known, *quantities.values()))
+    has_units = any((placed, known, *quantities.values()))
+    system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
+    if system.problems and infers and not system.lacks_an_s:
+        # What has no unit may have been meant to have several.
+        return check_units(reader, draft, placed, scope, unsound, fields_placed, laplace, infers=False)
     disagrees = any(d.code in ("SF203", "SF205") for d in system.problems)
-    if disagrees and not has_units and laplace != DIMENSIONLESS:
+    if disagrees and not (has_units or draft.fields) and laplace != DIMENSIONLESS:
         # A model of numbers alone, as forums have them: there s is a number, too.
-        plain = check_units(reader, draft, placed, scope, unsound, fields_placed, DIMENSIONLESS)
+        plain = check_units(reader, draft, placed, scope, unsound, fields_placed, DIMENSIONLESS, infers=False)
         return system if plain.problems else plain
     return system
 

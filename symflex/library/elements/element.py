@@ -58,8 +58,9 @@ class Variable:
 
     # ``node`` (displacement [m], angle [rad] or voltage [V]), ``through`` (force [N], torque [N m] or current
     # [A] of an element), ``signal``, ``value`` (an auxiliary unknown that carries a rational expression),
-    # ``field`` (an unknown function of x, or one of the constants that fix it) or ``input``.
-    kind: Literal["node", "through", "signal", "value", "field", "input"]
+    # ``field`` (an unknown function of x, or one of the constants that fix it), ``input``, or ``parameter``
+    # (whose unit is unknown).
+    kind: Literal["node", "through", "signal", "value", "field", "input", "parameter"]
     owner: str  # name of the node, element, signal, output, field's unknown or input
     component: str = (
         ""  # ``x``, ``y`` or ``theta`` of a planar node; the quantity's name for a through variable

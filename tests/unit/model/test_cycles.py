@@ -127,9 +127,9 @@ def test_a_frequency_of_a_model_block_means_the_same_outside(tmp_path):
 
 
 def test_every_use_that_could_be_read_either_way_is_told_with_its_place():
-    model = loaded("v + u*f_c/9", '[signals]\nv = "u/(s + f_c)"')
+    model = loaded("s*v + u*f_c/9/s", '[signals]\nv = "u/(s + f_c)"')
     told = "'f_c', in 'Hz', is read in radians here: as 2*pi*f_c"
-    assert readings(model) == [(7, "u*f_c/9", told), (9, "f_c", told)]
+    assert readings(model) == [(7, "u*f_c/9/s", told), (9, "f_c", told)]
 
 
 def test_a_time_is_read_in_cycles_and_told():

@@ -107,7 +107,7 @@ ACCEPTED = {
         '[signals]\nq = "2*F"\n',
     ),
     "nodes and quantities of elements in a condition": (
-        field(["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*w'''(l) = M.f + K.f + 5*p - F"]),
+        field(["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*w'''(l) = M.f + K.f + 5*a*p - F"]),
         NODE + SPRING,
     ),
     "parameters without units": (field(equations=["a*w'''' + rho*A*s^2*w = 0"]),),

@@ -76,7 +76,7 @@ def test_a_name_that_nothing_uses_is_told():
         ("sections", '[signals]\ne = "2*x + e/3"', "e"),
         ("sections", '[blocks]\nC = { type = "integrator" }', "C"),
         ("sections", '[definitions]\nw_0 = "sqrt(k/m)"', "w_0"),
-        ("sections", '[definitions]\nS = "k + 3*k^2"', "S"),
+        ("sections", '[definitions]\nS = "k + 3*k"', "S"),
         ("sections", '[fields.w]\ndomain = ["0 m", "1 m"]\nequation = "w\'\' = 2*w"\n'
          'conditions = ["w(0) = 0", "w(1) = 0"]', "w"),
     ]:  # fmt: skip
