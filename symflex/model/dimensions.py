@@ -18,7 +18,7 @@ factor pi (``2*pi*f``) or where a time is needed (``1/f``). One parameter must b
     s + f_c         read as s + 2*pi*f_c        inferred: warned of, and printed with the 2 pi
     s + 2*pi*f_c    read as it stands           said by the expression
     omega_p = f_c   read as 2*pi*f_c            said by the port, which is in rad/s; printed with the 2 pi
-    T = 1/f_c       read as it stands           inferred: warned of
+    T = 1/f_c       read as it stands           inferred: warned of; in 3*T*s and K/T as well
     f_c/f_s         read as it stands           both must be read alike elsewhere
 """
 
@@ -96,6 +96,7 @@ class Measure:
     # cycles and pis: exponents of the cycle and of a written ``pi``.
     cycles: Fraction = Fraction(0)
     pis: Fraction = Fraction(0)
+    periods: Fraction = Fraction(0)  # exponent of the cycles that are read as they stand, in 1/f
     cyclic: frozenset[str] = frozenset()  # parameters given in cycles that take part
 
     def times(self, other: Measure) -> Measure:
@@ -112,6 +113,7 @@ class Measure:
             self.laplace + other.laplace,
             self.cycles + other.cycles,
             self.pis + other.pis,
+            self.periods + other.periods,
             self.cyclic | other.cyclic,
         )
 
@@ -151,6 +153,7 @@ class Measure:
             laplace=self.laplace * e,
             cycles=self.cycles * e,
             pis=self.pis * e,
+            periods=self.periods * e,
         )
 
 
@@ -405,10 +408,12 @@ class DimensionSystem:
                     result = result.times(self.measure(factor))
                 return result
             case Quotient(numerator, denominator):
-                return self.measure(numerator).times(self.measure(denominator).power(-1))
-            case Power(base, exponent):
-                value = integer_exponent(exponent)
-                return self.measure(base).power(value) if value is not None else Measure(open=True)
+                above, below = self.measure(numerator), self.measure(denominator)
+                is_whole = above.cycles or above.laplace
+                return above.times((below if is_whole else self._inverted(below, expression.span)).power(-1))
+            case Power(base, exponent) if (value := integer_exponent(exponent)) is not None:
+                below = self.measure(base)
+                return (self._inverted(below, expression.span) if value < 0 else below).power(value)
             case Sum(terms):
                 return self._sum(expression, terms)
             case Call(name, argument, order) if name in self._axes:
@@ -420,6 +425,15 @@ class DimensionSystem:
                 return self._call(name, argument)
             case _:
                 return Measure(open=True)
+
+    def _inverted(self, measure: Measure, span: Span | None) -> Measure:
+        """Return what is divided by: a frequency in cycles as it stands, as its inverse is a period."""
+        if measure.cycles <= 0 or measure.dimension != PER_SECOND**measure.cycles:
+            return measure
+        for name in sorted(measure.cyclic):
+            use = Use(angular=False, inferred=measure.pis != measure.cycles, span=span)
+            self._uses.setdefault(name, []).append(use)
+        return replace(measure, cycles=Fraction(0), pis=Fraction(0), periods=measure.cycles)
 
     def _field(self, name: str, order: int) -> Measure:
         """Return what a field's unknown, differentiated along x, is measured in."""
@@ -534,7 +548,7 @@ class DimensionSystem:
         measures = [(t, self.measure(t)) for t in terms if not is_number(t, 0)]
         if not measures:
             return Measure(open=True)
-        mixed = len({(m.cycles, m.pis) if m.cyclic else None for _, m in measures}) > 1
+        mixed = len({(m.cycles, m.pis, m.periods) if m.cyclic else None for _, m in measures}) > 1
         if mixed:
             for term, measure in measures:
                 self._read_cycles(measure, None, term.span)
@@ -570,7 +584,8 @@ class DimensionSystem:
                 self._disagree(pair)
         result = replace(self._reduce(first), written=written)
         if mixed:
-            return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
+            zero = Fraction(0)
+            return replace(result, cycles=zero, pis=zero, periods=zero, cyclic=frozenset())
         return replace(result, cyclic=cyclic)
 
     def _read_cycles(
@@ -579,8 +594,9 @@ class DimensionSystem:
         """Decide how the cycles in a complete term are meant."""
         if not measure.cyclic:
             return
-        if not measure.cycles:
+        if not measure.cycles + measure.periods:
             self._ratios.append((tuple(sorted(measure.cyclic)), span))
+        if not (measure.cycles and measure.cycles + measure.periods):
             return
         is_said = measure.pis == measure.cycles or angular is True
         is_time = (wanted or measure.dimension) == SECOND
@@ -588,7 +604,8 @@ class DimensionSystem:
             angular is True or not (measure.cycles < 0 and is_time)
         )
         for name in sorted(measure.cyclic):
-            self._uses.setdefault(name, []).append(Use(is_angular, not is_said, span))
+            if not (measure.periods and any(not u.angular for u in self._uses.get(name, ()))):
+                self._uses.setdefault(name, []).append(Use(is_angular, not is_said, span))
 
     def _reduce(self, measure: Measure) -> Measure:
         """Replace solved variables by what they were solved for."""
