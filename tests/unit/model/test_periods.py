@@ -67,6 +67,7 @@ def test_a_period_is_the_same_wherever_it_is_used():
     assert wrong == []
 
 
+@pytest.mark.slow
 def test_exported_functions_take_the_frequency_in_hertz():
     wrong = []
     for spec, right in RIGHT:
