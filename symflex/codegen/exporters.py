@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.module import C99
+from symflex.codegen.javascript import JAVASCRIPT
 from symflex.codegen.julia import JULIA
 from symflex.codegen.latex import LatexExporter
 from symflex.codegen.matlab import MATLAB
@@ -21,6 +22,7 @@ EXPORTERS: dict[str, Exporter] = {
     "c": C99,
     "matlab": MATLAB,
     "julia": JULIA,
+    "js": JAVASCRIPT,
     "state-space": StateSpaceExporter(),
     "latex": LatexExporter(),
 }

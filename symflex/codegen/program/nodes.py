@@ -261,6 +261,15 @@ class Solutions(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class SolutionSlopes(CodeNode):
+    """The derivatives in s of :class:`Solutions`, as a list."""
+
+    coefficients: tuple[CodeNode, ...]
+    slopes: tuple[CodeNode, ...]  # their derivatives in s
+    terms: int
+
+
+@dataclass(frozen=True, slots=True)
 class Solve(CodeNode):
     """What an output of a network of line elements is per unit of an input.
 

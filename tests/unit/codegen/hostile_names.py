@@ -192,6 +192,14 @@ JULIA = """
     TransferFunctions ComplexF64 pairs haskey @show var if for while const true false in e exp abs sqrt
     complex real s z number k p PARAMETERS TRANSFER_FUNCTIONS X_over_F _X_over_F value
 """.split()
+JAVASCRIPT = """
+    arguments await class const delete enum eval export extends function import in instanceof interface let
+    new null package static super this throw typeof undefined var void with yield Infinity NaN Math Object
+    Array Float64Array globalThis window document self imaginary quotient size root solutions circle over
+    given checked evaluated offered piece_0 value_0 number values s_re s_im into
+    p r_1 t_1_re PARAMETERS TRANSFER_FUNCTIONS
+    X_over_F value_of_X_over_F constructor prototype toString hasOwnProperty valueOf
+""".split()
 MATLAB = """
     elseif endfunction endif endwhile endfor end_try_catch unwind_protect until parfor spmd classdef methods
     events properties enumeration otherwise persistent varargin varargout nargin nargout eps Inf e inputname
@@ -211,7 +219,7 @@ ODD = [
     *("", "a b", 'a"b', "x" * 63, "x" * 64, "x" * 200),
 ]
 
-NAMES = tuple(dict.fromkeys([*PYTHON, *C, *JULIA, *MATLAB, *TEX, *ODD]))
+NAMES = tuple(dict.fromkeys([*PYTHON, *C, *JULIA, *JAVASCRIPT, *MATLAB, *TEX, *ODD]))
 CHOSEN = ("lambda", "complex", "end", "I", "a-b", "a_b", "2m", "x" * 64, "s ", '\'); %} */\n"""\nquit()')
 """One of each kind: a keyword, what code calls, what becomes one identifier with another, what is none."""
 

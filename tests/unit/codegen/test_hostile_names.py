@@ -18,6 +18,8 @@ from symflex.codegen import export
 from symflex.codegen.c.body import RESERVED as OF_C
 from symflex.codegen.c.module import C99
 from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.javascript import JAVASCRIPT
+from symflex.codegen.javascript import RESERVED as OF_JAVASCRIPT
 from symflex.codegen.julia import JULIA, module_name
 from symflex.codegen.julia import RESERVED as OF_JULIA
 from symflex.codegen.matlab import LONGEST, MATLAB, main_name
@@ -79,12 +81,14 @@ WRITERS = {
     "c": c_text,
     "matlab": lambda tfs, model: MATLAB.export(model, tfs, "plant").text,
     "julia": lambda tfs, model: JULIA.export(model, tfs, "plant").text,
+    "js": lambda tfs, model: JAVASCRIPT.export(model, tfs, "plant").text,
 }
 PYTHON = ("numpy", "array-api", "jax", "state-space")
 WORDS = dict.fromkeys(PYTHON, hostile.PYTHON) | {
     "c": hostile.C,
     "matlab": hostile.MATLAB,
     "julia": hostile.JULIA,
+    "js": hostile.JAVASCRIPT,
 }
 WRITTEN_ALIKE = {"array-api", "jax", "julia", "state-space"}
 """Targets whose printer is that of another, but for a few lines."""
@@ -105,12 +109,14 @@ def springs(names):
 C_TOKEN = re.compile(r"[A-Za-z_]\w*|\.?\d[\w.]*(?:e[+-]\d+)?|\"[^\"\n]*\"|#\w+|[^\w\s]")
 STRING = {
     "matlab": re.compile(r"(?<=[;,({\s=])'(?:[^'\n]|'')*'"),
+    "js": re.compile(r'/\*.*?\*/|//[^\n]*|"(?:[^"\\\n]|\\.)*"', re.DOTALL),
     "julia": re.compile(r'"""(?:[^"\\]|\\.|"(?!""))*"""|"(?:[^"\\\n]|\\.)*"'),
 }
 KEYWORDS = {
     "c": set("if else for return static inline const double struct void switch case default break".split()),
     "matlab": set("function end if else for return while".split()),
     "julia": set("function end if else for return while const module import export begin let".split()),
+    "js": set("function if else for return while const let export throw new of null".split()),
 }
 
 
@@ -180,6 +186,7 @@ def test_every_name_becomes_an_identifier_of_its_own_in_each_language():
         "c": (OF_C, None, ["int", "complex", "I", "NAN", "virtual", "typename"]),
         "matlab": (OF_MATLAB, LONGEST, ["end", "parfor", "pi", "i", "exp", "nargin", "default_parameters"]),
         "julia": (OF_JULIA, None, ["end", "im", "pi", "baremodule", "Base"]),
+        "js": (OF_JAVASCRIPT, None, ["await", "Math", "yield", "imaginary", "Float64Array"]),
     }
     names = dict.fromkeys([*hostile.NAMES, *hostile.TEXTS])
     for language, (reserved, longest, words) in languages.items():
@@ -209,6 +216,7 @@ FUNCTIONS = {
     "c": r"^(?:static )?(?:inline )?(?:double complex|void|double|cx) (\w+)\([^;]*?\)\s*\{",
     "matlab": r"^function (?:\S+|\[.*?\]) = (?:\.\.\.\n\s*)?(\w+)\(",
     "julia": r"^function (\w+)\(",
+    "js": r"^(?:export const|function) (\w+)(?: = offered)?\(",
 }
 
 
@@ -292,6 +300,8 @@ def assert_inert(target, text):
         comments = [line for line in text.split("\n") if line.startswith("%")]
         link = re.compile(r"<(?!U\+)[a-zA-Z/]")
         assert not [c for c in comments if re.match(r"%[{}!#]", c) or "-*-" in c or link.search(c)]
+    elif target == "js":
+        assert not re.search(r"<[/!A-Za-z]", text)
     elif target == "julia":
         strings = STRING["julia"].findall(text)
         assert not [s for s in strings if re.search(r"(?<!\\)(?:\\\\)*\$", s)]

@@ -1,0 +1,571 @@
+"""Transfer functions as an ES module without dependencies: everything that is printed in JavaScript.
+
+Input: the contents of a module.
+Output: its text. Read from the top: expressions, the functions that compute, the module around them.
+
+JavaScript has no complex numbers, and a pair for every intermediate value would cost ten times the
+arithmetic. So every complex value is two constants, and what is known to be real or imaginary is one::
+
+    m*s^2 + k    becomes    const t_1_re = k + m * (s_re * s_re - s_im * s_im),
+                                  t_1_im = m * (2 * s_re * s_im);
+
+A function takes parameters and returns a function of s, so that what does not vary with s is computed once.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass, field, replace
+from functools import reduce
+from itertools import count
+from textwrap import TextWrapper
+from typing import TYPE_CHECKING
+
+from symflex.codegen.export import Export, Language, called_parts, parts_of
+from symflex.codegen.module_text import (
+    default_value,
+    described,
+    formula_lines,
+    identifiers,
+    inert,
+    origin_lines,
+    wrapped,
+)
+from symflex.codegen.program import nodes as tree
+from symflex.codegen.program.derivative import differentiated
+from symflex.codegen.program.evaluate import nearest_double
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.codegen.export import Contents, Member
+    from symflex.model import Model
+
+WIDTH = 100
+"""Columns of generated JavaScript."""
+
+KEYWORDS = frozenset(
+    """
+    abstract arguments as async await boolean break byte case catch char class const continue debugger
+    default delete do double else enum eval export extends false final finally float for from function get
+    goto if implements import in instanceof int interface let long native new null of package private
+    protected public return set short static super switch synchronized this throw throws transient true try
+    typeof undefined var void volatile while with yield
+    """.split()
+)
+
+NAMES = frozenset(
+    """
+    Infinity NaN Math Object Array Float64Array Number String Symbol Proxy Reflect JSON Map Set Promise Error
+    RangeError TypeError globalThis window self document name length prototype constructor isFinite isNaN
+    parseInt parseFloat PARAMETERS TRANSFER_FUNCTIONS p into value s s_re s_im number
+    """.split()
+)
+"""What generated code uses, and names that a reader would miss."""
+
+PARTS = parts_of("javascript.js")
+
+RESERVED = KEYWORDS | NAMES | {name for names in PARTS for name in names}
+
+LONGEST = 60
+"""Characters of an expression that is used more than once, from which it gets a name."""
+
+_SUM, _PRODUCT, _SIGN, _LEAF = range(4)
+
+_ATOM = re.compile(r"\w+|-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+# ---------------------------------------------------------------------------------- real expressions
+
+
+@dataclass(frozen=True, slots=True)
+class Real:
+    """An expression whose value is a real number."""
+
+    text: str
+    binding: int = _LEAF  # how tightly its outermost operator binds
+
+    def within(self, tightest: int) -> str:
+        """Return the text, in parentheses where an operator around it binds tighter."""
+        return self.text if self.binding >= tightest else f"({self.text})"
+
+
+Part = Real | None
+"""One part of a complex number; ``None`` is exactly zero."""
+
+
+def _literal(value: float) -> Part:
+    return Real(repr(value), _SIGN if value < 0 else _LEAF) if value else None
+
+
+def _negative(x: Part) -> Part:
+    if x is not None and x.binding == _SIGN:
+        return Real(x.text[1:])
+    return None if x is None else Real(f"-{x.within(_LEAF)}", _SIGN)
+
+
+def _total(x: Part, y: Part) -> Part:
+    if x is None or y is None:
+        return y if x is None else x
+    if y.binding == _SIGN:
+        return _difference(x, _negative(y))
+    return Real(f"{x.within(_SUM)} + {y.within(_PRODUCT)}", _SUM)
+
+
+def _difference(x: Part, y: Part) -> Part:
+    if x is None or y is None:
+        return _negative(y) if x is None else x
+    if y.binding == _SIGN:
+        return _total(x, _negative(y))
+    return Real(f"{x.within(_SUM)} - {y.within(_PRODUCT)}", _SUM)
+
+
+def _product(x: Part, y: Part) -> Part:
+    if x is None or y is None:
+        return None
+    for one, other in ((x, y), (y, x)):
+        if one.text in ("1.0", "-1.0"):
+            return other if one.text == "1.0" else _negative(other)
+    return Real(f"{x.within(_PRODUCT)} * {y.within(_SIGN)}", _PRODUCT)
+
+
+def _quotient(x: Part, y: Real) -> Part:
+    return None if x is None else Real(f"{x.within(_PRODUCT)} / {y.within(_SIGN)}", _PRODUCT)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A complex number."""
+
+    re: Part
+    im: Part = None
+
+
+_ONE = Pair(Real("1.0"))
+_S = Pair(Real("s_re"), Real("s_im"))
+
+
+def _text(x: Part) -> str:
+    return "0.0" if x is None else x.text
+
+
+def _size(z: Pair) -> Real:
+    return Real(f"size({_text(z.re)}, {_text(z.im)})" if z.im else f"Math.abs({_text(z.re)})")
+
+
+# ------------------------------------------------------------------------------------------ functions
+
+
+@dataclass
+class Body:
+    """The statements of one function of s while they are printed."""
+
+    parameters: Mapping[str, str]  # identifiers of parameters by their names in the model
+    taken: set[str]  # identifiers that a constant cannot have
+    depth: int = 1  # how far statements are indented
+    lines: list[str] = field(default_factory=list)
+    known: dict[str, Pair | str] = field(default_factory=dict)  # assigned values; of lists, the array
+    shared: dict[str, str] = field(default_factory=dict)  # constants by what they were made of
+
+    def within(self, depth: int) -> Body:
+        """Return the body of a block that sees these constants."""
+        return replace(self, depth=depth, lines=[], known=dict(self.known), shared=dict(self.shared))
+
+    def name(self, wanted: str) -> str:
+        """Return an identifier that nothing else in the function has; so are those of its parts."""
+        stem, _, number = wanted.rpartition("_")
+        if number.isdigit() and stem:
+            names = (f"{stem}_{n}" for n in count(int(number)))
+            name = next(x for x in names if self.taken.isdisjoint((x, f"{x}_re", f"{x}_im")))
+        else:
+            name = identifiers({"": wanted}, self.taken)[""]
+        self.taken |= {name, f"{name}_re", f"{name}_im"}
+        return name
+
+    def call(self, wanted: str, text: str) -> Pair:
+        """Return the complex value of a call that leaves its imaginary part."""
+        if text not in self.shared:
+            name = self.shared[text] = self.name(wanted)
+            self.say(f"const {name}_re = {text}, {name}_im = imaginary;")
+        return Pair(Real(f"{self.shared[text]}_re"), Real(f"{self.shared[text]}_im"))
+
+    def say(self, text: str) -> None:
+        """Add a statement."""
+        self.lines += in_lines(text, self.depth)
+
+    def hold(self, wanted: str, x: Real, least: int = 0, name: str = "") -> Real:
+        """Return a constant with a value, or the value itself if that is an atom, or short."""
+        if len(x.text) <= least or _ATOM.fullmatch(x.text):
+            return x
+        if x.text not in self.shared:
+            self.shared[x.text] = name or self.name(wanted)
+            self.say(f"const {self.shared[x.text]} = {x.text};")
+        return Real(self.shared[x.text])
+
+    def pair(self, wanted: str, z: Pair, least: int = 0) -> Pair:
+        """Return a complex number whose parts are constants."""
+        if z.re is None or z.im is None:
+            return Pair(z.re and self.hold(wanted, z.re, least), z.im and self.hold(wanted, z.im, least))
+        if all(_ATOM.fullmatch(x.text) or x.text in self.shared for x in (z.re, z.im)):
+            return Pair(self.hold(wanted, z.re), self.hold(wanted, z.im))
+        name = self.name(wanted)
+        return Pair(*(self.hold("", x, least, name + end) for x, end in ((z.re, "_re"), (z.im, "_im"))))
+
+    def assign(self, assignments: Sequence[tree.Assignment]) -> None:
+        """Make constants."""
+        for a in assignments:
+            if isinstance(a.value, tree.Solutions | tree.SolutionSlopes):
+                self.known[a.name] = self._list(a.name, a.value)
+            else:
+                self.known[a.name] = self.pair(_short(a.name), self.value(a.value))
+
+    def _list(self, wanted: str, node: tree.Solutions | tree.SolutionSlopes) -> str:
+        given = [self._array(node.coefficients), str(node.terms)]
+        given += [self._array(node.slopes)] if isinstance(node, tree.SolutionSlopes) else []
+        name = self.name(_short(wanted))
+        self.say(f"const {name} = solutions({', '.join(given)});")
+        return name
+
+    def _array(self, nodes: Sequence[tree.CodeNode]) -> str:
+        parts = [_text(x) for z in map(self.value, nodes) for x in (z.re, z.im)]
+        return f"[{', '.join(parts)}]"
+
+    # -------------------------------------------------------------------------------------- expressions
+
+    def value(self, node: tree.CodeNode) -> Pair:
+        """Return an expression, evaluated in the order of the tree."""
+        match node:
+            case tree.RealNumber(value, pi_power):
+                return Pair(_literal(nearest_double(value, pi_power)))
+            case tree.ComplexNumber(real, imaginary):
+                return Pair(_literal(nearest_double(real)), _literal(nearest_double(imaginary)))
+            case tree.ToComplex(operand):
+                return self.value(operand)
+            case tree.LargerRoot() | tree.RootFactor():
+                return self.value(node.spelled)
+            case tree.ParameterValue(name):
+                return Pair(Real(self.parameters[name]))
+            case tree.Assigned(name):
+                known = self.known[name]
+                assert isinstance(known, Pair)
+                return known
+            case tree.Item(tree.Assigned(name), position):
+                array = self.known[name]
+                return Pair(Real(f"{array}[{2 * position}]"), Real(f"{array}[{2 * position + 1}]"))
+            case tree.Laplace():
+                return _S
+            case tree.InverseLaplace():
+                return self.divide(_ONE, _S)
+        return self._operation(node)
+
+    def _operation(self, node: tree.CodeNode) -> Pair:
+        match node:
+            case tree.Add((first, *rest)):
+                return self._sum(first, rest)
+            case tree.Multiply(factors):
+                return reduce(self.multiply, map(self.value, factors))
+            case tree.Divide(above, below):
+                return self.divide(self.value(above), self.value(below))
+            case tree.IntegerPower(base, exponent):
+                return self._power(self.pair("c_1", self.value(base)), exponent)
+            case tree.Negate(operand):
+                z = self.value(operand)
+                return Pair(_negative(z.re), _negative(z.im))
+            case tree.Within(point, end):
+                z = self.pair("t_1", self.value(point))
+                inside = f"size({_text(z.re)}, {_text(z.im)}) <= {end!r}"
+                return Pair(self.hold("t_1", Real(f"{inside} ? {_text(z.re)} : NaN")), z.im)
+            case tree.Apply(function, argument):
+                return self._apply(function, self.value(argument))
+        raise TypeError(type(node).__name__)
+
+    def _sum(self, first: tree.CodeNode, rest: Sequence[tree.CodeNode]) -> Pair:
+        result = self.value(first)
+        for term in rest:
+            step, node = (_difference, term.operand) if isinstance(term, tree.Negate) else (_total, term)
+            z = self.value(node)
+            result = Pair(step(result.re, z.re), step(result.im, z.im))
+        return result
+
+    def multiply(self, x: Pair, y: Pair) -> Pair:
+        """Return a product; parts that occur twice in it are constants."""
+        if x.re and x.im and y.re and y.im:
+            x, y = self.pair("t_1", x), (self.pair("t_1", y) if y != x else self.pair("t_1", x))
+        elif (x.re and x.im) or (y.re and y.im):
+            single, other = (x, y) if not (x.re and x.im) else (y, x)
+            x, y = self.pair("t_1", single, LONGEST // 4), other
+        re = _difference(_product(x.re, y.re), _product(x.im, y.im))
+        return Pair(re, _total(_product(x.re, y.im), _product(x.im, y.re)))
+
+    def divide(self, x: Pair, y: Pair) -> Pair:
+        """Return a quotient."""
+        if y.re and y.im:
+            return self.call("q_1", f"quotient({', '.join(map(_text, (x.re, x.im, y.re, y.im)))})")
+        by = self.hold("t_1", y.re or y.im or Real("0.0"), LONGEST // 4)
+        if y.re:
+            return Pair(_quotient(x.re, by), _quotient(x.im, by))
+        return Pair(_quotient(x.im, by), _negative(_quotient(x.re, by)))
+
+    def _power(self, base: Pair, exponent: int) -> Pair:
+        if base.im is None:
+            return Pair(base.re and Real(f"Math.pow({base.re.text}, {exponent})"))
+        result = base
+        for _ in range(exponent - 1):
+            result = self.multiply(result, base)
+        return result
+
+    def _apply(self, function: str, z: Pair) -> Pair:
+        name = function.removeprefix("complex_")
+        if function == "abs":
+            return Pair(_size(z))
+        if function == "complex_sqrt":
+            return self.call("r_1", f"root({_text(z.re)}, {_text(z.im)})")
+        if z.im is None:
+            return Pair(Real(f"Math.{name}({_text(z.re)})"))
+        assert name == "exp"
+        angle = self.hold("t_1", z.im)
+        turned = Pair(Real(f"Math.cos({angle.text})"), Real(f"Math.sin({angle.text})"))
+        if z.re is None:
+            return self.pair("e_1", turned)
+        growth = self.hold("e_1", Real(f"Math.exp({z.re.text})"))
+        return self.pair("e_1", Pair(_product(growth, turned.re), _product(growth, turned.im)))
+
+    # ---------------------------------------------------------------------------------------- statements
+
+    def leave(self, z: Pair) -> None:
+        """Return a complex number: its real part, after its imaginary part was left."""
+        z = self.pair("t_1", z)
+        self.say(f"imaginary = {_text(z.im)};")
+        self.say(f"return {_text(z.re)};")
+
+    def write(self, values: Sequence[Pair]) -> None:
+        """Write complex numbers into an array."""
+        for i, x in enumerate(x for z in values for x in (z.re, z.im)):
+            self.say(f"into[{i}] = {_text(x)};")
+
+
+def _short(name: str) -> str:
+    """Return what is wanted as the name of a constant."""
+    return name.replace("slope of ", "d_")
+
+
+def in_lines(text: str, depth: int) -> list[str]:
+    """Return a statement in lines.
+
+    Examples
+    --------
+    >>> in_lines("return a;", 1)
+    ['    return a;']
+    """
+    indent = "    " * depth
+    wrapper = TextWrapper(WIDTH, break_long_words=False, break_on_hyphens=False)
+    wrapper.initial_indent, wrapper.subsequent_indent = indent, f"{indent}    "
+    return wrapper.wrap(text)
+
+
+@dataclass(frozen=True)
+class Functions:
+    """Prints the private functions of one transfer function: its value, and the parts of its quotient."""
+
+    program: tree.Piecewise
+    name: str  # identifier of the public function
+    parameters: Mapping[str, str]
+
+    @property
+    def used(self) -> list[str]:
+        """Identifiers of the parameters, in declared order."""
+        return [self.parameters[p] for p in self.program.parameters]
+
+    def blocks(self) -> list[str]:
+        """Return the functions, each as text that ends with a line end."""
+        blocks: list[str] = []
+        for kind in ("value", "parts"):
+            for number, piece in enumerate(self.program.code):
+                blocks += self._piece(kind, number, piece)
+            blocks.append(self._choice(kind))
+        return blocks
+
+    def _body(self) -> Body:
+        return Body(self.parameters, {*RESERVED, *self.parameters.values()}, 1)
+
+    def _function(self, name: str, outer: Body, inner: Body, arguments: str, *, takes: str = "") -> str:
+        """Return a function of parameters, by default each by its name, that returns one of s."""
+        listed = takes or (f"{{ {', '.join(self.used)} }}" if self.used else "_")
+        opening = [f"function {name}({listed}) {{"]
+        if len(opening[0]) > WIDTH:
+            opening = [f"function {name}(", *in_lines(listed, 1), ") {"]
+        return "\n".join(
+            [*opening, *outer.lines, f"    return ({arguments}) => {{", *inner.lines, "    };", "}", ""]
+        )
+
+    def _piece(self, kind: str, number: int, piece: tree.CodePiece) -> list[str]:
+        """Return what computes a piece: the value, or numerator and denominator with their derivatives."""
+        code, name = _quotient_of(piece.code), f"{kind}_{number}_of_{self.name}"
+        outer = self._body()
+        if kind == "parts":
+            code = differentiated(code)
+        elif not piece.circle:
+            code = piece.code
+        outer.assign(code.constants)
+        inner = outer.within(2)
+        inner.assign(code.assignments)
+        if kind == "value" and not piece.circle:
+            values = [inner.value(v) for v in code.values]
+            inner.leave(inner.divide(*values) if len(values) > 1 else values[0])
+            return [self._function(name, outer, inner, "s_re, s_im")]
+        inner.write([inner.value(v) for v in code.values])
+        if not piece.circle:
+            return [self._function(name, outer, inner, "s_re, s_im, into")]
+        own = f"around_{name}"
+        whole = outer.within(2)
+        step = 2 if kind == "parts" else 1
+        whole.lines = []
+        mean = f"circle(parts, s_re, s_im, {piece.circle}, {step})"
+        whole.say(f"return over({mean});" if kind == "value" else f"into.set({mean});")
+        ahead = self._body()
+        ahead.say(f"const parts = {own}(p);")
+        given = "s_re, s_im" + ", into" * (kind == "parts")
+        text = self._function(name, ahead, whole, given, takes="p")
+        return [self._function(own, outer, inner, "s_re, s_im, into"), text]
+
+    def _choice(self, kind: str) -> str:
+        """Return the function that finds the piece that serves."""
+        program, into = self.program, ", into" * (kind == "parts")
+        outer = self._body()
+        served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
+        for k in sorted(served):
+            outer.say(f"const piece_{k} = {kind}_{k}_of_{self.name}(p);")
+        if self.used and program.conditions:
+            outer.say(f"const {{ {', '.join(self.used)} }} = p;")
+        outer.assign(program.tests.constants)
+        scales = [outer.pair("c_1", outer.value(c.scale)) for c in program.conditions]
+        inner = outer.within(2)
+        inner.assign(program.tests.assignments)
+        tests = (self._test(inner, *both) for both in zip(program.conditions, scales, strict=True))
+        terms = [f"{2**i} * ({test})" for i, test in enumerate(tests)]
+        *others, last = sorted(served)
+        if others:
+            inner.say(f"const number = {' + '.join(terms)};")
+        for k in others:
+            test = " || ".join(f"number === {n}" for n in served[k])
+            inner.say(f"if ({test}) return piece_{k}(s_re, s_im{into});")
+        inner.say(f"return piece_{last}(s_re, s_im{into});")
+        return self._function(f"{kind}_of_{self.name}", outer, inner, f"s_re, s_im{into}", takes="p")
+
+    def _test(self, scope: Body, condition: tree.Condition, scale: Pair) -> str:
+        quantity = scope.value(condition.quantity)
+        if not condition.limit:
+            return f"{_text(scope.multiply(scale, quantity).re)} < 0.0"
+        below = "<=" if self.program.is_lumped else "<"
+        return f"{_size(quantity).text} * {_size(scale).text} {below} {condition.limit!r}"
+
+
+def _quotient_of(code: tree.Straight) -> tree.Straight:
+    """Return code whose first two values are a numerator and a denominator.
+
+    Examples
+    --------
+    >>> _quotient_of(tree.Straight((), (), (tree.Negate(tree.Divide(tree.ONE, tree.Laplace())),))).values[1]
+    Laplace()
+    """
+    if len(code.values) > 1:
+        return code
+    (value,), sign = code.values, False
+    while isinstance(value, tree.Negate):
+        value, sign = value.operand, not sign
+    above, below = (
+        (value.numerator, value.denominator) if isinstance(value, tree.Divide) else (value, tree.ONE)
+    )
+    return tree.Straight(code.constants, code.assignments, (tree.Negate(above) if sign else above, below))
+
+
+# -------------------------------------------------------------------------------------------- the module
+
+
+def javascript_module(contents: Contents) -> Export:
+    """Return an ES module with one function ``OUT_over_IN(s, values)`` per transfer function."""
+    model, members = contents.model, [m for m in contents.members if not m.is_response]
+    public, parameters = contents.names(RESERVED)
+    blocks, code = [_parameter_table(contents, parameters)], ""
+    for m in members:
+        functions = Functions(m.program, public[m.key], parameters)
+        private = functions.blocks()
+        blocks += [*private, _public(m, functions)]
+        code += "\n".join(private)
+    called = called_parts(code, PARTS, ["imaginary", "offered"])
+    rows = [f"    {string(m.tf.name)}: {public[m.key]}," for m in members]
+    blocks += called
+    table = ["export const TRANSFER_FUNCTIONS = Object.freeze({", *rows, "});", ""]
+    header = comment(_header(model, members))
+    text = "\n".join([*header, "", "\n".join(blocks), *table])
+    return Export(text)
+
+
+def string(text: str) -> str:
+    r"""Return a string literal that ends neither a script nor a comment of a page.
+
+    Examples
+    --------
+    >>> string("</script>\u2028")
+    '"\\u003c/script>\\u2028"'
+    """
+    return json.dumps(text).replace("<", "\\u003c")
+
+
+def comment(lines: Sequence[str]) -> list[str]:
+    """Return lines as a block comment that what stands in them cannot end."""
+    inner = (re.sub(r"<(?=[/!A-Za-z])", "< ", line.replace("*/", "* /")) for line in lines)
+    return ["/**", *(f" * {line}".rstrip() for line in inner), " */"]
+
+
+def _header(model: Model, members: Sequence[Member]) -> list[str]:
+    lines = ["Transfer functions of a linear system.", "", *origin_lines(model, WIDTH - 3)]
+    lines += wrapped(
+        "Written by symflex. A complex number is [re, im]. Each function evaluates OUT/IN at the Laplace "
+        "variable s [rad/s]: a real number, [re, im], or two Float64Arrays [re, im], which give two such "
+        "arrays. Its second argument is an object of parameters in SI units; those left out have the model's "
+        "values. .numerator, .denominator, .numeratorDerivative and .denominatorDerivative take the same "
+        "arguments: the parts of the quotient, up to a common factor without zeros, and their derivatives "
+        "in s.",
+        WIDTH - 3,
+    )
+    for m in members:
+        lines += ["", *wrapped(inert(f"{m.tf.name}: {m.verification.text()}"), WIDTH - 3)]
+    return lines
+
+
+def _parameter_table(contents: Contents, names: Mapping[str, str]) -> str:
+    lines = ["/** Values in SI units, units and descriptions of the model's parameters. */"]
+    lines.append("export const PARAMETERS = Object.freeze({")
+    for p in contents.model.parameters:
+        entries = f"value: {default_value(p) or 'null'}, unit: {string(p.unit)}, doc: {string(p.doc)}"
+        lines.append(f"    {names[p.name]}: Object.freeze({{ {entries} }}),")
+    return "\n".join([*lines, "});", ""])
+
+
+def _public(member: Member, functions: Functions) -> str:
+    width = WIDTH - 3
+    lines = [member.headline, "", *(f"    {line}" for line in formula_lines(member.formula, width - 4)), ""]
+    lines += ["@param {number|number[]|Float64Array[]} s Laplace variable [rad/s]"]
+    lines += ["@param {Object} [values] parameters by name:"]
+    for p in member.parameters:
+        name = functions.parameters[p.name]
+        value = default_value(p)
+        lines += wrapped(
+            f"  {name}{f' = {value}' if value else ''}: {described(p, name)}", width, "  ", "    "
+        )
+    lines += ["@returns {number[]|Float64Array[]} [re, im]; not finite at poles"]
+    lines += ["", *wrapped(inert(f"{member.verification.text()}."), width)]
+    used = f"[{', '.join(map(string, functions.used))}]"
+    name = functions.name
+    call = [f"export const {name} = offered("]
+    call += [*in_lines(f"value_of_{name}, parts_of_{name}, {used}", 1), ");"]
+    return "\n".join([*comment(lines), *call, ""])
+
+
+JAVASCRIPT = Language(
+    ".js",
+    "ES module without dependencies, with numerators and denominators, verified likewise",
+    javascript_module,
+)

@@ -1,0 +1,153 @@
+"""Derivatives in s of straight-line code: forward differentiation, one assignment after another.
+
+Input: a :class:`~symflex.codegen.program.nodes.Straight`.
+Output: the same code with one more assignment for each that varies with s, and every value followed by its
+derivative. ``t = s + k; t*t`` becomes ``t = s + k; dt = 1; t*t, 1*t + t*1``, with factors of one left out:
+
+    t_1 = k + s, values t_1*t_1    becomes    t_1 = k + s, values t_1*t_1, t_1 + t_1
+
+The chain rule holds of every node, so the derivative of a composition is exact; its rounding errors are those
+of the operations (Griewank and Walther, Evaluating Derivatives, 2008, chapter 3).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from symflex.codegen.program import nodes as tree
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_TWO = tree.RealNumber(Fraction(2))
+
+
+def differentiated(code: tree.Straight) -> tree.Straight:
+    """Return code whose values are those of ``code``, each followed by its derivative in s.
+
+    Assignments of constants stay as they are; what does not vary with s has the derivative ``0``.
+
+    Examples
+    --------
+    >>> s, k = tree.Laplace(), tree.ParameterValue("k")
+    >>> code = tree.Straight((), (tree.Assignment("t_1", tree.Add((k, s))),), (tree.Multiply((k, s)),))
+    >>> differentiated(code).values[1]
+    ParameterValue(name='k')
+    """
+    known: dict[str, tree.CodeNode | None] = {a.name: None for a in code.constants}
+    assignments: list[tree.Assignment] = []
+    for a in code.assignments:
+        assignments.append(a)
+        slope = _derivative(a.value, known)
+        if slope is not None and not isinstance(slope, tree.RealNumber):
+            assignments.append(tree.Assignment(f"slope of {a.name}", slope))
+            slope = tree.Assigned(f"slope of {a.name}")
+        known[a.name] = slope
+    values: list[tree.CodeNode] = []
+    for value in code.values:
+        values += (value, _derivative(value, known) or tree.RealNumber(Fraction(0)))
+    return tree.Straight(code.constants, tuple(assignments), tuple(values))
+
+
+def _derivative(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
+    """Return the derivative in s, ``None`` where it is zero; ``known`` has those of assigned names."""
+
+    def slope(of: tree.CodeNode) -> tree.CodeNode | None:
+        return _derivative(of, known)
+
+    match node:
+        case tree.Laplace():
+            return tree.ONE
+        case tree.InverseLaplace():
+            return tree.Negate(tree.Multiply((node, node)))
+        case tree.Assigned(name):
+            return known[name]
+        case tree.Item(tree.Assigned(name), position):
+            inner = known[name]
+            return None if inner is None else tree.Item(inner, position)
+        case tree.Add(terms):
+            return _total([slope(t) for t in terms])
+        case tree.Negate(operand):
+            inner = slope(operand)
+            return None if inner is None else tree.Negate(inner)
+        case tree.Multiply(factors):
+            parts = [
+                _product((*factors[:i], inner, *factors[i + 1 :]))
+                for i, factor in enumerate(factors)
+                if (inner := slope(factor)) is not None
+            ]
+            return _total(parts)
+        case tree.Divide(above, below):
+            rise, fall = slope(above), slope(below)
+            if fall is None:
+                return None if rise is None else tree.Divide(rise, below)
+            change = tree.Negate(_product((tree.Divide(above, below), fall)))
+            return tree.Divide(change if rise is None else tree.Add((rise, change)), below)
+    return _of_composed(node, known)
+
+
+def _of_composed(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
+    def slope(of: tree.CodeNode) -> tree.CodeNode | None:
+        return _derivative(of, known)
+
+    match node:
+        case tree.LargerRoot(_, middle, product):  # of x^2 - 2*m*x + p, without cancellation
+            rise, fall = slope(middle), slope(product)
+            total = _total([rise and _product((rise, node)), fall and tree.Negate(tree.Divide(fall, _TWO))])
+            return total and tree.Divide(total, tree.Add((node, tree.Negate(middle))))
+        case tree.RootFactor():
+            return slope(node.spelled)
+        case tree.ToComplex(operand) | tree.Within(operand):
+            return slope(operand)
+        case tree.Apply("abs"):  # sets a radius, or adds less than a rounding: both may be held
+            return None
+        case tree.Apply(function, argument):
+            inner = slope(argument)
+            return None if inner is None else _product((_of_function(function, node, argument), inner))
+        case tree.Solutions(coefficients, terms):
+            slopes = [slope(c) for c in coefficients]
+            if not any(slopes):
+                return None
+            zero = tree.RealNumber(Fraction(0))
+            return tree.SolutionSlopes(coefficients, tuple(x or zero for x in slopes), terms)
+    return None  # numbers, parameters and their powers
+
+
+def _of_function(function: str, node: tree.CodeNode, x: tree.CodeNode) -> tree.CodeNode:
+    """Return the derivative of an elementary function, ``node``, in its argument."""
+    match function.removeprefix("complex_"):
+        case "exp":
+            return node
+        case "sqrt":
+            return tree.Divide(tree.ONE, tree.Multiply((_TWO, node)))
+        case "log":
+            return tree.Divide(tree.ONE, x)
+        case "sin":
+            return tree.Apply("cos", x)
+        case "cos":
+            return tree.Negate(tree.Apply("sin", x))
+        case "sinh":
+            return tree.Apply("cosh", x)
+        case "cosh":
+            return tree.Apply("sinh", x)
+        case "tan":
+            return tree.Add((tree.ONE, tree.Multiply((node, node))))
+        case "tanh":
+            return tree.Add((tree.ONE, tree.Negate(tree.Multiply((node, node)))))
+    raise TypeError(function)
+
+
+def _total(terms: Sequence[tree.CodeNode | None]) -> tree.CodeNode | None:
+    left = tuple(t for t in terms if t is not None)
+    return tree.Add(left) if len(left) > 1 else left[0] if left else None
+
+
+def _product(factors: Sequence[tree.CodeNode]) -> tree.CodeNode:
+    """Return a product without factors of one, the sign before it."""
+    sign = reduce(lambda minus, f: minus ^ isinstance(f, tree.Negate), factors, False)
+    plain = [f.operand if isinstance(f, tree.Negate) else f for f in factors]
+    left = tuple(f for f in plain if f != tree.ONE) or (tree.ONE,)
+    whole = tree.Multiply(left) if len(left) > 1 else left[0]
+    return tree.Negate(whole) if sign else whole
