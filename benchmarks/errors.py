@@ -11,6 +11,7 @@ No time is measured here: errors depend on a machine only as its mathematical li
 from __future__ import annotations
 
 import ctypes
+import json
 import math
 import re
 import shutil
@@ -193,6 +194,24 @@ def in_julia(case: Case) -> Values:
                 yield tf, [functions[name](p, *given) for p in points.tolist()]
 
 
+def in_node(case: Case) -> Values:
+    """Yield values of an ES module, all by one process of Node."""
+    lines, asked = [f'import * as G from "./{case.name}.mjs";'], []
+    for tf, pair, w in case.points():
+        lines.append(
+            f"[G.{pair}([new Float64Array({w.size}), Float64Array.from({json.dumps(w.tolist())})])].forEach("
+        )
+        lines.append("  ([x, y]) => x.forEach((re, i) => console.log(`${re} ${y[i]}`)));")
+        asked.append((tf, w.size))
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / f"{case.name}.mjs").write_text(case.exported("js").text, encoding="utf-8")
+        (Path(folder) / "values.mjs").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        done = subprocess.run(["node", "values.mjs"], cwd=folder, capture_output=True, text=True, check=True)
+    rows = iter(done.stdout.replace("Infinity", "inf").splitlines())
+    for tf, size in asked:
+        yield tf, [complex(*map(float, next(rows).split())) for _ in range(size)]
+
+
 def in_state_space(case: Case) -> Values:
     """Yield what the matrices of doubles say, computed without further errors."""
     module = imported(case.exported("state-space").text, f"{case.name}_state_space")
@@ -219,6 +238,7 @@ TARGETS: Final[Mapping[str, Callable[[Case], Values]]] = {
     "c": in_c,
     "matlab": in_octave,
     "julia": in_julia,
+    "js": in_node,
     "state-space": in_state_space,
 }
 NEEDS: Final[Mapping[str, tuple[str, Callable[[str], object]]]] = {
@@ -226,11 +246,12 @@ NEEDS: Final[Mapping[str, tuple[str, Callable[[str], object]]]] = {
     "jax": ("jax", find_spec),
     "c": ("cc", shutil.which),
     "matlab": ("octave", shutil.which),
+    "js": ("node", shutil.which),
 }
 """What has to be installed, and what finds it."""
 QUICK: Final[Mapping[str, Sequence[str]]] = {
-    "two_mass": ("numpy", "array-api", "c", "matlab", "julia", "state-space"),
-    "sliding_free_beam": ("numpy", "c", "matlab", "julia"),
+    "two_mass": ("numpy", "array-api", "c", "matlab", "julia", "js", "state-space"),
+    "sliding_free_beam": ("numpy", "c", "matlab", "julia", "js"),
     "conical_horn": ("numpy", "c"),
 }
 """A lumped model, one with a formula of exponentials, and one that is followed along x."""

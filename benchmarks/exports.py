@@ -12,7 +12,10 @@ from __future__ import annotations
 import ctypes
 import math
 import shutil
+import subprocess
 import sys
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +33,7 @@ from benchmarks.generated import FLAGS, loaded, pointer, responding
 from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
+from symflex.codegen.javascript import JAVASCRIPT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,6 +44,45 @@ TASK = "exported C: sliding-free beam at a million frequencies"
 
 FASTER_THAN_NUMPY = 2.5
 SLOWER_THAN_BY_HAND = 1.3
+SLOWER_THAN_C = 2.0
+
+IN_C = """
+#include <complex.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include "beam.h"
+
+int main(int count, char **given)
+{
+    const size_t n = (size_t)atol(given[1]);
+    double *omega = malloc(n * sizeof *omega), *out = malloc(2 * n * sizeof *out);
+    if (count < 3 || fread(omega, sizeof *omega, n, fopen("omega", "rb")) != n) return 1;
+    for (int round = 0; round < atoi(given[2]); round++) {
+        const clock_t begin = clock();
+        for (size_t i = 0; i < n; i++) {
+            const double complex z = beam_V_act_over_F(omega[i] * I, &beam_defaults);
+            out[2 * i] = creal(z);
+            out[2 * i + 1] = cimag(z);
+        }
+        printf("%.9f\\n", (double)(clock() - begin) / CLOCKS_PER_SEC);
+    }
+    return out[n] == 0.25;
+}
+"""
+
+IN_NODE = """
+import { readFileSync } from "node:fs";
+import { V_act_over_F } from "./beam.mjs";
+const [n, rounds] = process.argv.slice(2).map(Number);
+const omega = new Float64Array(readFileSync("omega").buffer.slice(0, 8 * n));
+for (let round = 0; round < rounds; round++) {
+    const begin = process.cpuUsage();
+    V_act_over_F([new Float64Array(n), omega]);
+    const { user, system } = process.cpuUsage(begin);
+    console.log((user + system) / 1e6);
+}
+"""
 
 BY_HAND = r"""
 #include <math.h>
@@ -111,7 +154,36 @@ def measure(extent: Extent) -> Measured:
             larger_is_better=False,
         ),
     ]
+    if shutil.which("node") is None:
+        print("skipped, node is not installed: exported JavaScript", file=sys.stderr)
+        return Measured(found, claims)
+    (node, compiled), at_s = _at_complex_s(omega, rounds), f"{TASK}, as functions of s"
+    found += [Measurement(at_s, "`--to js` in Node", node, extent.limit)]
+    found += [Measurement(at_s, "`--to c`, -O2", compiled, extent.limit)]
+    claim = "exported JavaScript in Node: times as long as exported C (`-O2`), as functions of s"
+    claims.append(Claim(claim, SLOWER_THAN_C, node / compiled, larger_is_better=False))
     return Measured(found, claims)
+
+
+def _at_complex_s(omega: NDArray[Any], rounds: int) -> tuple[float, float]:
+    """Return the processor time that a million values at complex s take in Node and in C, at best."""
+    model = pipeline.load(SPECIFICATION)
+    tfs = pipeline.derive_all(model)
+    c, js = C99.export(model, tfs, "beam", is_alone=False), JAVASCRIPT.export(model, tfs, "beam")
+    sources = {"beam.h": c.companions[".h"], "beam.c": c.text, "main.c": IN_C}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        omega.tofile(folder / "omega")
+        for file, text in {**sources, "beam.mjs": js.text, "main.mjs": IN_NODE}.items():
+            (folder / file).write_text(text, encoding="utf-8")
+        compiler = ["cc", "-std=c11", "-O2", "beam.c", "main.c", "-o", "beam", "-lm"]
+        subprocess.run(compiler, cwd=folder, check=True)
+        times = []
+        for command in (["node", "main.mjs"], ["./beam"]):
+            given = [*command, str(omega.size), str(rounds)]
+            done = subprocess.run(given, cwd=folder, capture_output=True, text=True, check=True)
+            times.append(min(map(float, done.stdout.split())))
+    return times[0], times[1]
 
 
 def _ways(omega: NDArray[Any]) -> dict[str, Callable[[], NDArray[Any]]]:

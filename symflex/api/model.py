@@ -635,6 +635,10 @@ class Model:
         """
         return self._export("julia", name)
 
+    def export_js(self) -> str:
+        """Return an ES module without dependencies, for browsers and Node."""
+        return self._export("js")
+
     def export_latex(self) -> str:
         """Return a standalone LaTeX document of the model."""
         return self._export("latex")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from symflex.cli.budgeting import budgeted
+from symflex.cli.completion import OFFERED, completed
 from symflex.cli.reporting import keep, note, reporting, show
 from symflex.options import OUTSIDE, option
 
@@ -121,6 +122,8 @@ def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., 
         said["type"] = click.Path(exists=True, file_okay=False)
     if not flags:
         return click.argument(one.name, **said)
+    if not OFFERED.keys().isdisjoint(flags) and one.default is not False:
+        said["shell_complete"] = completed
     if not said.get("required"):
         said["default"] = one.default
     return click.option(*flags, one.name, **said)

@@ -158,7 +158,7 @@ def _size(z: Pair) -> Real:
 
 
 @dataclass
-class Body:
+class PairBody:
     """The statements of one function of s while they are printed."""
 
     parameters: Mapping[str, str]  # identifiers of parameters by their names in the model
@@ -168,7 +168,7 @@ class Body:
     known: dict[str, Pair | str] = field(default_factory=dict)  # assigned values; of lists, the array
     shared: dict[str, str] = field(default_factory=dict)  # constants by what they were made of
 
-    def within(self, depth: int) -> Body:
+    def within(self, depth: int) -> PairBody:
         """Return the body of a block that sees these constants."""
         return replace(self, depth=depth, lines=[], known=dict(self.known), shared=dict(self.shared))
 
@@ -365,7 +365,7 @@ def in_lines(text: str, depth: int) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Functions:
+class PairFunctions:
     """Prints the private functions of one transfer function: its value, and the parts of its quotient."""
 
     program: tree.Piecewise
@@ -386,10 +386,12 @@ class Functions:
             blocks.append(self._choice(kind))
         return blocks
 
-    def _body(self) -> Body:
-        return Body(self.parameters, {*RESERVED, *self.parameters.values()}, 1)
+    def _body(self) -> PairBody:
+        return PairBody(self.parameters, {*RESERVED, *self.parameters.values()}, 1)
 
-    def _function(self, name: str, outer: Body, inner: Body, arguments: str, *, takes: str = "") -> str:
+    def _function(
+        self, name: str, outer: PairBody, inner: PairBody, arguments: str, *, takes: str = ""
+    ) -> str:
         """Return a function of parameters, by default each by its name, that returns one of s."""
         listed = takes or (f"{{ {', '.join(self.used)} }}" if self.used else "_")
         opening = [f"function {name}({listed}) {{"]
@@ -453,7 +455,7 @@ class Functions:
         inner.say(f"return piece_{last}(s_re, s_im{into});")
         return self._function(f"{kind}_of_{self.name}", outer, inner, f"s_re, s_im{into}", takes="p")
 
-    def _test(self, scope: Body, condition: tree.Condition, scale: Pair) -> str:
+    def _test(self, scope: PairBody, condition: tree.Condition, scale: Pair) -> str:
         quantity = scope.value(condition.quantity)
         if not condition.limit:
             return f"{_text(scope.multiply(scale, quantity).re)} < 0.0"
@@ -489,7 +491,7 @@ def javascript_module(contents: Contents) -> Export:
     public, parameters = contents.names(RESERVED)
     blocks, code = [_parameter_table(contents, parameters)], ""
     for m in members:
-        functions = Functions(m.program, public[m.key], parameters)
+        functions = PairFunctions(m.program, public[m.key], parameters)
         private = functions.blocks()
         blocks += [*private, _public(m, functions)]
         code += "\n".join(private)
@@ -544,7 +546,7 @@ def _parameter_table(contents: Contents, names: Mapping[str, str]) -> str:
     return "\n".join([*lines, "});", ""])
 
 
-def _public(member: Member, functions: Functions) -> str:
+def _public(member: Member, functions: PairFunctions) -> str:
     width = WIDTH - 3
     lines = [member.headline, "", *(f"    {line}" for line in formula_lines(member.formula, width - 4)), ""]
     lines += ["@param {number|number[]|Float64Array[]} s Laplace variable [rad/s]"]

@@ -23,6 +23,18 @@ from tests.unit.codegen.test_band_form import STRING
 
 ACCURACY = 1e-13
 
+CANTILEVER = """
+symflex = 1
+parameters = { EI = "3 N*m^2", rhoA = "2 kg/m", l = "1.5 m" }
+inputs     = { F = {} }
+outputs    = { W = "w(l)" }
+
+[fields.w]
+domain     = ["0", "l"]
+equation   = "EI*w'''' + rhoA*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) = -F"]
+"""
+
 pytestmark = pytest.mark.needs_tool("node")
 
 
@@ -106,6 +118,21 @@ def test_scalars_pairs_arrays_parameters_and_mistakes(node):
         "RangeError: there is no parameter __proto__x",
     ]
     assert node.values[length]["unit"] == "m"
+
+
+def test_a_cantilever_is_what_its_equation_says(node):
+    model = pipeline.loads(CANTILEVER)
+    module = node.write(
+        "plain", JAVASCRIPT.export(model, pipeline.derive_all(model), "plain", samples=5).text
+    )
+    s = np.array([1e-3j, 0.4 + 3j, -2 + 90j])
+    key = node.at(f"{module}.W_over_F", s)
+    node.run()
+    # EI w'''' = b^4 EI w with w, w' = 0 at the root and w'' = 0, EI w''' = -F at the tip.
+    b = (-2 * s**2 / 3) ** 0.25
+    sine, cosine, sinh, cosh = (f(1.5 * b) for f in (np.sin, np.cos, np.sinh, np.cosh))
+    expected = (sine * cosh - cosine * sinh) / (3 * b**3 * (1 + cosine * cosh))
+    assert np.max(np.abs(node.numbers(key) / expected - 1)) < 1e-11
 
 
 def test_a_band_form_is_the_function_of_its_band(node):

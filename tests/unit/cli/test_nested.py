@@ -77,7 +77,7 @@ def test_a_nested_beam_says_what_its_functions_are(shell, spec):
 
 
 def test_exported_code_is_of_the_nested_form_and_verified(shell, spec):
-    for target in ("numpy", "c", "matlab", "julia", "array-api", "jax"):
+    for target in ("numpy", "c", "matlab", "julia", "js", "array-api", "jax"):
         done = shell("export", spec, "--to", target, "--representation", "nested")
         assert done.code == 0, target
         assert "verified: worst relative error" in done.out, target
