@@ -13,6 +13,10 @@ Digital Control of Dynamic Systems, chapter 6). A dead time of any fraction of s
 
     g(k h - T), the step response at samples, less itself one sample before, is the impulse response, and that
     times the denominator is the numerator: n + 1 numbers, whatever the multiplicities of the poles.
+
+A map may take roots together or to infinity: ``tustin`` takes a zero at 2/h to infinity, and poles that
+differ by ``2 pi j/h`` are one pole at samples. Every function is compared at one z with a value made without
+roots: from ``G(k (z - 1)/(z + 1))``, or from exponentials of companion matrices.
 """
 
 from __future__ import annotations
@@ -24,14 +28,22 @@ from math import ceil, prod
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, acb_poly, arb
+from flint import acb, acb_mat, acb_poly, arb, arb_mat
 
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions, values_of
 from symflex.analysis.time_response.sample_times import SampleTimes
-from symflex.balls import ball, bits_for_digits, precision
+from symflex.balls import (
+    UndecidedError,
+    ball,
+    binary_exponent,
+    bits_for_digits,
+    current_bits,
+    precision,
+    settled,
+)
 from symflex.budget import spend
-from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UncertifiedError, UsageError
 from symflex.errors.optional import installed
 from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -39,7 +51,7 @@ from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem, problem_of
 from symflex.roots.root import exact_fraction
 from symflex.state_space import not_rational
-from symflex.state_space.sampled import Sampling
+from symflex.state_space.sampled import Sampling, held
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -50,6 +62,10 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 FIRST_DIGITS, LAST_DIGITS = 60, 4000
+TRIED_AT = acb(1.2345, 0.5432)
+"""Where a function of z is compared: no pole is there but by a rare accident."""
+AGREED_BITS = 60
+"""Of that comparison, beside the function's size: a double has 53."""
 GOOD_BITS = 110
 """Of every coefficient: twice a double and room for what measures rounding to it."""
 NOTHING_BITS = 180
@@ -130,6 +146,10 @@ class _Continuous:
     def order(self) -> int:
         return int(self.denominator.degree())
 
+    def __call__(self, s: acb) -> acb:
+        """Return the value at s without dead times."""
+        return sum((term.numerator(s) for term in self.terms), acb(0)) / self.denominator(s)
+
 
 def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
     r"""Return a transfer function as it is seen, or is to be computed, at samples.
@@ -160,25 +180,34 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
     [[0.045454545, 0.045454545], [1.0, -0.818181818]]
     """
     check_causal(bound.source.model, "a sampled function")
+    if bound.ratio.is_zero:
+        return SampledTransferFunction(bound.name, sampling, 0, (arb(0),), (arb(1),), (), (), GOOD_BITS)
     bound = without_lengths_of_zero(bound)
-    digits = FIRST_DIGITS
-    while digits <= LAST_DIGITS:
-        spend()
-        bits = 2 * bits_for_digits(digits)
-        with precision(bits):
-            given = _continuous(bound, digits, bits)
-            mapped = MAPS[sampling.method](bound, given, sampling)
-            if mapped is not None:
-                numerator, denominator, poles, zeros, late = mapped
-                above, below = _told(numerator), _told(denominator)
-                if above is not None and below is not None:
-                    zeros = _roots_of(above) if zeros is None else zeros
-                    return SampledTransferFunction(
-                        bound.name, sampling, late, above, below, poles, zeros, bits
-                    )
-        digits *= 2
-    message = f"poles of {bound.name} cannot be told apart, so it cannot be sampled"
-    raise UncertifiedError(Diagnostic("SF810", message))
+    try:
+        return settled(lambda: _sampled(bound, sampling), 2 * bits_for_digits(FIRST_DIGITS))
+    except UndecidedError:
+        message = f"poles of {bound.name} cannot be told apart, so it cannot be sampled"
+        raise UncertifiedError(Diagnostic("SF810", message)) from None
+
+
+def _sampled(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
+    spend()
+    bits = current_bits()
+    given = _continuous(bound, bits * FIRST_DIGITS // (2 * bits_for_digits(FIRST_DIGITS)), bits)
+    numerator, denominator, poles, zeros, late, size = MAPS[sampling.method](bound, given, sampling)
+    above, below = _told(numerator, size), _told(denominator)
+    zeros = _roots_of(above) if zeros is None else zeros
+    found = SampledTransferFunction(bound.name, sampling, late, above, below, poles, zeros, bits)
+    z = TRIED_AT
+    value, expected = found.enclosed(z), _value_without_roots(given, sampling, z)
+    scale = abs(value) + abs(given(z / sampling.seconds))
+    if not abs(value - expected) < scale * arb(2) ** -AGREED_BITS:
+        if value.overlaps(expected):
+            raise UndecidedError
+        message = f"the function of z of {bound.name} is wrong: at z = {complex(z):.4g} it is "
+        message += f"{complex(value):.4g} and should be {complex(expected):.4g}"
+        raise InternalError(Diagnostic("SF991", message, None, REPORT))
+    return found
 
 
 def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Continuous:
@@ -219,28 +248,31 @@ def _check_order(bound: BoundTransferFunction, num: acb_poly, den: acb_poly) -> 
         raise ModelError(Diagnostic("SF236", message, None, hint))
 
 
-Found = tuple["list[arb]", "list[arb]", "tuple[acb, ...]", "tuple[acb, ...] | None", int]
-"""Numerator, denominator, poles, zeros where they are known, and whole samples of dead time."""
+Found = tuple["list[arb]", "list[arb]", "tuple[acb, ...]", "tuple[acb, ...] | None", int, arb]
+"""Numerator, denominator, poles, zeros where they are known, whole samples of dead time, and a size beside
+which a coefficient of the numerator may be nothing."""
 
 
-def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
+def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
     """Return the function whose step response is that of the given one at samples."""
     del bound
-    poles = _mapped(given.poles, lambda p: (p * sampling.seconds).exp())
+    poles = _poles_at_samples(given.poles, sampling)
     below = monic(poles)
-    n = given.order
+    n = len(poles)
+    size = arb(0)
     parts: list[tuple[int, list[arb]]] = []
     for term in given.terms:
-        delay = _delay(term.late, sampling)
-        whole = ceil(delay / sampling.sample)
-        ahead = whole * sampling.sample - delay
+        whole, ahead = _parted(term.late, sampling)
         quotient = EnclosedQuotient(((term.numerator, 1),), ((given.denominator, 1),), acb(1))
         exponentials = partial_fractions(quotient, given.poles, 1)
         if exponentials is None:
-            return None
+            raise UndecidedError
         times = SampleTimes.evenly(sampling.sample * (n + 1), n + 2)
+        # Between samples as well: at samples the response of a mode may be zero.
+        between = values_of(exponentials, times, delay=-ball(sampling.sample) / 3)
         step = values_of(exponentials, times, delay=-ball(ahead))
-        if not ahead and term.numerator.degree() < n:
+        size = max([size, *(c.abs_upper() for c in (*step, *between))])
+        if not ahead and term.numerator.degree() < given.order:
             step[0] = arb(0)
         pulses = [step[0], *(b - a for a, b in pairwise(step))]
         above = [sum((below[i - k] * pulses[k] for k in range(i + 1)), arb(0)) for i in range(n + 1)]
@@ -252,29 +284,45 @@ def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) 
         for i, c in enumerate(above):
             total[i + whole - late] = total[i + whole - late] + c
     none = [arb(0)] * extra
-    return total, [*below, *none], (*poles, *(acb(0) for _ in none)), None, late
+    return total, [*below, *none], (*poles, *(acb(0) for _ in none)), None, late, size
 
 
-def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
-    """Return the function of s = k (z - 1)/(z + 1)."""
+def _poles_at_samples(poles: Sequence[Root], sampling: Sampling) -> tuple[acb, ...]:
+    """Return the poles in z with a held input; those of s that are one at samples count as the most multiple.
+
+    At z = 1 that is so of a step's response, which has one pole more there.
+    """
+    found = [(acb(1), 1 + sum(root.multiplicity for root in poles if root.is_zero))]
+    for root in poles:
+        (z,) = _mapped([root], lambda s: (s * sampling.seconds).exp())[:1]
+        same = next((i for i, (other, _) in enumerate(found) if _is_nothing(z - other, z)), len(found))
+        if same == len(found):
+            found.append((z, 0))
+        if not root.is_zero:
+            found[same] = (found[same][0], max(found[same][1], root.multiplicity))
+    found[0] = (found[0][0], found[0][1] - 1)
+    return tuple(z for z, count in found for _ in range(count))
+
+
+def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
+    """Return the function of s = k (z - 1)/(z + 1), where s - r is ((k - r) z - (k + r))/(z + 1)."""
     late = _only_whole(bound, given, sampling)
     k = acb(sampling.rate)
-    if any((k - p.enclosure()).contains(0) for p in given.poles):
+    if any(_is_nothing(k - p.enclosure(), k) for p in given.poles):
         message = f"{bound.name} has a pole at {float(k.real.mid()):g} rad/s, which tustin takes to infinity"
         raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time"))
-
-    def move(s: acb) -> acb:
-        return (k + s) / (k - s)
-
-    poles, zeros = (_mapped(roots, move) for roots in (given.poles, given.zeros))
+    finite = [root for root in given.zeros if not _is_nothing(k - root.enclosure(), k)]
+    poles, zeros = (_mapped(roots, lambda s: (k + s) / (k - s)) for roots in (given.poles, finite))
     gain = _leading(given)
-    for root, sign in [*((r, 1) for r in given.zeros), *((r, -1) for r in given.poles)]:
-        gain = gain * (k - root.enclosure()) ** (sign * root.multiplicity)
-    zeros = (*zeros, *(acb(-1) for _ in range(len(poles) - len(zeros))))
-    return [c * gain.real for c in monic(zeros)], monic(poles), poles, zeros, late
+    for root in given.zeros:
+        gain = gain * (k - root.enclosure() if root in finite else -2 * k) ** root.multiplicity
+    for root in given.poles:
+        gain = gain / (k - root.enclosure()) ** root.multiplicity
+    surplus = len(poles) - sum(root.multiplicity for root in given.zeros)
+    return _product(gain, (*zeros, *(acb(-1) for _ in range(surplus))), poles, late)
 
 
-def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
+def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
     """Return the function whose roots are exp(s h), and which is the same where s is small.
 
     Of zeros at infinity all but one come to z = -1: the one left is the sample that computing may take.
@@ -282,21 +330,80 @@ def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Samplin
     late = _only_whole(bound, given, sampling)
     h = sampling.seconds
     poles, zeros = (_mapped(roots, lambda s: (s * h).exp()) for roots in (given.poles, given.zeros))
-    surplus = len(poles) - len(zeros)
-    gain = _leading(given)
+    more = max(len(poles) - len(zeros) - 1, 0)
+    gain = _leading(given) / 2**more
     for roots, sign in ((given.zeros, 1), (given.poles, -1)):
         for root in roots:
             s = root.enclosure()
+            if not root.is_zero and _is_nothing(1 - (s * h).exp(), acb(1)):
+                message = f"{bound.name} has {'a zero' if sign > 0 else 'a pole'} at {complex(s):.6g} rad/s, "
+                message += "which matched takes to z = 1, as if it were at s = 0"
+                raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time"))
             ratio = 1 / acb(h) if root.is_zero else -s / (1 - (s * h).exp())
             gain = gain * ratio ** (sign * root.multiplicity)
-    more = max(surplus - 1, 0)
-    zeros = (*zeros, *(acb(-1) for _ in range(more)))
-    gain = gain / 2**more
+    return _product(gain, (*zeros, *(acb(-1) for _ in range(more))), poles, late)
+
+
+def _product(gain: acb, zeros: tuple[acb, ...], poles: tuple[acb, ...], late: int) -> Found:
     above = [c * gain.real for c in monic(zeros)]
-    return [arb(0)] * (len(poles) + 1 - len(above)) + above, monic(poles), poles, zeros, late
+    return [arb(0)] * (len(poles) - len(zeros)) + above, monic(poles), poles, zeros, late, arb(0)
 
 
-MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found | None]] = {
+def _value_without_roots(given: _Continuous, sampling: Sampling, z: acb) -> acb:
+    """Return the value at z, by no root and no partial fraction: what a function found is compared with."""
+    h = sampling.seconds
+    if sampling.method == "tustin":
+        late = _parted(given.terms[0].late, sampling)[0]
+        return given(sampling.rate * (z - 1) / (z + 1)) / z**late
+    if sampling.method == "matched":
+        late = _parted(given.terms[0].late, sampling)[0]
+        sides = ((given.terms[0].numerator, given.zeros), (given.denominator, given.poles))
+        above, below = (_with_exponentials_of_roots(*side, h)(z) for side in sides)
+        surplus = given.order - int(given.terms[0].numerator.degree())
+        return above / below * ((z + 1) / 2) ** max(surplus - 1, 0) / z**late
+    n = given.order
+    companion, rate = _companion(given.denominator, given.poles)
+    lead = given.denominator[n].real
+    total = acb(0)
+    for term in given.terms:
+        whole, ahead = _parted(term.late, sampling)
+        direct = term.numerator[n].real / lead
+        value = acb(direct)
+        if n:
+            given_at = arb_mat(n, 1, [arb(0)] * (n - 1) + [rate])
+            (newer, late_input), (older, early_input) = (
+                held(companion, given_at, time) for time in (ball(ahead), ball(sampling.sample - ahead))
+            )
+            moved = acb_mat(newer * early_input) + acb_mat(late_input) * z
+            state = (acb_mat(n, n, z) - acb_mat(newer * older)).solve(moved)
+            for i in range(n):
+                seen = (term.numerator[i].real - direct * given.denominator[i].real) / lead
+                value += seen * rate ** (i - n) * state[i, 0]
+        total += value / z**whole
+    return total
+
+
+def _with_exponentials_of_roots(polynomial: acb_poly, roots: Sequence[Root], h: arb) -> acb_poly:
+    """Return a polynomial with the roots exp(r h), for z = exp(s h) and small s the given one in s."""
+    if polynomial.degree() == 0:
+        return polynomial
+    companion, _ = _companion(polynomial, roots)
+    characteristic = acb_poly((companion * h).exp().charpoly())
+    order = sum(root.multiplicity for root in roots if root.is_zero)
+    slope = characteristic(acb_poly([1, 1]))[order]
+    return characteristic * (polynomial[order] / (slope * h**order))
+
+
+def _companion(polynomial: acb_poly, roots: Sequence[Root]) -> tuple[arb_mat, arb]:
+    """Return a matrix with the roots of a polynomial as eigenvalues, and the power of two it scales by."""
+    n = int(polynomial.degree())
+    rate = arb(2) ** max((binary_exponent(root.enclosure()) or 0 for root in roots), default=0)
+    rows = [[rate if j == i + 1 else arb(0) for j in range(n)] for i in range(n - 1)]
+    last = [-(polynomial[i] / polynomial[n]).real * rate ** (i - n + 1) for i in range(n)]
+    return arb_mat([*rows, last] if n else []), rate
+
+
+MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found]] = {
     "zoh": _held,
     "tustin": _tustin,
     "matched": _matched,
@@ -324,11 +431,18 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
     return delay
 
 
+def _parted(late: arb, sampling: Sampling) -> tuple[int, Fraction]:
+    """Return whole samples of a dead time, and by how much they exceed it [s]."""
+    delay = _delay(late, sampling)
+    whole = ceil(delay / sampling.sample)
+    return whole, whole * sampling.sample - delay
+
+
 def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
     if len(given.terms) > 1:
         message = f"{bound.name} is a sum of dead times, which '{sampling.method}' cannot handle"
         raise UsageError(Diagnostic("SF902", message, None, "take zoh"))
-    return int(_delay(given.terms[0].late, sampling) / sampling.sample)
+    return _parted(given.terms[0].late, sampling)[0]
 
 
 def _leading(given: _Continuous) -> acb:
@@ -339,10 +453,20 @@ def _leading(given: _Continuous) -> acb:
 def _mapped(roots: Sequence[Root], move: Callable[[acb], acb]) -> tuple[acb, ...]:
     mapped = []
     for root in roots:
-        s = root.enclosure()
-        z = acb(move(s).real) if root.is_real else move(s)
-        mapped += [z] * root.multiplicity
+        z = move(root.enclosure())
+        # Roots that are not real may become so: exp(s h) where s + pi j/h is real.
+        z = acb(z.real) if root.is_real or _is_nothing(acb(z.imag), z) else z
+        mapped += [acb(0) if _is_nothing(z, acb(1)) else z] * root.multiplicity
     return tuple(mapped)
+
+
+def _is_nothing(value: acb, beside: acb) -> bool:
+    """Whether a number is zero, as far as many digits tell; UndecidedError where more may tell."""
+    if not value.contains(0):
+        return False
+    if not value.abs_upper() < beside.abs_lower() * arb(2) ** -NOTHING_BITS:
+        raise UndecidedError
+    return True
 
 
 def monic(roots: Sequence[acb]) -> list[arb]:
@@ -351,20 +475,13 @@ def monic(roots: Sequence[acb]) -> list[arb]:
     return [c.real for c in polynomial.coeffs()[::-1]]
 
 
-def _told(coefficients: Sequence[arb]) -> tuple[arb, ...] | None:
-    """Return coefficients that are known well, zeros that are nothing beside the others; else None."""
-    largest = max((c.abs_upper() for c in coefficients), default=arb(0))
-    real = []
-    for c in coefficients:
-        if c.contains(0):
-            if c != 0 and not c.abs_upper() < largest * arb(2) ** -NOTHING_BITS:
-                return None
-            real.append(arb(0))
-        elif c.rel_accuracy_bits() < GOOD_BITS:
-            return None
-        else:
-            real.append(c)
-    return tuple(real)
+def _told(coefficients: Sequence[arb], size: arb | None = None) -> tuple[arb, ...]:
+    """Return coefficients that are known well, zeros that are nothing beside the others, or a size."""
+    largest = acb(max([size or arb(0), *(c.abs_upper() for c in coefficients)]))
+    told = [arb(0) if c == 0 or _is_nothing(acb(c), largest) else c for c in coefficients]
+    if any(c != 0 and c.rel_accuracy_bits() < GOOD_BITS for c in told):
+        raise UndecidedError
+    return tuple(told)
 
 
 def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:

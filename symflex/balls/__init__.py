@@ -24,6 +24,7 @@ from symflex.balls.values import (
     ball,
     binary_exponent,
     expansion,
+    opposite,
     plan,
     raised,
     series_quotient,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import acb, acb_series, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
-from symflex.balls.precision import series_terms
+from symflex.balls.precision import precision, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -53,6 +53,20 @@ copyreg.pickle(fmpz_mpoly, lambda p: (p.context().from_dict, (p.to_dict(),)))
 def ball(value: Fraction) -> arb:
     """Return a rational number as a ball at the current precision."""
     return arb(fmpq(value.numerator, value.denominator))
+
+
+def opposite(x: arb) -> arb:
+    """Return -x with all digits of x: a minus sign rounds to the precision that is set.
+
+    Examples
+    --------
+    >>> with precision(200):
+    ...     third = arb(1) / 3
+    >>> (-third).bits(), opposite(third).bits()
+    (53, 199)
+    """
+    with precision(max(x.bits(), 2)):
+        return -x
 
 
 def expansion(s: acb) -> acb_series:

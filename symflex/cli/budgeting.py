@@ -48,7 +48,7 @@ UNITS: Final = {"MB": 10**6, "GB": GB, "TB": 10**12, "MIB": 2**20, "GIB": 2**30,
 SIZE: Final = re.compile(r"\s*(\d{1,9}(?:\.\d{1,9})?)\s*([MGT]i?B)\s*", re.ASCII | re.IGNORECASE)
 
 
-class Seconds(click.ParamType[float]):
+class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic from click 8.4 on
     """A positive, finite time; a not-a-number compares with nothing, and would be no limit."""
 
     name = "seconds"
@@ -64,7 +64,7 @@ class Seconds(click.ParamType[float]):
         return seconds
 
 
-class Memory(click.ParamType[int]):
+class Memory(click.ParamType):  # type: ignore[type-arg]
     """An amount of memory such as 500 MB or 4GB."""
 
     name = "memory"

@@ -56,6 +56,8 @@ MEASURE_BITS = 600
 """Of the run that counts as exact: differences of poles close to each other cost it a few hundred."""
 LARGE = 1e-9
 """Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
+SMALLEST = float_info.min / float_info.epsilon
+"""Of the largest coefficient: what is too small for a double beside it is less than its rounding."""
 SHOWN_POLES = 8
 PAIR = 2
 
@@ -153,6 +155,8 @@ class DifferenceEquation:
         said += f"largest value; its frequency response is off by at most {response:.2g} of its value, at "
         said += f"{FREQUENCIES} frequencies below half of the sampling frequency."
         name = self.sampled.tf
+        if all(c == 0 for c in self.sampled.numerator):
+            return said, f"{name} is zero at every sample"
         if max(output, response) <= LARGE:
             return said, None
         return said, f"{name}: rounding costs {max(output, response):.2g}, more than {LARGE:g}"
@@ -185,24 +189,21 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
         roots = (*sampled.poles, *(sampled.zeros or ()))
         is_told = sampled.zeros is not None and all(z.imag == 0 or not z.imag.contains(0) for z in roots)
         if is_direct or not is_told or not order or gain == 0:
-            above = tuple(_double(c, sampled.tf) for c in sampled.numerator)
-            return DifferenceEquation(
-                sampled,
-                (FilterSection(above, tuple(_double(c, sampled.tf) for c in sampled.denominator[1:])),),
-            )
+            above, below = (_doubles(side, sampled.tf) for side in (sampled.numerator, sampled.denominator))
+            return DifferenceEquation(sampled, (FilterSection(above, below[1:]),))
         sections = []
         for poles, zeros in _paired(sampled.poles, sampled.zeros or ()):
             below = _below(poles, sampled.tf)
             scaled = [c * gain for c in monic(zeros)]
             gain = arb(1)
             scaled = [arb(0)] * (len(below) + 1 - len(scaled)) + scaled
-            sections.append(FilterSection(tuple(_double(c, sampled.tf) for c in scaled), below))
+            sections.append(FilterSection(_doubles(scaled, sampled.tf), below))
         return DifferenceEquation(sampled, tuple(sections))
 
 
 def _below(poles: Sequence[acb], name: str) -> tuple[float, ...]:
     """Return the coefficients after the first; a pole at 1 stays there, as the integrator it is."""
-    coefficients = [_double(c, name) for c in monic(poles)[1:]]
+    coefficients = list(_doubles(monic(poles), name)[1:])
     if len(coefficients) == PAIR and any(p == 1 for p in poles):
         # 1 + a_1 + a_2 = 0 exactly: the difference of two doubles this close is a double.
         coefficients[1] = -1.0 - coefficients[0]
@@ -255,13 +256,15 @@ def _exact_run(sampled: SampledTransferFunction, u: Sequence[float]) -> list[arb
         return outputs
 
 
-def _double(value: arb, name: str) -> float:
-    double = float(value.mid())
-    if not isfinite(double) or (value != 0 and abs(double) < float_info.min):
-        size = "large" if abs(double) > 1 else "small"
+def _doubles(values: Sequence[arb], name: str) -> tuple[float, ...]:
+    """Return the nearest doubles; zero for what is too small for one beside the largest, as exp(-1000) is."""
+    doubles = tuple(float(value.mid()) for value in values)
+    largest = max(map(abs, doubles))
+    if not all(map(isfinite, doubles)) or (any(v != 0 for v in values) and largest < SMALLEST):
+        size = "large" if largest > 1 else "small"
         message = f"a coefficient of {name} from sample to sample is too {size} for double precision"
         raise ModelError(Diagnostic("SF233", message, None, "choose other units, or another sampling time"))
-    return double
+    return tuple(0.0 if abs(double) < float_info.min else double for double in doubles)
 
 
 def _sum(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
@@ -335,7 +338,7 @@ class _StepCode:
             "matched": "with poles and zeros matched",
         }[sampling.method]
         if sampling.prewarp is not None:
-            how += f", exact at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
+            how += f", exact at {float(sampling.prewarp.nearly) / (2 * pi):.6g} Hz"
         lines = ["Difference equations, one step per sample.", "", *origin_lines(self.model, width)]
         lines += wrapped(
             f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width

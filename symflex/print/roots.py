@@ -74,12 +74,15 @@ def roots_of(located: PoleZeroMap, kind: str) -> tuple[Root, ...]:
 
 def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
     """Return every root once, a conjugate pair as the member above the real axis."""
+    from symflex.balls import opposite  # imports numpy
+
     lower = [r for r in roots if r.im < 0]
     entries = []
     for root in roots:
         if root.im < 0:
             continue
-        near = (r for r in lower if root.im > 0 and r.im.overlaps(-root.im) and r.re.overlaps(root.re))
+        image = opposite(root.im)
+        near = (r for r in lower if root.im > 0 and r.im.overlaps(image) and r.re.overlaps(root.re))
         if (partner := next(near, None)) is not None:
             lower.remove(partner)
         entries.append(PrintedRoot(root, partner is not None))

@@ -474,9 +474,9 @@ def _is_stable(coefficients: Mapping[int, arb]) -> bool:
     """Tell whether all roots of a polynomial lie left of the imaginary axis, by Routh's scheme."""
     degree = max(coefficients)
     first, second = ([coefficients.get(i, arb(0)) for i in range(n, -1, -2)] for n in (degree, degree - 1))
-    if first[0] < 0:
-        first, second = [-c for c in first], [-c for c in second]
     with precision(BITS):
+        if first[0] < 0:
+            first, second = [-c for c in first], [-c for c in second]
         for _ in range(degree):
             if not first[0] > 0 or not second[0] > 0:
                 return False

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from flint import acb, arb, fmpz
 
-from symflex.balls import precision
+from symflex.balls import opposite, precision
 from symflex.expressions.format import decimal_exponent
 
 GUARD_BITS = 32
@@ -246,8 +246,8 @@ def root_at_zero(order: int, reach: arb | float = 0) -> list[Root]:
 
 
 def _mirrored(a: Root, b: Root) -> bool:
-    # A sign changes without rounding.
-    return all(bool(x.overlaps(y)) or bool(x.overlaps(-y)) for x, y in ((a.re, b.re), (a.im, b.im)))
+    parts = ((a.re, b.re), (a.im, b.im))
+    return all(bool(x.overlaps(y)) or bool(x.overlaps(opposite(y))) for x, y in parts)
 
 
 def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:

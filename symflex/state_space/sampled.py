@@ -27,14 +27,13 @@ from symflex.balls import ball, precision, precisions
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
-from symflex.model.model import PI_NEARLY
+from symflex.model.model import PI_NEARLY, ExactValue
 from symflex.options import duration, finite, frequency
 from symflex.state_space.numeric import Arrays, Matrices, rounding_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from symflex.model import ExactValue
     from symflex.options import Stated
     from symflex.state_space.realise import StateSpace
 
@@ -63,7 +62,7 @@ class Sampling:
     sample: Fraction  # the sampling time [s]
     method: str = "zoh"  # one of :data:`METHODS`
     # Of ``tustin``: the angular frequency [rad/s] at which the value is that of the continuous system.
-    prewarp: Fraction | None = None
+    prewarp: ExactValue | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -77,7 +76,7 @@ class Sampling:
         if self.method != "tustin":
             message = f"prewarping applies to 'tustin', not to '{self.method}'"
             raise UsageError(Diagnostic("SF902", message))
-        if not (self.prewarp > 0 and ball(self.prewarp * self.sample) < arb.pi()):
+        if not 0 < self.prewarp.nearly * self.sample < PI_NEARLY:
             message = "the prewarping frequency must be positive and below half of the sampling frequency"
             hint = f"that is {1 / (2 * float(self.sample)):g} Hz"
             raise UsageError(Diagnostic("SF902", message, None, hint))
@@ -92,7 +91,8 @@ class Sampling:
         """The k of ``s = k (z - 1)/(z + 1)`` [1/s] at the current precision."""
         if self.prewarp is None:
             return 2 / ball(self.sample)
-        return ball(self.prewarp) / (ball(self.prewarp * self.sample) / 2).tan()
+        omega = ball(self.prewarp.rational) * arb.pi() ** self.prewarp.pi_power
+        return omega / (omega * self.seconds / 2).tan()
 
     def check_delay(self, delay: Fraction) -> None:
         """Refuse a dead time [s] that is negative, or takes too many states, with SF902."""
@@ -125,7 +125,7 @@ def sampling_of(
     if prewarp is None:
         return Sampling(time, method or "zoh")
     hertz = frequency(prewarp, "--prewarp", "10 or '0.1 kHz'", is_hertz=True)
-    return Sampling(time, method or "zoh", hertz * 2 * PI_NEARLY)
+    return Sampling(time, method or "zoh", ExactValue(2 * hertz, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,8 +244,8 @@ def _stepped(
     """Return the matrices of one step, towards whose end the input changes."""
     a, b, c, d = matrices
     ahead = whole * sampling.sample - delay
-    grown, newer = _held(a, b, ball(ahead))
-    before, older = _held(a, b, ball(sampling.sample - ahead))
+    grown, newer = held(a, b, ball(ahead))
+    before, older = held(a, b, ball(sampling.sample - ahead))
     return _with_past_inputs(grown * before, grown * older, newer, c, d, whole)
 
 
@@ -291,7 +291,7 @@ def _with_past_inputs(
     return _matrix(total, size), _matrix(given, m), _matrix(shown, size), arb_mat(p, m)
 
 
-def _held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
+def held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
     """Return ``exp(A t)``, and the integral of that times B from 0 to t."""
     n, m = a.nrows(), b.ncols()
     size = n + m

@@ -27,6 +27,7 @@ from symflex.analysis.explanation.coordinates import acting, in_one_way, measure
 from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
 from symflex.analysis.explanation.parts import Relation, Separation, relate, separate, varying, waves_of
 from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
+from symflex.balls import opposite
 from symflex.equations import Equations
 from symflex.equations.elimination import Determinants
 from symflex.errors import ModelError
@@ -265,7 +266,7 @@ def _with_roots(case: _Case, explained: ZeroExplanation, located: PoleZeroMap) -
     real = [root for root in right if root.is_real]
     negative = [root for root in located.zeros if root.is_real and root.re < 0]
     pairs = tuple(
-        RealZero(root, any(bool((-other.re).overlaps(root.re)) for other in negative)) for root in real
+        RealZero(root, any(bool(opposite(other.re).overlaps(root.re)) for other in negative)) for root in real
     )
     return replace(
         explained,

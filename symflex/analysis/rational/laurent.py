@@ -32,6 +32,7 @@ from symflex.balls import (
     bits_for_digits,
     current_bits,
     narrowed,
+    opposite,
     precision,
     precisions,
     raised,
@@ -468,7 +469,7 @@ def _at_zero(bound: AnyBoundFunction, root: Root, digits: int) -> PrincipalPart:
 
 def _are_conjugate(a: Root, b: Root) -> bool:
     """Tell whether two roots, each apart from all others, are a conjugate pair."""
-    return not a.is_real and bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(-b.im))
+    return not a.is_real and bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(opposite(b.im)))
 
 
 BRANCHES = 4

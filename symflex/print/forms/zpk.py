@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from flint import arb, fmpz
 
 from symflex.algebra import LAPLACE
-from symflex.balls import precision
+from symflex.balls import opposite, precision
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.model.loss_factors import check_causal
@@ -75,7 +75,7 @@ def _factors(roots: Sequence[Root], digits: int) -> list[Expression]:
         if root.is_zero:
             factors.append(power(s, root.multiplicity))
         elif root.is_real:
-            factors.append(power(sum_of([s, _decimal(-root.re, digits)]), root.multiplicity))
+            factors.append(power(sum_of([s, _decimal(opposite(root.re), digits)]), root.multiplicity))
         elif root.im > 0:
             with precision(root.working_bits()):
                 damping, stiffness = -2 * root.re, root.re**2 + root.im**2

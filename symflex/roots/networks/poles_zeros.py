@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.balls import UndecidedError, precision
+from symflex.balls import UndecidedError, opposite, precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.networks.anywhere import CRAMER, roots_in_disc, wanted_modes
@@ -343,7 +343,7 @@ def _pair(each: Eigenvalue, multiplicity: int) -> list[Root]:
     is_one = multiplicity == 1
     return [
         Root(arb(0), im, multiplicity, on_imaginary_axis=True, is_real=False, certified=is_one)
-        for im in (omega, -omega)
+        for im in (omega, opposite(omega))
     ]
 
 

@@ -13,6 +13,7 @@ import scipy.signal
 from symflex import loads
 from symflex.analysis.sampling import sampled_transfer_function
 from symflex.errors import ModelError
+from symflex.model import ExactValue
 from symflex.state_space.sampled import Sampling
 from tests.unit.analysis.systems import rational, words
 
@@ -61,7 +62,7 @@ def test_it_is_what_scipy_and_python_control_make_of_it():
 
 def test_tustin_is_right_at_the_frequency_it_is_prewarped_at():
     text, num, den = FUNCTIONS["notch"]
-    sampling = Sampling(H, "tustin", Fraction(30))
+    sampling = Sampling(H, "tustin", ExactValue(Fraction(30)))
     found = sampled_transfer_function(rational(text), sampling)
     s, z = 30j, np.exp(30j * float(H))
     assert found(z) == pytest.approx(np.polyval(num, s) / np.polyval(den, s), rel=1e-13)

@@ -207,6 +207,14 @@ def test_zpk_prints_as_many_digits_as_asked_for():
         assert len(constant.replace(".", "")) == digits
 
 
+def test_zpk_prints_every_digit_of_real_roots():
+    # s^2 + 3 s + 1: (3 -+ sqrt(5))/2.
+    tf = tf_of('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s^2 + 3*s + 1)"', "y", "u")
+    num, den = printed(tf, "zpk", 40)
+    roots = ("0.3819660112501051517954131656343618822797", "2.61803398874989484820458683436563811772")
+    assert (num, den) == ("1", f"(s + {roots[0]})*(s + {roots[1]})")
+
+
 def test_zpk_needs_every_value():
     with pytest.raises(ModelError) as caught:
         print_form(tf_of(TWO_MASS, "X", "F"), "zpk")

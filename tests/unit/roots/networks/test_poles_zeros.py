@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.balls import UndecidedError
+from symflex.balls import UndecidedError, opposite
 from symflex.roots.locate import locate
 from symflex.roots.networks import poles_zeros
 from symflex.roots.region import Band, Mode, Modes, Rectangle
@@ -40,6 +40,13 @@ def test_a_cantilever_in_pieces_has_the_frequencies_of_one():
         assert found.certificate.certified, count
         expected = [(b / (0.5 * count)) ** 2 * UNIT for b in CANTILEVER]
         assert omegas(found.poles) == pytest.approx(expected, rel=1e-11), count
+
+
+def test_both_poles_of_a_pair_have_the_digits_asked_for():
+    text = specification(spans(2, {0: "fixed"}), 'F = { force = "n_2" }', 'X = "n_2"')
+    pair = [root.im for root in located(text, Modes(1), 40).poles]
+    assert [bool(im.rel_accuracy_bits() > 130) for im in pair] == [True, True]
+    assert pair[0].overlaps(opposite(pair[1]))
 
 
 def test_zeros_where_a_force_acts_are_the_poles_of_what_is_held_there():
