@@ -25,10 +25,11 @@ from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
+from symflex.print.roots import SHORT_DIGITS, TERMINAL_COLUMNS, PrintedRoot
 from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes
 from symflex.roots.locate import locate
-from symflex.roots.root import decimals
+from symflex.roots.root import decimals, figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -138,17 +139,17 @@ class InputShaper:
         return passages_text(self._passages())
 
     def _passages(self) -> list[Passage]:
-        zero, digits = arb(0), min(self.digits, TEXT_DIGITS)
+        digits = min(self.digits, TEXT_DIGITS)
         lines = []
         for pole in self.poles:
             left = self.residual(pole.enclosure())
             # A bound below the range of doubles is none of 0.
             most = max(float(left.upper()), LEAST)
-            said = f"at most {most:.2g}" if left.contains(0) else f"{float(left.mid()):.6g}"
-            damping = f"{pole.damping_ratio() or 0:.6g}"
-            lines.append(f"  mode at {pole.frequency_hz():.6g} Hz, zeta {damping}: residual vibration {said}")
+            said = f"at most {most:.2g}" if left.contains(0) else figure(left, SHORT_DIGITS, trimmed=True)
+            *_, place, damping = PrintedRoot(pole, is_pair=True).cells(TERMINAL_COLUMNS, digits)
+            lines.append(f"  mode at {place} Hz, zeta {damping}: residual vibration {said}")
         rows = [("t [s]", "amplitude")]
-        rows += [(decimals(t, zero, digits).re, decimals(a, zero, digits).re) for t, a in self.impulses]
+        rows += [(figure(t, digits), figure(a, digits)) for t, a in self.impulses]
         heading = f"{self.tf}   {self.title}, {len(self.impulses)} impulses"
         notes = [f"  {self.note}"] if self.note else []
         return [Passage([heading, *notes]), Passage(lines), Passage([], rows)]

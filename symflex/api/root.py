@@ -11,7 +11,7 @@ import mpmath
 
 from symflex import roots as roots_room
 from symflex.balls import precision, to_complex_mpmath, to_mpmath
-from symflex.roots import HiddenRoot, decimals
+from symflex.roots import HiddenRoot, decimals, figure
 from symflex.roots import Root as CertifiedRoot
 
 if TYPE_CHECKING:
@@ -151,19 +151,11 @@ class RootTable(tuple[Root, ...]):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        printed = [root.certified_root.decimal(SHOWN_DIGITS).told for root in self]
-        rows = [
-            (
-                str(i),
-                p.re,
-                p.im,
-                f"{root.frequency_hz:.8g}",
-                "" if root.damping_ratio is None else f"{root.damping_ratio:.6g}",
-                f"{root.multiplicity}",
-            )
-            for i, (root, p) in enumerate(zip(self, printed, strict=True))
-        ]
-        return _table(("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "&zeta;", "times"), rows)
+        from symflex.print.roots import PAGE_COLUMNS, PrintedRoot
+
+        entries = (PrintedRoot(root.certified_root, is_pair=False) for root in self)
+        rows = [(str(i), *entry.cells(PAGE_COLUMNS, SHOWN_DIGITS)) for i, entry in enumerate(entries)]
+        return _table(("", *(column.head for column in PAGE_COLUMNS)), rows)
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -252,9 +244,8 @@ class ResidueTable(tuple[Residue, ...]):
     def _repr_html_(self) -> str:
         rows = []
         for residue in self:
-            pole = residue.pole.certified_root.decimal(SHOWN_DIGITS).told
-            parts = (mpmath.nstr(part, SHOWN_DIGITS) for part in (residue.value.real, residue.value.imag))
-            rows.append((pole.re, pole.im, *parts))
+            pole, value = residue.pole.certified_root, residue.principal.value
+            rows.append([figure(part, SHOWN_DIGITS) for part in (pole.re, pole.im, value.real, value.imag)])
         return _table(("Re pole [rad/s]", "Im pole [rad/s]", "Re residue", "Im residue"), rows)
 
 
@@ -336,11 +327,11 @@ class SensitivityTable(tuple[Sensitivity, ...]):
 
         rows = []
         for moved in self:
-            root = moved.root.certified_root.decimal(SHOWN_DIGITS).told
-            relative = None if moved.normalised is None else complex(moved.normalised)
-            share = (
-                (moved.status, "") if relative is None else (f"{relative.real:.6g}", f"{relative.imag:.6g}")
-            )
-            rows.append((moved.kind, root.re, root.im, escape_html(moved.parameter), *share))
+            root, relative = moved.root.certified_root, moved.moved.normalised
+            place = (figure(part, SHOWN_DIGITS) for part in (root.re, root.im))
+            share = (moved.status, "")
+            if relative is not None:
+                share = (figure(relative.real, 6), figure(relative.imag, 6))
+            rows.append((moved.kind, *place, escape_html(moved.parameter), *share))
         head = ("", "Re [rad/s]", "Im [rad/s]", "p", "Re (p/s) ds/dp", "Im (p/s) ds/dp")
         return _table(head, rows)

@@ -20,7 +20,7 @@ from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.axis import pieces
 from symflex.loops.stability_map import hertz, real_json
-from symflex.roots import decimals
+from symflex.roots import figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,7 +70,7 @@ class DynamicColocation:
     begins: bool
 
     def __repr__(self) -> str:
-        edge = "no end found" if self.edge is None else f"up to {float(hertz(self.edge).mid()):.6g} Hz"
+        edge = "no end found" if self.edge is None else f"up to {figure(hertz(self.edge), 6)} Hz"
         return f"<DynamicColocation {self.tf} with {self.reference}: {edge if self.begins else 'nowhere'}>"
 
     def to_json_dict(self) -> dict[str, object]:
@@ -99,8 +99,7 @@ class DynamicColocation:
             return f"{head}: not at {low:.6g} Hz, where the search begins{status}"
         if self.edge is None:
             return f"{head}: from {low:.6g} Hz to {high:.6g} Hz, all that was examined"
-        printed = decimals(hertz(self.edge), arb(0), 12)
-        return f"{head}: up to {printed.re} Hz, where {self.parting}{status}"
+        return f"{head}: up to {figure(hertz(self.edge), 12)} Hz, where {self.parting}{status}"
 
     @property
     def parting(self) -> str:

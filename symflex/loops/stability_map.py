@@ -12,7 +12,7 @@ from flint import arb
 from symflex.balls import ball, precision
 from symflex.loops.apart import PolesApart
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
-from symflex.roots import decimals
+from symflex.roots import decimals, figure
 from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 
 if TYPE_CHECKING:
@@ -318,6 +318,11 @@ def hertz(omega: arb) -> arb:
         return omega / (2 * arb.pi())
 
 
+def short_hertz(omega: arb) -> str:
+    """Return a frequency in rad/s as text in Hz."""
+    return figure(hertz(omega), SHORT_DIGITS, trimmed=True)
+
+
 def degrees(angle: arb) -> arb:
     """Return an angle in degrees from one in rad."""
     with precision(max(BITS, angle.bits())):
@@ -468,7 +473,7 @@ def _between(interval: GainInterval, stability: StabilityMap) -> str:
 def _exact(value: arb, digits: int) -> str:
     if value.is_exact() and value == value.floor() and abs(value) < 10**digits:
         return str(int(value.unique_fmpz() or 0))
-    return decimals(value, arb(0), digits).told.re
+    return figure(value, digits)
 
 
 def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
@@ -485,8 +490,8 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
             return ("no solution", "")
         infinite = any(c.is_infinite for c in boundary.crossings)
         return ("infinite" if infinite else "on the axis", "")
-    omegas = [decimals(w, arb(0), digits).told.re for w in boundary.frequencies]
-    cycles = [f"{float(hertz(w).mid()):.{SHORT_DIGITS}g}" for w in boundary.frequencies]
+    omegas = [figure(w, digits) for w in boundary.frequencies]
+    cycles = [short_hertz(w) for w in boundary.frequencies]
     return ", ".join(omegas), ", ".join(cycles)
 
 
@@ -494,19 +499,16 @@ def _margins(stability: StabilityMap) -> Passage:
     lines = [f"{INDENT}margins of {stability.gain} = {_number(stability.nominal)}"]
     rows: list[tuple[str, ...]] = []
     for margin in stability.gain_margins:
-        places = ", ".join(
-            f"{float(hertz(w).mid()):.{SHORT_DIGITS}g} Hz" for w in margin.boundary.frequencies
-        )
-        factor = decimals(margin.factor, arb(0), SHORT_DIGITS).told.re
-        size = decimals(decibels(margin.factor), arb(0), SHORT_DIGITS).told.re
+        places = ", ".join(f"{short_hertz(w)} Hz" for w in margin.boundary.frequencies)
+        factor, size = figure(margin.factor, SHORT_DIGITS), figure(decibels(margin.factor), SHORT_DIGITS)
         rows.append(("gain", f"x {factor}", f"{size} dB", places))
     worst = stability.phase_margin
     for each in stability.phase_margins:
         angle = degrees(each.angle)
         direction = "lag" if angle > 0 else "lead"
-        place = f"{float(hertz(each.frequency).mid()):.{SHORT_DIGITS}g} Hz"
+        place = f"{short_hertz(each.frequency)} Hz"
         flag = ", the smallest" if each is worst and len(stability.phase_margins) > 1 else ""
-        shown = decimals(abs(angle), arb(0), SHORT_DIGITS).told.re
+        shown = figure(abs(angle), SHORT_DIGITS)
         rows.append(("phase", f"{shown} deg", direction, place + flag))
     if stability.margin_beyond is not None and stability.radius is not None:
         place = f"all above {stability.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
@@ -521,9 +523,10 @@ def bandwidth_text(gain: str, bandwidth: AllowedBandwidth) -> str:
     at = f"{gain} = {_number(bandwidth.gain)}"
     if bandwidth.frequency is None or bandwidth.phase_margin is None:
         return f"none: at {at} the loop gain is below one at the lowest frequencies"
-    place = f"{float(hertz(bandwidth.frequency).mid()):.{SHORT_DIGITS}g} Hz at {at}"
-    angle = float(degrees(bandwidth.phase_margin).mid())
-    shown = f"{place}, phase margin {abs(angle):.3g} deg {'lag' if angle > 0 else 'lead'}"
+    place = f"{short_hertz(bandwidth.frequency)} Hz at {at}"
+    angle = degrees(bandwidth.phase_margin)
+    size = figure(abs(angle), 3, trimmed=True)
+    shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
     return shown if bandwidth.is_limited else f"at least {shown}"
 
 

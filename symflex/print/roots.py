@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
+SHORT_DIGITS: Final = 6
+"""Of frequencies and damping ratios in a terminal."""
 _FREQUENCY_BITS: Final = 256
 
 
@@ -89,27 +91,27 @@ def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
     return entries + [PrintedRoot(root, is_pair=False) for root in lower]
 
 
-def _frequency(root: Root, printed: RootDecimals, digits: int) -> str:
+def _alone(value: arb, digits: int, *, trimmed: bool = False) -> str:
+    """Return a number that follows from a root, all of its digits right."""
+    from symflex.roots.root import NEARLY_ZERO, figure  # imports numpy
+
+    if value.contains(0) and not value.is_zero():
+        return NEARLY_ZERO
+    return figure(value, digits, trimmed=trimmed)
+
+
+def _frequency(root: Root, digits: int, *, trimmed: bool = False) -> str:
     """Return the natural frequency abs(s)/(2 pi) [Hz]."""
     from symflex.balls import precision  # imports numpy
-    from symflex.roots import decimals
 
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         frequency = root.natural_frequency() / (2 * arb.pi())
-    return decimals(frequency, arb(0), digits).told.re
+    return _alone(frequency, digits, trimmed=trimmed)
 
 
-def _angular_frequency(root: Root, printed: RootDecimals, digits: int) -> str:
-    """Return abs(s) [rad/s]."""
-    from symflex.roots import decimals  # imports numpy
-
-    return decimals(root.natural_frequency(), arb(0), digits).told.re
-
-
-def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
+def _damping(root: Root, digits: int, *, trimmed: bool = False) -> str:
     """Return ``-re/abs(s)``, empty at 0 and where s may be 0."""
     from symflex.balls import precision  # imports numpy
-    from symflex.roots import decimals
 
     frequency = root.natural_frequency()
     if root.is_zero or not frequency > 0:
@@ -120,43 +122,47 @@ def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
         return "1" if root.re < 0 else "-1"
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         ratio = -root.re / frequency
-    return decimals(ratio, arb(0), digits).told.re
-
-
-def _plain_damping(root: Root, printed: RootDecimals, digits: int) -> str:
-    """Return the damping ratio as a double; nearly zero where only the real part's enclosure holds 0."""
-    zeta = root.damping_ratio()
-    return "" if zeta is None else f"{zeta:.6g}" if not printed.re.startswith("0e") else printed.told.re
+    return _alone(ratio, digits, trimmed=trimmed)
 
 
 _REAL: Final = RootColumn(
     "Re s",
     ("Re $s$",),
     "rad/s",
-    lambda root, printed, digits: printed.re,
+    lambda root, printed, digits: _alone(root.re, digits),
     lambda root: root.on_imaginary_axis,
 )
 _IMAGINARY: Final = RootColumn(
     "Im s",
     ("Im $s$",),
     "rad/s",
-    lambda root, printed, digits: printed.im,
+    lambda root, printed, digits: _alone(root.im, digits),
     lambda root: root.is_real,
     is_mirrored=True,
 )
 _RADIUS: Final = RootColumn("radius", ("Radius",), "rad/s", lambda root, printed, digits: printed.radius)
-_HERTZ: Final = RootColumn("frequency", ("Frequency",), "Hz", _frequency, lambda root: root.is_zero)
-_ANGULAR: Final = RootColumn(
-    "frequency", ("Frequency",), "rad/s", _angular_frequency, lambda root: root.is_zero
+_HERTZ: Final = RootColumn(
+    "frequency",
+    ("Frequency",),
+    "Hz",
+    lambda root, printed, digits: _frequency(root, digits),
+    lambda root: root.is_zero,
+)
+_ANGULAR: Final = replace(
+    _HERTZ, unit="rad/s", text=lambda root, printed, digits: _alone(root.natural_frequency(), digits)
 )
 _RATIO: Final = RootColumn(
-    "damping ratio", ("Damping", "ratio"), "", _damping, lambda root: root.on_imaginary_axis
+    "damping ratio",
+    ("Damping", "ratio"),
+    "",
+    lambda root, printed, digits: _damping(root, digits),
+    lambda root: root.on_imaginary_axis,
 )
 _TIMES: Final = RootColumn(
     "multiplicity", ("Multi-", "plicity"), "", lambda root, printed, digits: str(root.multiplicity)
 )
 
-_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.told.re)
+_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.told.re)  # beside a radius
 _TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.told.im)
 PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
 """Of tables on web pages."""
@@ -168,15 +174,15 @@ TERMINAL_COLUMNS: Final = (
     RootColumn("Re", (), "rad/s", _TOLD_REAL.text),
     RootColumn("Im", (), "rad/s", _TOLD_IMAGINARY.text, is_mirrored=True),
     RootColumn("radius", (), "", _RADIUS.text),
-    RootColumn("f", (), "Hz", lambda root, printed, digits: f"{root.frequency_hz():.6g}"),
-    RootColumn("zeta", (), "", _plain_damping),
+    RootColumn("f", (), "Hz", lambda root, printed, digits: _frequency(root, SHORT_DIGITS, trimmed=True)),
+    RootColumn("zeta", (), "", lambda root, printed, digits: _damping(root, SHORT_DIGITS, trimmed=True)),
 )
 """Of tables in a terminal; the first two, the parts of s, stand below each other where lines are short."""
 
 
 def _loss_factor(root: Root, printed: RootDecimals, digits: int) -> str:
     factor = root.loss_factor()
-    return "" if factor is None else f"{float(factor.mid()):.{min(digits, 6)}g}"
+    return "" if factor is None else _alone(factor, min(digits, SHORT_DIGITS), trimmed=True)
 
 
 LOSS_FACTORS: Final = {

@@ -10,4 +10,4 @@ from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, fi
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
-from symflex.roots.root import Root, RootDecimals, decimals
+from symflex.roots.root import Root, RootDecimals, decimals, figure

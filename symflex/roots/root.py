@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 
 from flint import acb, arb, fmpz
@@ -24,6 +25,8 @@ ROUNDING = 1e-15
 """What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
 NEIGHBOURS = 8
 """Modes of nearly the same frequency among which images of a root are looked for."""
+FEWEST_ALONE = 3
+"""Digits below which a number that stands alone says how far it may be off."""
 HUNDRED = 100
 """Two digits are fewer."""
 
@@ -167,6 +170,33 @@ def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
     return RootDecimals(shown_re, shown_im, _round_up(re_error, im_error))
 
 
+def figure(value: arb, digits: int, *, trimmed: bool = False) -> str:
+    """Print a real number that stands alone with at most ``digits`` digits, all of them right.
+
+    Every number in the ball lies within half a unit of the last digit. Where fewer than three digits do so,
+    the radius follows. ``trimmed`` takes zeros away from the end, as ``g`` does.
+
+    Examples
+    --------
+    >>> figure(arb(2) / 3, 6), figure(arb("0.123456", 1e-4), 6), figure(arb(1.75, 0.6), 6)
+    ('0.666667', '0.123', '1.75 +- 0.61')
+    >>> figure(arb(0, 1e-16), 6), figure(arb(1) / 2, 6), figure(arb(1) / 2, 6, trimmed=True)
+    ('0 +- 1.1e-16', '0.500000', '0.5')
+    """
+    middle, radius = exact_fraction(value), exact_fraction(value.rad())
+    if middle == 0 == radius:
+        return "0"
+    leading = decimal_exponent(abs(middle or radius))
+    most = min(digits, leading - decimal_exponent(radius) + 1) if radius else digits
+    for count in range(most, min(digits, FEWEST_ALONE) - 1, -1):
+        shown, last, error = _rounded(middle, leading - count + 1, count)
+        if 2 * (error + radius) <= Fraction(10) ** last:
+            return f"{float(_format(shown, last)):.{count}g}" if trimmed else _format(shown, last)
+    shown, last, error = _rounded(middle, decimal_exponent(radius) - 1, digits)
+    size = str(Decimal(_round_up(error + radius))).lower().replace("e+", "e")
+    return f"{_format(shown, last) if shown else 0} +- {size}"
+
+
 def overlap(a: Root, b: Root) -> bool:
     """Tell whether two roots may be the same.
 
@@ -285,12 +315,18 @@ def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
     last = decimal_exponent(abs(middle or radius)) - digits + 1
     if radius:
         last = max(last, decimal_exponent(radius) + 1)
+    count, last, error = _rounded(middle, last, digits)
+    return _format(count, last), error + radius
+
+
+def _rounded(value: Fraction, last: int, digits: int) -> tuple[int, int, Fraction]:
+    """Return the multiple of ``10**last`` nearest to a number, that power, and what rounding changes."""
     unit = Fraction(10) ** last
-    count = round(middle / unit)
-    error = abs(middle - count * unit) + radius
+    count = round(value / unit)
+    error = abs(value - count * unit)
     if abs(count) == 10**digits:  # 9.996 became 10.00, one digit too many
         count, last = count // 10, last + 1
-    return _format(count, last), error
+    return count, last, error
 
 
 def _format(count: int, last: int) -> str:

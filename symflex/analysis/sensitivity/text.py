@@ -9,7 +9,7 @@ import sympy
 from flint import arb
 
 from symflex.balls import precision
-from symflex.roots.root import decimals
+from symflex.roots.root import decimals, figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,7 +108,7 @@ def _row(derivative: RootDerivative) -> tuple[str, ...]:
 
 
 def _number(value: arb) -> str:
-    return decimals(value, arb(0), DIGITS).told.re
+    return figure(value, DIGITS)
 
 
 def _negated(text: str) -> str:

@@ -12,7 +12,7 @@ from flint import arb
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.print.text import aligned, broken
-from symflex.roots.root import RootDecimals, decimals
+from symflex.roots.root import RootDecimals, decimals, figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,6 +137,10 @@ class EnclosedResponse:
         """Return a number in decimals, as ``re`` with its ``radius``."""
         return decimals(ball, arb(0), self.digits)
 
+    def _told_json(self, name: str, ball: arb) -> dict[str, object]:
+        told = self.told(ball)
+        return {name: told.re, f"{name}_radius": told.radius}
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the response as ``symflex respond --json`` prints it."""
         told = [self.told(y) for y in self.enclosures]
@@ -150,10 +154,12 @@ class EnclosedResponse:
             "value": [t.re for t in told],
             "radius": [t.radius for t in told],
             "impulses": [
-                {"time": self.told(i.time).re, "order": i.order, "weight": self.told(i.weight).re}
+                {**self._told_json("time", i.time), "order": i.order, **self._told_json("weight", i.weight)}
                 for i in self.impulses
             ],
-            "jumps": [{"time": self.told(j.time).re, "height": self.told(j.height).re} for j in self.jumps],
+            "jumps": [
+                self._told_json("time", j.time) | self._told_json("height", j.height) for j in self.jumps
+            ],
         }
         document |= {"shaper": self.shaper} if self.shaper else {}
         return document if self.reason is None else {**document, "reason": self.reason}
@@ -190,7 +196,7 @@ def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     step = max(1, -(-(count - 1) // (ROWS - 1)))
     rows = [("t [s]", "value", "radius")]
     for i in range(0, count, step):
-        rows.append((f"{response.times[i]:.6g}", *_told(response.enclosures[i], response.digits)))
+        rows.append((f"{response.times[i]:.12g}", *_told(response.enclosures[i], response.digits)))
     lines += aligned(rows, "  ")
     if step > 1:
         lines += ["", f"  every {step} of {count} points; --json and -o FILE.csv have them all"]
@@ -204,7 +210,7 @@ def _told(ball: arb, digits: int) -> tuple[str, str]:
 
 
 def _short(ball: arb) -> str:
-    return decimals(ball, arb(0), SHORT_DIGITS).told.re
+    return figure(ball, SHORT_DIGITS)
 
 
 def _impulse(response: EnclosedResponse, impulse: ImpulseAt) -> str:

@@ -147,7 +147,7 @@ class SampleTimes:
         in the first list.
         """
         off = (arb(0) if delay is None else delay) + (self.origin or 0)
-        if self.step is None:
+        if self.step is None or not len(self):
             return [arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)]
         count = len(self) - start
         width = isqrt(max(count - 1, 0)) + 1

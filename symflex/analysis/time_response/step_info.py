@@ -40,7 +40,7 @@ from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
-from symflex.roots.root import decimals
+from symflex.roots.root import figure
 from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class StepInfo:
             if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
-                said = decimals(ball, arb(0), digits).re
+                said = figure(ball, digits)
             rows.append((name, said if of in ("", "1") else f"{said} {of}"))
         return rows
 

@@ -212,8 +212,10 @@ def _cell(column: RootColumn, entry: PrintedRoot, decimal: str) -> str:
     """Return a decimal as a cell; a zero that is not exact is nearly zero."""
     if not decimal:
         return "{--}"
-    is_zero = decimal.removeprefix(r"\pm ").partition("e")[0] == "0"
-    return r"{$\approx 0$}" if is_zero and not column.is_exact(entry.root) else decimal
+    is_zero = decimal.removeprefix(r"\pm ").lstrip("~") == "0"
+    if is_zero and not column.is_exact(entry.root):
+        return r"{$\approx 0$}"
+    return f"{{${decimal.replace('+-', chr(92) + 'pm')}$}}" if "+-" in decimal else decimal
 
 
 LINES_PER_PART: Final = 40

@@ -36,6 +36,7 @@ from symflex.report.sections.formulas import ratio
 from symflex.report.study import Study, attempt, said
 from symflex.roots import PoleZeroMap
 from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.roots.root import figure
 
 DIGITS: Final = 10
 LONGEST: Final = 80
@@ -213,7 +214,7 @@ def _together(colocation: DynamicColocation) -> Block:
 
 
 def decimal(value: arb) -> str:
-    """Return the middle of an enclosure with ten digits.
+    """Return an enclosure with at most ten digits.
 
     Examples
     --------
@@ -221,4 +222,4 @@ def decimal(value: arb) -> str:
     >>> decimal(arb(1) / 3)
     '0.3333333333'
     """
-    return f"{float(value.mid()):.{DIGITS}g}"
+    return figure(value, DIGITS, trimmed=True)
