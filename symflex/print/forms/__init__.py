@@ -11,7 +11,7 @@ from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Name, Number, Sum, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
-from symflex.print.forms.definitions import definitions_form
+from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.polynomial import (
@@ -170,7 +170,11 @@ def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arran
     """Return a form, definitions closed where that is shorter and no form was asked for."""
 
     def shortest(own: TransferFunction) -> PrintedForm:
-        return min((_made(own, name, digits) for name in ([form] if form else _candidates(own))), key=_length)
+        made = (_made(own, name, digits) for name in ([form] if form else _candidates(own)))
+        return min(made, key=lambda f: (is_hiding(f), _length(f)))
+
+    def is_hiding(made: PrintedForm) -> bool:
+        return not (form or tf.is_large or shows_origin(tf.ratio, made.num, made.den))
 
     opened = shortest(tf)
     is_kept = form is None and bool(tf.definitions)
@@ -179,7 +183,8 @@ def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arran
     if closed is None or _order(closed) > _order(tf):
         return opened
     kept = replace(shortest(closed), source=closed)
-    return kept if CLOSED * _read(kept) < _read(opened) else opened
+    is_better = is_hiding(opened) or not is_hiding(kept)
+    return kept if is_better and CLOSED * _read(kept) < _read(opened) else opened
 
 
 def _read(form: PrintedForm) -> float:

@@ -28,7 +28,9 @@ from symflex.expressions import (
     Name,
     Negative,
     Number,
+    Power,
     Product,
+    Quotient,
     Sum,
     format_expression,
     names,
@@ -168,7 +170,7 @@ class Arranger:
             content = polynomial.term_content()
             rest = self.collected(polynomial / content, nested=True)
             tried.insert(1, product_of([self._flat(content), rest]))
-        return min([min(tried, key=reading), *self._with_gain(polynomial)], key=length)
+        return min([min(tried, key=self._reading), *self._with_gain(polynomial)], key=length)
 
     def _with_gain(self, polynomial: fmpz_mpoly) -> Iterable[Expression]:
         """Yield ``s*(s + a)*(s + b) + K``: what one symbol multiplies, after factors that are of s."""
@@ -247,7 +249,12 @@ class Arranger:
             return self._sum(terms)
         parts = sorted(self._parts(terms), key=lambda p: p[0])
         nested = sum_of(_share_sums([part for _, part in parts]))
-        return min(nested, self._sum(terms), key=reading) if len(terms) <= SHORT else nested
+        if len(terms) > SHORT:
+            return nested
+        tried = [nested, self._sum(terms)]
+        if max(m[0] for m in terms) == SECOND and not self.apart:
+            tried.append(self.collected(self.ring.context.from_dict(terms)))
+        return min(tried, key=self._reading)
 
     def _parts(self, terms: dict[tuple[int, ...], int]) -> list[tuple[tuple[int, ...], Expression]]:
         """Return the groups of a sum with their places in print."""
@@ -297,6 +304,10 @@ class Arranger:
         """Return number, pi, parameters in declared order, s, closed sums."""
         factors = [self._powers(i, monomial[i]) for i in self._print_order if monomial[i]]
         return product_of([number(coefficient), *factors])
+
+    def _reading(self, expression: Expression) -> float:
+        """Return the length of an expression, and more of nested ones; beside functions, of fewer of them."""
+        return reading(expression, are_quadratics=not self.apart)
 
     @cached_property
     def _print_order(self) -> tuple[int, ...]:
@@ -525,13 +536,44 @@ def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
     return Factored(ring, Fraction(unit), tuple(factors))
 
 
-def reading(expression: Expression) -> float:
+def reading(expression: Expression, *, are_quadratics: bool = True) -> float:
     """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``.
 
-    So is ``omega*(2*zeta*s + omega) + s^2``.
+    So are ``omega*(2*zeta*s + omega) + s^2``, and all quadratics in s that are not written by its powers.
     """
     sums = {e for e in nodes(expression) if isinstance(e, Sum) and any(map(_is_nested, e.terms))}
+    if are_quadratics:
+        sums |= {e for e in nodes(expression) if isinstance(e, Sum) and _is_quadratic(e)}
     return length(expression) + (NESTED - 1) * length(*sums)
+
+
+def _is_quadratic(total: Sum) -> bool:
+    """Tell whether a sum has degree 2 in s and is not by its powers, as ``a*(b*s^2 + 1) + c`` is not.
+
+    ``m*n*s^2 + (b*s + k)*(m + n)`` says more than its powers.
+    """
+    if power_of_s(total) != SECOND:
+        return False
+    factors = [[f for f in _factors(t) if not isinstance(f, Number)] for t in total.terms]
+    inner = [[f for f in each if isinstance(f, Sum)] for each in factors if len(each) > 1]
+    degrees = [d for t in total.terms if (d := power_of_s(t))]
+    return any(len(f) == 1 and power_of_s(f[0]) for f in inner) or len({*degrees}) < len(degrees)
+
+
+def power_of_s(expression: Expression, choose: Callable[[Iterable[int]], int] = max) -> int:
+    """Return the power of s in a product, of a sum's that of the term that is chosen: its degree in s."""
+    match expression:
+        case Sum(terms):
+            return choose(power_of_s(t, choose) for t in terms)
+        case Product(factors):
+            return sum(power_of_s(f, choose) for f in factors)
+        case Quotient(above, below):
+            return power_of_s(above, choose) - power_of_s(below, choose)
+        case Negative(operand):
+            return power_of_s(operand, choose)
+        case Power(base, Number(exponent)):
+            return power_of_s(base, choose) * int(exponent)
+    return int(expression == Name(LAPLACE))
 
 
 def _is_nested(term: Expression) -> bool:

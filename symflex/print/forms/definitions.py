@@ -7,9 +7,9 @@ from functools import partial
 from math import gcd
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, Ring, degree_in
+from symflex.algebra import LAPLACE, Factored, Ring, degree_in
 from symflex.expressions import Expression, Name, Product, Sum, fold, names, nodes, power, product_of, sum_of
-from symflex.print.forms.arrange import Arranger, length, reading
+from symflex.print.forms.arrange import Arranger, length, power_of_s, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -48,12 +48,24 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     num, den = (rebuilt(e, tidied) for e in _rewritten(tf, arranger))
     if tf.closed is not None:
         closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, tf.closed))
+        shown = (shows_origin(tf.ratio, closed_num, closed_den), shows_origin(tf.ratio, num, den))
         # A rational factor may stand differently in the two: take both parts from one of them then.
-        if _same_parts(tf, tf.closed):
+        if shown[0] != shown[1]:
+            num, den = (closed_num, closed_den) if shown[0] else (num, den)
+        elif _same_parts(tf, tf.closed):
             num, den = min(closed_num, num, key=reading), min(closed_den, den, key=reading)
         elif reading(closed_num) + reading(closed_den) <= reading(num) + reading(den):
             num, den = closed_num, closed_den
     return PrintedForm("definitions", num, den)
+
+
+def shows_origin(ratio: Factored, num: Expression, den: Expression) -> bool:
+    """Tell whether a fraction shows a function's zeros and poles at s = 0 as powers of s.
+
+    In ``beta*(s + a) - a*beta_1 - a*beta_2`` with ``beta = beta_1 + beta_2`` a factor s is hidden.
+    """
+    at_zero = ratio.exponent_of(ratio.ring.generator(LAPLACE))
+    return power_of_s(num, min) - power_of_s(den, min) == at_zero
 
 
 def tidied_sum(part: Expression, order: Mapping[str, int]) -> Expression:

@@ -721,3 +721,79 @@ flexure = { type = "spring", between = ["x", "ground"], k = "k_f" }
     num, den = printed(tf_of(text, "V", "x_r"))
     assert num == "K*(m*s^2 + k + k_f)"
     assert "(m*s^2 + k + k_f)" in den
+
+
+def of_network(elements, names="R_1 R_2 R_3 C_1 C_2"):
+    """Return the voltage gain from node in to node out of resistors and capacitors between nodes."""
+    parts = [line.split() for line in elements.split(";")]
+    kinds = {"R": "resistor", "C": "capacitor"}
+    lines = [
+        f'e{i} = {{ type = "{kinds[n[0]]}", between = ["{a}", "{b}"], {n[0]} = "{n}" }}'
+        for i, (n, a, b) in enumerate(parts)
+        if n != "op"
+    ]
+    lines += [
+        f'amp{i} = {{ type = "op_amp", inputs = ["ground", "{a}"], out = "{b}" }}'
+        for i, (n, a, b) in enumerate(parts)
+        if n == "op"
+    ]
+    values = ", ".join(f"{name} = {{}}" for name in names.split())
+    text = f"symflex = 1\nparameters = {{ {values} }}\n[elements]\n" + "\n".join(lines)
+    return tf_of(text + '\n[inputs]\nv_i = { voltage = "in" }\n[outputs]\nv_o = "out"\n', "v_o", "v_i")
+
+
+def test_filters_of_second_order_are_printed_by_powers_of_s():
+    # Multiple feedback (Franco, Design with Operational Amplifiers, 4th ed. 2014, 3.5), Tow and Thomas (3.7)
+    # with unit inverter, and a bridged T, by hand.
+    filters = {
+        "R_1 in a; R_2 a ground; R_3 n out; C_1 a out; C_2 a n; op n out": (
+            "-R_2*R_3*C_2*s",
+            "R_1*R_2*R_3*C_1*C_2*s^2 + R_1*R_2*(C_1 + C_2)*s + R_1 + R_2",
+        ),
+        "R_1 in a; R_2 a b; C_1 a b; op a b; R_3 b c; C_2 c d; op c d; R_4 d e; R_4 e out; op e out; "
+        "R_5 out a": (
+            "-R_2*R_5",
+            "R_1*(R_2*R_3*R_5*C_1*C_2*s^2 + R_3*R_5*C_2*s + R_2)",
+        ),
+        "C_1 in a; C_2 a out; R_1 a ground; R_2 in out": (
+            "R_1*R_2*C_1*C_2*s^2 + R_1*(C_1 + C_2)*s + 1",
+            "R_1*R_2*C_1*C_2*s^2 + (R_1*(C_1 + C_2) + R_2*C_2)*s + 1",
+        ),
+    }
+    for elements, sides in filters.items():
+        assert printed(of_network(elements, "R_1 R_2 R_3 R_4 R_5 C_1 C_2")) == sides, elements
+
+
+def test_a_product_of_two_sums_stays_what_it_means():
+    # The motor of a servo: its mechanical and its electrical part (Ogata, Modern Control Engineering).
+    text = """symflex = 1
+parameters = { J = {}, b = {}, K = {}, R = {}, L = {} }
+equations = { unknowns = ["w", "i"], equations = ["J*s*w + b*w = K*i", "L*s*i + R*i = u - K*w"] }
+inputs = { u = {} }
+outputs = { theta = "w/s" }
+"""
+    assert printed(tf_of(text, "theta", "u")) == ("K", "s*((J*s + b)*(L*s + R) + K^2)")
+
+
+def test_a_pole_at_zero_is_seen_beside_a_closed_sum():
+    # Point kinetics: N/rho = 1/(s*(Lambda + sum(beta_i/(s + lambda_i)))) (Hetrick, Dynamics of Nuclear
+    # Reactors, 1971), where beta is the sum of the beta_i.
+    for n in (2, 3, 4):
+        names = [f"{x}_{i}" for x in ("beta", "lambda", "c") for i in range(1, n + 1)]
+        betas, rates, unknowns = names[:n], names[n : 2 * n], names[2 * n :]
+        fed = " + ".join(f"{rate}*{c}" for rate, c in zip(rates, unknowns, strict=True))
+        parts = zip(betas, rates, unknowns, strict=True)
+        rows = [f"s*{c} = {beta}*n - {rate}*{c}" for beta, rate, c in parts]
+        text = f"""symflex = 1
+parameters = {{ Lambda = {{}}, {", ".join(f"{x} = {{}}" for x in betas + rates)} }}
+definitions = {{ beta = "{" + ".join(betas)}" }}
+[equations]
+unknowns = {["n", *unknowns]}
+equations = {[f"Lambda*s*n = rho - beta*n + {fed}", *rows]}
+[inputs]
+rho = {{}}
+[outputs]
+N = "n"
+"""
+        den = printed(tf_of(text, "N", "rho"))[1]
+        assert den.startswith("s*("), (n, den)
