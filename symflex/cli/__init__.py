@@ -40,6 +40,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "examples": ("examples", "List the example models that come with symflex, or copy one."),
     "elements": ("library", "List the element and block library."),
     "units": ("library", "List the units and prefixes that quantities may have."),
+    "schema": ("library", "Write the JSON Schema of specifications, for editors."),
 }
 """The module of each, in which its function has its name, and what it does."""
 

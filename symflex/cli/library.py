@@ -342,3 +342,27 @@ def in_si(unit: Unit) -> str:
 def _power(factor: Fraction) -> str:
     digits = max(factor.numerator, factor.denominator)
     return f"10^{'-' if factor < 1 else ''}{len(str(digits)) - 1}"
+
+
+@click.command("schema")
+@click.option("-o", "--output", type=click.Path(), help="File to write.  [default: standard output]")
+@reporting
+def schema(*, output: str | None) -> int:
+    """Write the JSON Schema of specifications, for editors that complete and check TOML.
+
+    Begin a specification with '#:schema symflex.schema.json', or tell your editor once for all files named
+    *.symflex.toml. What a schema cannot know, such as units and names, 'symflex check' reports.
+    """
+    import json
+
+    from symflex.model.schema import json_schema
+
+    text = json.dumps(json_schema(), indent=1, ensure_ascii=False) + "\n"
+    if output is None:
+        say(text, nl=False)
+        return 0
+    from symflex.files.write import write_atomically
+
+    write_atomically(Path(output), text.encode())
+    note(f"wrote {output}")
+    return 0

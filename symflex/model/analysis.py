@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
+ANALYSIS_KEYS = ("band", "modes", "digits")
+FIGURE_KEYS = ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc")
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
 IN_TIME = ("step", "impulse")
@@ -50,7 +52,7 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
     """Return the defaults for the commands."""
     if section is None:
         return Analysis()
-    reader.keys(section, ("band", "modes", "digits"), "[analysis]")
+    reader.keys(section, ANALYSIS_KEYS, "[analysis]")
     band = section.get("band")
     return Analysis(
         _band(reader, band) if band else None,
@@ -139,7 +141,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc"), what)
+        reader.keys(table, FIGURE_KEYS, what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
