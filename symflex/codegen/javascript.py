@@ -135,22 +135,22 @@ def _quotient(x: Part, y: Real) -> Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class ComplexParts:
     """A complex number."""
 
     re: Part
     im: Part = None
 
 
-_ONE = Pair(Real("1.0"))
-_S = Pair(Real("s_re"), Real("s_im"))
+_ONE = ComplexParts(Real("1.0"))
+_S = ComplexParts(Real("s_re"), Real("s_im"))
 
 
 def _text(x: Part) -> str:
     return "0.0" if x is None else x.text
 
 
-def _size(z: Pair) -> Real:
+def _size(z: ComplexParts) -> Real:
     return Real(f"size({_text(z.re)}, {_text(z.im)})" if z.im else f"Math.abs({_text(z.re)})")
 
 
@@ -165,7 +165,7 @@ class PairBody:
     taken: set[str]  # identifiers that a constant cannot have
     depth: int = 1  # how far statements are indented
     lines: list[str] = field(default_factory=list)
-    known: dict[str, Pair | str] = field(default_factory=dict)  # assigned values; of lists, the array
+    known: dict[str, ComplexParts | str] = field(default_factory=dict)  # assigned values; of lists, the array
     shared: dict[str, str] = field(default_factory=dict)  # constants by what they were made of
 
     def within(self, depth: int) -> PairBody:
@@ -183,12 +183,12 @@ class PairBody:
         self.taken |= {name, f"{name}_re", f"{name}_im"}
         return name
 
-    def call(self, wanted: str, text: str) -> Pair:
+    def call(self, wanted: str, text: str) -> ComplexParts:
         """Return the complex value of a call that leaves its imaginary part."""
         if text not in self.shared:
             name = self.shared[text] = self.name(wanted)
             self.say(f"const {name}_re = {text}, {name}_im = imaginary;")
-        return Pair(Real(f"{self.shared[text]}_re"), Real(f"{self.shared[text]}_im"))
+        return ComplexParts(Real(f"{self.shared[text]}_re"), Real(f"{self.shared[text]}_im"))
 
     def say(self, text: str) -> None:
         """Add a statement."""
@@ -203,14 +203,18 @@ class PairBody:
             self.say(f"const {self.shared[x.text]} = {x.text};")
         return Real(self.shared[x.text])
 
-    def pair(self, wanted: str, z: Pair, least: int = 0) -> Pair:
+    def pair(self, wanted: str, z: ComplexParts, least: int = 0) -> ComplexParts:
         """Return a complex number whose parts are constants."""
         if z.re is None or z.im is None:
-            return Pair(z.re and self.hold(wanted, z.re, least), z.im and self.hold(wanted, z.im, least))
+            return ComplexParts(
+                z.re and self.hold(wanted, z.re, least), z.im and self.hold(wanted, z.im, least)
+            )
         if all(_ATOM.fullmatch(x.text) or x.text in self.shared for x in (z.re, z.im)):
-            return Pair(self.hold(wanted, z.re), self.hold(wanted, z.im))
+            return ComplexParts(self.hold(wanted, z.re), self.hold(wanted, z.im))
         name = self.name(wanted)
-        return Pair(*(self.hold("", x, least, name + end) for x, end in ((z.re, "_re"), (z.im, "_im"))))
+        return ComplexParts(
+            *(self.hold("", x, least, name + end) for x, end in ((z.re, "_re"), (z.im, "_im")))
+        )
 
     def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make constants."""
@@ -233,33 +237,33 @@ class PairBody:
 
     # -------------------------------------------------------------------------------------- expressions
 
-    def value(self, node: tree.CodeNode) -> Pair:
+    def value(self, node: tree.CodeNode) -> ComplexParts:
         """Return an expression, evaluated in the order of the tree."""
         match node:
             case tree.RealNumber(value, pi_power):
-                return Pair(_literal(nearest_double(value, pi_power)))
+                return ComplexParts(_literal(nearest_double(value, pi_power)))
             case tree.ComplexNumber(real, imaginary):
-                return Pair(_literal(nearest_double(real)), _literal(nearest_double(imaginary)))
+                return ComplexParts(_literal(nearest_double(real)), _literal(nearest_double(imaginary)))
             case tree.ToComplex(operand):
                 return self.value(operand)
             case tree.LargerRoot() | tree.RootFactor():
                 return self.value(node.spelled)
             case tree.ParameterValue(name):
-                return Pair(Real(self.parameters[name]))
+                return ComplexParts(Real(self.parameters[name]))
             case tree.Assigned(name):
                 known = self.known[name]
-                assert isinstance(known, Pair)
+                assert isinstance(known, ComplexParts)
                 return known
             case tree.Item(tree.Assigned(name), position):
                 array = self.known[name]
-                return Pair(Real(f"{array}[{2 * position}]"), Real(f"{array}[{2 * position + 1}]"))
+                return ComplexParts(Real(f"{array}[{2 * position}]"), Real(f"{array}[{2 * position + 1}]"))
             case tree.Laplace():
                 return _S
             case tree.InverseLaplace():
                 return self.divide(_ONE, _S)
         return self._operation(node)
 
-    def _operation(self, node: tree.CodeNode) -> Pair:
+    def _operation(self, node: tree.CodeNode) -> ComplexParts:
         match node:
             case tree.Add((first, *rest)):
                 return self._sum(first, rest)
@@ -271,24 +275,24 @@ class PairBody:
                 return self._power(self.pair("c_1", self.value(base)), exponent)
             case tree.Negate(operand):
                 z = self.value(operand)
-                return Pair(_negative(z.re), _negative(z.im))
+                return ComplexParts(_negative(z.re), _negative(z.im))
             case tree.Within(point, end):
                 z = self.pair("t_1", self.value(point))
                 inside = f"size({_text(z.re)}, {_text(z.im)}) <= {end!r}"
-                return Pair(self.hold("t_1", Real(f"{inside} ? {_text(z.re)} : NaN")), z.im)
+                return ComplexParts(self.hold("t_1", Real(f"{inside} ? {_text(z.re)} : NaN")), z.im)
             case tree.Apply(function, argument):
                 return self._apply(function, self.value(argument))
         raise TypeError(type(node).__name__)
 
-    def _sum(self, first: tree.CodeNode, rest: Sequence[tree.CodeNode]) -> Pair:
+    def _sum(self, first: tree.CodeNode, rest: Sequence[tree.CodeNode]) -> ComplexParts:
         result = self.value(first)
         for term in rest:
             step, node = (_difference, term.operand) if isinstance(term, tree.Negate) else (_total, term)
             z = self.value(node)
-            result = Pair(step(result.re, z.re), step(result.im, z.im))
+            result = ComplexParts(step(result.re, z.re), step(result.im, z.im))
         return result
 
-    def multiply(self, x: Pair, y: Pair) -> Pair:
+    def multiply(self, x: ComplexParts, y: ComplexParts) -> ComplexParts:
         """Return a product; parts that occur twice in it are constants."""
         if x.re and x.im and y.re and y.im:
             x, y = self.pair("t_1", x), (self.pair("t_1", y) if y != x else self.pair("t_1", x))
@@ -296,50 +300,50 @@ class PairBody:
             single, other = (x, y) if not (x.re and x.im) else (y, x)
             x, y = self.pair("t_1", single, LONGEST // 4), other
         re = _difference(_product(x.re, y.re), _product(x.im, y.im))
-        return Pair(re, _total(_product(x.re, y.im), _product(x.im, y.re)))
+        return ComplexParts(re, _total(_product(x.re, y.im), _product(x.im, y.re)))
 
-    def divide(self, x: Pair, y: Pair) -> Pair:
+    def divide(self, x: ComplexParts, y: ComplexParts) -> ComplexParts:
         """Return a quotient."""
         if y.re and y.im:
             return self.call("q_1", f"quotient({', '.join(map(_text, (x.re, x.im, y.re, y.im)))})")
         by = self.hold("t_1", y.re or y.im or Real("0.0"), LONGEST // 4)
         if y.re:
-            return Pair(_quotient(x.re, by), _quotient(x.im, by))
-        return Pair(_quotient(x.im, by), _negative(_quotient(x.re, by)))
+            return ComplexParts(_quotient(x.re, by), _quotient(x.im, by))
+        return ComplexParts(_quotient(x.im, by), _negative(_quotient(x.re, by)))
 
-    def _power(self, base: Pair, exponent: int) -> Pair:
+    def _power(self, base: ComplexParts, exponent: int) -> ComplexParts:
         if base.im is None:
-            return Pair(base.re and Real(f"Math.pow({base.re.text}, {exponent})"))
+            return ComplexParts(base.re and Real(f"Math.pow({base.re.text}, {exponent})"))
         result = base
         for _ in range(exponent - 1):
             result = self.multiply(result, base)
         return result
 
-    def _apply(self, function: str, z: Pair) -> Pair:
+    def _apply(self, function: str, z: ComplexParts) -> ComplexParts:
         name = function.removeprefix("complex_")
         if function == "abs":
-            return Pair(_size(z))
+            return ComplexParts(_size(z))
         if function == "complex_sqrt":
             return self.call("r_1", f"root({_text(z.re)}, {_text(z.im)})")
         if z.im is None:
-            return Pair(Real(f"Math.{name}({_text(z.re)})"))
+            return ComplexParts(Real(f"Math.{name}({_text(z.re)})"))
         assert name == "exp"
         angle = self.hold("t_1", z.im)
-        turned = Pair(Real(f"Math.cos({angle.text})"), Real(f"Math.sin({angle.text})"))
+        turned = ComplexParts(Real(f"Math.cos({angle.text})"), Real(f"Math.sin({angle.text})"))
         if z.re is None:
             return self.pair("e_1", turned)
         growth = self.hold("e_1", Real(f"Math.exp({z.re.text})"))
-        return self.pair("e_1", Pair(_product(growth, turned.re), _product(growth, turned.im)))
+        return self.pair("e_1", ComplexParts(_product(growth, turned.re), _product(growth, turned.im)))
 
     # ---------------------------------------------------------------------------------------- statements
 
-    def leave(self, z: Pair) -> None:
+    def leave(self, z: ComplexParts) -> None:
         """Return a complex number: its real part, after its imaginary part was left."""
         z = self.pair("t_1", z)
         self.say(f"imaginary = {_text(z.im)};")
         self.say(f"return {_text(z.re)};")
 
-    def write(self, values: Sequence[Pair]) -> None:
+    def write(self, values: Sequence[ComplexParts]) -> None:
         """Write complex numbers into an array."""
         for i, x in enumerate(x for z in values for x in (z.re, z.im)):
             self.say(f"into[{i}] = {_text(x)};")
@@ -455,7 +459,7 @@ class PairFunctions:
         inner.say(f"return piece_{last}(s_re, s_im{into});")
         return self._function(f"{kind}_of_{self.name}", outer, inner, f"s_re, s_im{into}", takes="p")
 
-    def _test(self, scope: PairBody, condition: tree.Condition, scale: Pair) -> str:
+    def _test(self, scope: PairBody, condition: tree.Condition, scale: ComplexParts) -> str:
         quantity = scope.value(condition.quantity)
         if not condition.limit:
             return f"{_text(scope.multiply(scale, quantity).re)} < 0.0"

@@ -11,7 +11,7 @@ import pytest
 from symflex.cli import COMMANDS
 from symflex.cli.budgeting import Memory
 
-FREE_OF_WORK = {"new", "examples", "elements", "units"}
+FREE_OF_WORK = {"new", "examples", "elements", "units", "schema"}
 ENDLESS = "while True: pass"
 SELF = """
 import sys, os, signal
