@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.scheme import DrawnPart, End
 from symflex.drawing.symbols import DOTS
+from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +30,7 @@ MOST_MOVES: Final = 40
 """Rounds of moving single nodes; small networks need three or four."""
 LARGEST: Final = 40
 """Nodes of a network whose order is improved; longer ones are chains."""
-LANES: Final = {"electrical": 0, "acoustic": 0, "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
+LANES: Final = {**dict.fromkeys(CIRCUITS, 0), "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
 """Which domain stands to the left of which, where a part joins both."""
 LONGEST: Final = 8
 """Links of a chain that is drawn as a whole."""

@@ -319,12 +319,14 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
     "rotary_damper": branch(
         24.0, "bold 0,0 .3,0; line .7,4.6 .3,4.6 .3,-4.6 .7,-4.6; bold .55,0 1,0; 2.0 .55,3 .55,-3"
     ),
-    **dict.fromkeys(("resistor", "acoustic_resistance"), _RESISTOR),
+    **dict.fromkeys(("resistor", "acoustic_resistance", "thermal_resistance"), _RESISTOR),
     **dict.fromkeys(("inductor", "acoustic_mass"), ElementSymbol("branch", inductor, 26.0)),
-    **dict.fromkeys(("capacitor", "acoustic_compliance"), _CAPACITOR),
+    **dict.fromkeys(("capacitor", "acoustic_compliance", "thermal_capacity"), _CAPACITOR),
     **dict.fromkeys(("force_source", "torque_source"), ElementSymbol("source")),
-    **dict.fromkeys(("voltage_source", "pressure_source"), ElementSymbol("source", _EFFORT)),
-    **dict.fromkeys(("current_source", "flow_source"), ElementSymbol("source", _FLOW)),
+    **dict.fromkeys(
+        ("voltage_source", "pressure_source", "temperature_source"), ElementSymbol("source", _EFFORT)
+    ),
+    **dict.fromkeys(("current_source", "flow_source", "heat_source"), ElementSymbol("source", _FLOW)),
     "rigid_link": ElementSymbol("member", drawn("member 0,0 1,0"), 34.0),
     # A thin blade.
     "massless_beam": ElementSymbol("member", drawn("box 0,-1 1,1"), 60.0),

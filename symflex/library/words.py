@@ -127,9 +127,10 @@ THINGS: tuple[Thing, ...] = (
     Thing(("orifice", "valve", "leak", "restrictor", "mesh"), "acoustic_resistance"),
     Thing(("cylinder", "diaphragm", "hydraulic_cylinder", "cone"), "piston"),
     Thing(("pump",), "flow_source", "or an input { flow = ... }"),
-    Thing(
-        ("thermal_resistance", "thermal_capacitance", "heat"), "resistor, capacitor", "1 V is 1 K, 1 A is 1 W"
-    ),
+    Thing(("insulation", "thermal_resistor", "thermal_conductance", "heat_sink"), "thermal_resistance"),
+    Thing(("thermal_capacitance", "thermal_capacitor", "thermal_mass", "heat_capacity"), "thermal_capacity"),
+    Thing(("heater", "heat", "heat_flow", "heating"), "heat_source", 'or an input { heat = "air" }'),
+    Thing(("ambient", "thermostat"), "temperature_source", 'or an input { temperature = "outside" }'),
     # Control
     Thing(("notch", "notch_filter", "antiresonance"), "notch"),
     Thing(("low_pass", "lowpass", "first_order", "pt1", "rc_filter", "time_constant"), "lag, low_pass"),

@@ -14,10 +14,10 @@ from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelPa
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
-from symflex.quantities import Quantity, looks_like_quantity, parse_unit, unit_named, unit_of
+from symflex.quantities import Quantity, looks_like_quantity, parse_unit, unit_doubt, unit_named, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.model.spec import KeyValue, Value
@@ -86,6 +86,15 @@ class DeclaredParameter:
             written_unit=written,
             scale=scale,
         )
+
+
+def doubtful_units(declared: Iterable[DeclaredParameter]) -> Iterator[Diagnostic]:
+    """Yield a warning for each parameter whose unit data sheets mean differently."""
+    for p in declared:
+        unit = p.quantity.unit if p.quantity else p.unit_text
+        if doubt := unit_doubt(unit):
+            message = f"the unit '{unit}' of '{p.name}' may mean something else: {doubt[0]}"
+            yield Diagnostic("SF656", message, p.span, doubt[1], "warning")
 
 
 def one_of(unit_text: str) -> Quantity:

@@ -56,7 +56,7 @@ from symflex.expressions import (
     quotient,
     substitute,
 )
-from symflex.library.elements import Variable
+from symflex.library.elements import LUMPED, Variable
 from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
@@ -323,8 +323,10 @@ class DimensionSystem:
                 self.lacks_an_s |= lacks
                 self._disagree(pair)
         before = dict(self._solved)
-        if not all(self._learn(self._reduce(guess)) for guess in guesses):
-            self._solved = before
+        for some in (guesses, [g for g in guesses if any(map(_is_bare, g.unknowns))]):
+            if all(self._learn(self._reduce(guess)) for guess in some):
+                break
+            self._solved = dict(before)
 
     def _disagree(self, pair: Pair) -> None:
         (one, first), (term, second) = pair.first, pair.second
@@ -654,10 +656,17 @@ class DimensionSystem:
         if isinstance(expression, Name):
             quantity = self._quantities.get(expression.name)
             if quantity is not None:
-                slip = unit_slip(quantity.unit, given, wanted)
+                slip = misplaced(quantity.unit, given, wanted)
                 unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
                 return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
         return None
+
+
+def misplaced(unit: str, given: Dimension, wanted: Dimension) -> str | None:
+    """Return how a unit at the wrong place is meant, or which element it fits: torsion_spring for N*m/rad."""
+    kinds = {unit_of(each).dimension: name for each, name in LUMPED.items()}
+    fitting = f'type = "{kinds[given]}" takes it' if {given, wanted} <= kinds.keys() else None
+    return unit_slip(unit, given, wanted) or fitting
 
 
 def _bare(name: str) -> Measure:

@@ -463,6 +463,8 @@ INPUT_KINDS: dict[str, InputKind] = {
     "voltage": InputKind("electrical", "V", 0),
     "flow": InputKind("acoustic", "m^3/s"),
     "pressure": InputKind("acoustic", "Pa", 0),
+    "heat": InputKind("thermal", "W"),
+    "temperature": InputKind("thermal", "K", 0),
     "displacement": InputKind("translation", "m", 0),
     "velocity": InputKind("translation", "m/s", 1),
     "acceleration": InputKind("translation", "m/s^2", 2),

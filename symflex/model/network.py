@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue
     from symflex.quantities import Dimension
 
-RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end"}
+RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end", "thermal": "what stays as it is"}
 """What is at ground, where that is no end that does not move."""
 PORTS = {name for element in ELEMENTS.values() for p in element.ports for name in (p.name, p.pair)} | {
     *("node", "nodes", "pins", "ends")
@@ -64,12 +64,12 @@ class DraftElement:
 
     def attachments(self, measure: Callable[[Expression], Dimension | None]) -> list[Attachment]:
         """Return what this element says about its nodes; ``measure`` tells a constant's dimension."""
-        who = f"{self.element.type_name} '{self.name}'"
+        who, kind = f"{self.element.type_name} '{self.name}'", self.element.type_name
         attachments = []
         for port, references in self.nodes:
             coupling = self._coupling(port, measure) if port.domain == "any" else None
             attachments += [
-                Attachment(r, port.domain, who, coupling, self.element.carries_x and not r.component)
+                Attachment(r, port.domain, who, coupling, self.element.carries_x and not r.component, kind)
                 for r in references
             ]
         return attachments
@@ -95,8 +95,8 @@ class DraftInput:
         """Return what this input says about its nodes."""
         if self.input.kind == "signal":
             return []
-        domain = INPUT_KINDS[self.input.kind].domain
-        return [Attachment(r, domain, f"input '{self.input.name}'") for r in self.input.nodes]
+        domain, who = INPUT_KINDS[self.input.kind].domain, f"input '{self.input.name}'"
+        return [Attachment(r, domain, who, kind=self.input.kind) for r in self.input.nodes]
 
 
 def read_elements(reader: Reader, section: TableValue | None) -> tuple[DraftElement, ...]:
@@ -437,6 +437,7 @@ class Attachment:
     who: str
     coupling: Coupling | None = None
     is_carried: bool = False  # where another node of the same element moves along x, this one does, too
+    kind: str = ""  # the type of element, or the kind of input
 
 
 DOMAINS: tuple[Domain, ...] = ("translation", "rotation", *CIRCUITS)
@@ -445,6 +446,7 @@ WORDS = {
     "rotation": "an angle",
     "electrical": "a voltage",
     "acoustic": "a pressure",
+    "thermal": "a temperature",
     "planar": "a planar node",
     "plane": "a node of the plane",
 }
@@ -612,8 +614,22 @@ def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
         hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
     elif "acoustic" in claims:
         hint = "use two nodes and couple them with a piston"
+    if alike := _alike(other.kind, claims[0]):
+        hint = f"if '{name}' is {WORDS[claims[0]]}, write {alike} in place of {other.kind}; if not, {hint}"
     message = f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}"
     return Diagnostic("SF220", message, other.reference.span, hint)
+
+
+def _alike(kind: str, domain: PortDomain) -> str | None:
+    """Return what a lumped element or a kind of input is called in another domain: force, torque, heat."""
+    kinds: dict[str, tuple[object, ...]] = {
+        name: (type(e).__base__, getattr(e, "order", None), e.ports[0].domain)
+        for name, e in ELEMENTS.items()
+        if len(e.ports) == 1 and type(e).__base__ is not Element
+    }
+    kinds |= {name: (law.order, law.domain) for name, law in INPUT_KINDS.items()}
+    own = kinds.get(kind, ())
+    return next((name for name, each in kinds.items() if own and each == (*own[:-1], domain)), None)
 
 
 @dataclass(frozen=True, slots=True)

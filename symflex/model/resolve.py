@@ -34,6 +34,7 @@ from symflex.model.dead_times import with_dead_times
 from symflex.model.declarations import (
     CycleReading,
     DeclaredParameter,
+    doubtful_units,
     read_definitions,
     read_outputs,
     read_parameters,
@@ -387,7 +388,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         ),
         signal_units=tuple(units.items()),
         quotients=tuple(quotients(draft, system)),
-        warnings=tuple(system.readings()),
+        warnings=(*doubtful_units(draft.declared), *system.readings()),
     )
     return model, turned
 
@@ -399,7 +400,7 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
         whole = [r for r in live if nodes[r.node].domain in COMPONENTS and not r.component]
         domain: Placing
         match port.domain:
-            case "translation" | "rotation" | "electrical" | "acoustic":
+            case "translation" | "rotation" | "electrical" | "acoustic" | "thermal":
                 domain = port.domain
             case _ if not live:
                 domain = "translation"

@@ -11,7 +11,7 @@ from symflex.errors import Span
 from symflex.expressions import Equation, Expression, Name, Sum, names, number, power, product_of, substitute
 from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
-from symflex.model.dimensions import PER_SECOND, DimensionSystem, Measure
+from symflex.model.dimensions import PER_SECOND, DimensionSystem, Measure, misplaced
 from symflex.model.model import (
     IMAGINARY,
     INPUT_KINDS,
@@ -25,7 +25,7 @@ from symflex.model.model import (
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import ModelScope, build_scope
-from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of, unit_slip
+from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -63,7 +63,7 @@ def check_units(
         elif unit and expression.quantity.dimension != unit_of(unit).dimension:
             given = expression.quantity
             message = f"{what} is in '{given.unit}'; {doc} is in '{unit}'"
-            hint = unit_slip(given.unit, given.dimension, unit_of(unit).dimension)
+            hint = misplaced(given.unit, given.dimension, unit_of(unit).dimension)
             reader.note("SF203", message, expression.span, hint)
 
     for definition in draft.definitions:

@@ -228,7 +228,9 @@ _INSTEAD: Final[dict[str, str]] = {
         "kHz": "kilohertz",
         "rad": "radian radians",
         "deg": "degree degrees",
-        "rev": "revs revolution revolutions turn turns",
+        "rev": "revs revolution revolutions turn turns r tr U",
+        "deg/s": "dps",
+        "S": "mho mhos",
         "rev/s": "rps",
         "cycle": "cycles cyc",
         "g_n": "g_0 g0 gn",
@@ -240,6 +242,9 @@ _INSTEAD: Final[dict[str, str]] = {
     for written in many.split()
 } | {
     "gpm": "write it in L/min: a US gallon is 3.785411784 L",
+    "G": "a prefix needs a unit, as in 'GPa'; a gauss is 0.1 mT",
+    "gauss": "write it in mT: a gauss is 0.1 mT",
+    "Oe": "write it in A/m: an oersted is 1000/(4*pi) A/m",
     "lbs": "did you mean 'lb' (mass) or 'lbf' (force)?",
     "pi": "write pi before the unit, as in '2*pi rad/s'",
     "\u03c0": "write pi before the unit, as in '2*pi rad/s'",
@@ -258,8 +263,26 @@ _RUN_TOGETHER: Final = {
     )
 }  # fmt: skip
 
-_FORCES: Final = {"lb": "lbf", "lbm": "lbf", "oz": "ozf", "kg": "kgf", "g": "gf"}
-_MASSES: Final = {"lbf": "lb", "ozf": "oz", "kgf": "kg"}
+# What a symbol is, and one that it is taken for.
+_ALIKE: Final = tuple(
+    re.split(" = |, ", line)
+    for line in (
+        "lb = a mass, lbf = a force; lbm = a mass, lbf = a force; oz = a mass, ozf = a force; "
+        "kg = a mass, kgf = a force; g = a mass, gf = a force; g = a mass, g_n = an acceleration; "
+        "lbf = a force, lb = a mass; ozf = a force, oz = a mass; kgf = a force, kg = a mass; "
+        "S = a conductance, s = a time; H = an inductance, h = a time; C = a charge, K = a temperature; "
+        "T = a flux density, t = a mass; nm = a length, N*m = a torque"
+    ).split("; ")
+)
+# What is read well and hardly meant: how, what is meant (a mass with an f in place of nothing), and of what.
+_DOUBTS: Final = (
+    (r"(?:[VAC]|rad/s|deg/s|\u00b0/s)/\(?(g)\)?$", "g_n", "a gram", "the acceleration of gravity"),
+    (r"[VA]/\(?(kg|lb|oz)\)?$", "", "a mass", "a force"),
+    (r"(?:\b(kg|g|lb|oz)\*(?:m|cm|mm|in|ft))/(?:[VA]|rad|deg)\b", "", "a mass", "a torque"),
+    (r"(?:^|\W)(1/min|min\^-1)$", "rpm", "a rate without turns", "a speed of rotation"),
+    (r"^(PS)$", "W", "a petasiemens", "a metric horsepower, 735.49875 W,"),
+    (r"^(Gs)$", "mT", "a gigasecond", "a gauss, 0.1 mT,"),
+)
 # Units long enough to be given a plural; a shorter one with an s is a product, as in Pas.
 _WORDS: Final = tuple(name for name in UNITS if len(name) > 2)  # noqa: PLR2004
 _LONGEST_PRODUCT: Final = 8
@@ -320,6 +343,11 @@ def unit_hint(symbol: str) -> str | None:
         # Two letters are too few to tell a slip from another unit.
         if written in _INSTEAD and (written == symbol or symbol[2:]):
             return _INSTEAD[written]
+    prefix = "M" if symbol.lower() == "meg" else symbol.rstrip("0123456789")
+    if prefix in PREFIXES and prefix not in UNITS:
+        return (
+            f"a prefix needs a unit: write '{prefix}{'F' if PREFIXES[prefix] < 1 else 'Ohm'}', for instance"
+        )
     small = "k" + symbol[1:]
     if symbol[0] == "K" and (unit_named(small) or run_together(small)):
         return f"did you mean '{small}'?"
@@ -338,7 +366,7 @@ def unit_hint(symbol: str) -> str | None:
 
 
 def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
-    """Return how a unit is written that has a mass for a force, or the reverse, or one slash too many.
+    """Return how a unit is written that has another letter, a mass for a force, or one slash too many.
 
     Examples
     --------
@@ -348,7 +376,9 @@ def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
     >>> unit_slip("N/m/s", unit_of("N/m/s").dimension, unit_of("N*s/m").dimension)
     "'/' divides each time: write 'N/(m/s)'"
     """
-    return _mass_slip(unit, given, wanted) or _slash_slip(unit, given, wanted)
+    if unit in ("K", "m", "T", "F") and str(wanted) in ("Ohm", "F", "H", "V", "A"):
+        return f"a prefix needs a unit: write '{unit.replace('K', 'k')}{wanted}'"
+    return _letter_slip(unit, given, wanted) or _slash_slip(unit, given, wanted)
 
 
 def _slash_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
@@ -360,16 +390,35 @@ def _slash_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
     meant, written = given * last.dimension**2, f"{above}/({below[0]}/{below[1]})"
     if meant == wanted:
         return f"'/' divides each time: write '{written}'"
-    mass = _mass_slip(written, meant, wanted)
+    mass = _letter_slip(written, meant, wanted)
     return f"'/' divides each time, and {mass}" if mass else None
 
 
-def _mass_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
-    for instead, more, kinds in ((_FORCES, wanted, ("mass", "force")), (_MASSES, given, ("force", "mass"))):
-        written = next((name for name in re.findall(r"[A-Za-z_]+", unit) if name in instead), None)
-        if written and more == (given if more is wanted else wanted) * _GRAVITY.dimension:
-            right = re.sub(rf"\b{written}\b", instead[written], unit)
-            return f"'{written}' is a {kinds[0]}, '{instead[written]}' a {kinds[1]}: write '{right}'"
+def _letter_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
+    for written, kind, meant, other in _ALIKE:
+        known, factors = unit_named(written), [unit_named(name) for name in meant.split("*")]
+        right = re.sub(rf"\b{written}\b", meant, unit)
+        if known and right != unit:
+            ratio = functools.reduce(Unit.__mul__, (f for f in factors if f), known**-1).dimension
+            if wanted in (given * ratio, given / ratio):
+                return f"'{written}' is {kind}, '{meant}' {other}: write '{right}'"
+    return None
+
+
+def unit_doubt(unit: str) -> tuple[str, str] | None:
+    """Return how a unit is read that data sheets mean differently, and how what they mean is written.
+
+    Examples
+    --------
+    >>> unit_doubt("mV/g")
+    ("'g' is a gram", "for the acceleration of gravity write 'mV/g_n'")
+    >>> unit_doubt("J/kg"), unit_doubt("L/min")
+    (None, None)
+    """
+    for pattern, meant, read, what in _DOUBTS:
+        if place := re.search(pattern, unit):
+            right = f"{unit[: place.start(1)]}{meant or place[1] + 'f'}{unit[place.end(1) :]}"
+            return f"'{place[1]}' is {read}", f"for {what} write '{right}'"
     return None
 
 

@@ -50,6 +50,10 @@ MODELS = {
     "acoustic_compliance": ("x", "flow", 'at = "x", C = "p"'),
     "pressure_source": ("x", None, 'at = "x", p = "p*U"'),
     "flow_source": ("x", None, 'at = "x", q = "p*U"'),
+    "thermal_resistance": ("x", "heat", 'between = ["x", "ground"], R = "p"'),
+    "thermal_capacity": ("x", "heat", 'at = "x", C = "p"'),
+    "heat_source": ("x", None, 'at = "x", phi = "p*U"'),
+    "temperature_source": ("x", None, 'at = "x", T = "p*U"'),
     "piston": ("x", "force", 'mover = "x", chamber = "y", A = "p"'),
 }
 REST = {
@@ -78,6 +82,8 @@ REST = {
     "cccs": 'sense = { type = "resistor", between = ["x", "y"], R = "q" }',
     "pressure_source": 'load = { type = "acoustic_resistance", between = ["x", "ground"], R = "q" }',
     "flow_source": 'load = { type = "acoustic_resistance", between = ["x", "ground"], R = "q" }',
+    "heat_source": 'load = { type = "thermal_resistance", between = ["x", "ground"], R = "q" }',
+    "temperature_source": 'load = { type = "thermal_resistance", between = ["x", "ground"], R = "q" }',
     "piston": 'load = { type = "acoustic_compliance", at = "y", C = "q" }',
 }
 

@@ -255,8 +255,12 @@ def test_every_element_has_a_smallest_model():
 
 
 def test_across_times_through_is_an_energy_or_a_power():
-    """Newton metres for motion, volt amperes for electricity, Pa m^3/s for sound (IEC 80000)."""
+    """Newton metres for motion, volt amperes for electricity, Pa m^3/s for sound (IEC 80000).
+
+    Heat flow is a power itself; with the temperature beside it, it is the pseudo power of bond graphs.
+    """
     for domain, across in ACROSS_UNIT.items():
         energy = unit_of(across).dimension * unit_of(THROUGH_UNIT[domain]).dimension
-        assert energy == unit_of("W" if domain in CIRCUITS else "J").dimension, domain
-        assert THROUGH_NAME[domain] in ("f", "tau", "i", "q"), domain
+        power = "K*W" if domain == "thermal" else "W"
+        assert energy == unit_of(power if domain in CIRCUITS else "J").dimension, domain
+        assert THROUGH_NAME[domain] in ("f", "tau", "i", "q", "phi"), domain

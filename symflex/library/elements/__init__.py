@@ -7,6 +7,7 @@ from symflex.library.elements.element import (
     CIRCUITS,
     COMPONENT_DOMAIN,
     COMPONENTS,
+    DOMAINS,
     THROUGH_NAME,
     THROUGH_UNIT,
     Admittance,
@@ -71,6 +72,17 @@ ELEMENTS: dict[str, Element] = {
         lumped.AcousticCompliance(),
         lumped.PressureSource(),
         lumped.FlowSource(),
+        lumped.ThermalResistance(),
+        lumped.ThermalCapacity(),
+        lumped.HeatSource(),
+        lumped.TemperatureSource(),
         coupling.Piston(),
     )
 }
+
+LUMPED: dict[str, str] = {
+    e.parameters[0].unit: e.type_name
+    for e in ELEMENTS.values()
+    if isinstance(e, lumped.Branch | lumped.Impedance)
+}
+"""Elements of one value, by its unit, and no two have the same."""

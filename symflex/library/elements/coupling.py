@@ -11,6 +11,7 @@ from symflex.library import ParameterPort
 from symflex.library.elements.element import (
     ACROSS_UNIT,
     CIRCUITS,
+    DOMAINS,
     THROUGH_NAME,
     THROUGH_UNIT,
     Element,
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
     from symflex.library.elements.element import Placing, Variable
 
 
-PER_FLOW = {"translation": "*s/m", "rotation": "*s/rad", "electrical": "/A", "acoustic": "*s/m^3"}
-"""One over the unit of what flows: a velocity, a current or a volume flow."""
+PER_FLOW = dict(zip(DOMAINS, ("*s/m", "*s/rad", "/A", "*s/m^3", "/W"), strict=True))
+"""One over the unit of what flows: a velocity, a current, a volume or heat flow."""
 
 
 class TwoPort(Element):
@@ -44,7 +45,7 @@ class TwoPort(Element):
         Port("from", 1, "any", "node of the driving side", reacts=True),
         Port("to", 1, "any", "node of the driven side", reacts=True),
     )
-    through = ("f", "tau", "i", "q")
+    through = tuple(THROUGH_NAME.values())
 
     def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
         """Return the quantity delivered at ``to``."""

@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
 
-Domain = Literal["translation", "rotation", "electrical", "acoustic"]
-PortDomain = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane", "any", "whole"]
+Domain = Literal["translation", "rotation", "electrical", "acoustic", "thermal"]
+Placing = Domain | Literal["planar", "plane"]
+PortDomain = Placing | Literal["any", "whole"]
 
 Role = Literal["balance", "law", "constraint", "signal", "equation", "condition"]
-
-Placing = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane"]
 
 COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x", "y", "theta")}
 """What a node of several degrees of freedom is made of; one ``plane`` moves along x, too."""
 COMPONENT_DOMAIN: dict[str, Domain] = {"x": "translation", "y": "translation", "theta": "rotation"}
 
-ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V", "acoustic": "Pa"}
-THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A", "acoustic": "m^3/s"}
-THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i", "acoustic": "q"}
-CIRCUITS: tuple[Domain, ...] = ("electrical", "acoustic")
-"""Domains of nodes whose voltage or pressure is an effort; mechanical ones have a motion."""
+DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical", "acoustic", "thermal")
+ACROSS_UNIT: dict[str, str] = dict(zip(DOMAINS, ("m", "rad", "V", "Pa", "K"), strict=True))
+THROUGH_UNIT: dict[str, str] = dict(zip(DOMAINS, ("N", "N*m", "A", "m^3/s", "W"), strict=True))
+THROUGH_NAME: dict[str, str] = dict(zip(DOMAINS, ("f", "tau", "i", "q", "phi"), strict=True))
+CIRCUITS = DOMAINS[2:]
+"""Domains of nodes whose voltage, pressure or temperature is an effort; mechanical ones have a motion."""
 COMPONENT_UNIT: dict[str, str] = {
     "f": "N",
     "f_x": "N",
@@ -44,8 +44,10 @@ COMPONENT_UNIT: dict[str, str] = {
     "i_1": "A",
     "i_2": "A",
     "q": "m^3/s",
+    "phi": "W",
     "supplied": "A",
     "supplied_q": "m^3/s",
+    "supplied_phi": "W",
     "supplied_f": "N",
     "supplied_tau": "N*m",
 }

@@ -1,4 +1,4 @@
-"""Lumped elements of two terminals: what moves, turns, conducts or carries sound, and ideal sources."""
+"""Lumped elements of two terminals: what moves, turns, conducts, carries sound or heat, and sources."""
 
 from __future__ import annotations
 
@@ -277,3 +277,44 @@ class PressureSource(AcrossSource):
     ports = (Port("at", 1, "acoustic", "node held at the pressure", pair="between"),)
     parameters = (ParameterPort("p", "Pa", "a pressure", signal=True),)
     through = ("q",)
+
+
+class ThermalResistance(Impedance):
+    """A wall or contact that conducts heat, ``T_a - T_b = R*phi``; ``phi`` [W] flows from a to b."""
+
+    type_name = "thermal_resistance"
+    summary = "Wall, contact or convection that heat flows through"
+    ports = (Port("between", 2, "thermal", "the two sides"),)
+    parameters = (ParameterPort("R", "K/W", "a thermal resistance"),)
+    through = ("phi",)
+
+
+class ThermalCapacity(Branch):
+    """The heat capacity C [J/K] of a body, ``phi = C*s*T``; the heat flow ``phi`` [W] goes into it."""
+
+    type_name = "thermal_capacity"
+    summary = "Body that stores heat"
+    ports = (Port("at", 1, "thermal", "node of its temperature", pair="between"),)
+    parameters = (ParameterPort("C", "J/K", "a heat capacity"),)
+    through = ("phi",)
+    order = 1
+
+
+class HeatSource(ThroughSource):
+    """A heat flow phi [W] delivered into a node, or into the first of two from the second."""
+
+    type_name = "heat_source"
+    summary = "Heat flow delivered into a node"
+    ports = (Port("at", 1, "thermal", "node that is heated", pair="between"),)
+    parameters = (ParameterPort("phi", "W", "a heat flow", signal=True),)
+    through = ("phi",)
+
+
+class TemperatureSource(AcrossSource):
+    """A temperature T [K] of a node, or between two; ``phi`` [W] is delivered into the first."""
+
+    type_name = "temperature_source"
+    summary = "Temperature imposed on a node"
+    ports = (Port("at", 1, "thermal", "node held at the temperature", pair="between"),)
+    parameters = (ParameterPort("T", "K", "a temperature", signal=True),)
+    through = ("phi",)
