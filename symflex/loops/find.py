@@ -84,7 +84,7 @@ def find_stable_gains(
         return _at_nominal(loop, (low, high), digits, along.reasons[-1])
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
-    crossings = _lumped_crossings(loop, lumped, digits + GUARD_DIGITS)
+    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
     if along is not None:
         crossings += along.crossings(digits + GUARD_DIGITS)
     search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
@@ -141,17 +141,6 @@ def find_stable_gains(
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
-
-
-def _lumped_crossings(loop: Loop, lumped: Sequence[LumpedFactor], digits: int) -> list[Crossing]:
-    """Return where poles of factors without kernels may cross the axis."""
-    if loop.rooted is None or loop.functions is None:
-        return [c for factor in lumped for c in factor.crossings(digits)]
-    power, sign = loop.functions.root or 1, loop.functions.sign
-    factors = [LumpedFactor.of(loop.rooted.bound, f) for f in _split(loop.rooted)[0] if f.degree]
-    found = [c for factor in factors for c in factor.crossings(digits) if not c.gain < 0]
-    with precision(max([BITS, *(c.gain.bits() for c in found)])):
-        return [replace(c, gain=sign * c.gain**power) for c in found]
 
 
 def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> StabilityMap:
@@ -239,7 +228,7 @@ def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits
     else:
         limits = None if loop.gain.assume == "real" else Fraction(0), None
     if loop.functions is not None:
-        return loop.functions.domain(limits, is_endless=loop.rooted is not None and not is_distributed)
+        return loop.functions.domain(limits, is_endless=not is_distributed)
     if given is not None:
         return given
     low, _ = limits

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import frexp, lcm
+from math import frexp, isqrt, lcm
 from typing import TYPE_CHECKING
 
 from flint import arb, arb_series
@@ -21,8 +21,9 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Call, Power, Quotient, fold, nodes
 from symflex.loops.axis import find_on_axis
 from symflex.model import ExactValue
+from symflex.roots import RealConstant
 from symflex.roots.root import exact_fraction
-from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order, rational_value
+from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order, later, rational_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -66,6 +67,26 @@ class GainFunctions:
         exponents = [exponent(call, self.gain) for call in self.calls.values()]
         known = [e.denominator for e in exponents if e is not None]
         return lcm(*known) if len(known) == len(exponents) else None
+
+    @cached_property
+    def powers(self) -> list[tuple[int, Fraction, RealConstant | None]]:
+        """Powers of that root which the functions are: exponents, and two factors of what multiplies them."""
+        powers: list[tuple[int, Fraction, RealConstant | None]] = []
+        at_one = {**self.values, self.gain: ExactValue(Fraction(self.sign))}
+        for generator, call in self.calls.items():
+            power = int((exponent(call, self.gain) or ZERO) * (self.root or 1))
+            square = rational_value(call.argument, at_one) if call.name == "sqrt" else None
+            is_real = square is not None and square > 0
+            whole = (
+                Fraction(isqrt(square.numerator), isqrt(square.denominator)) if square and is_real else ZERO
+            )
+            if whole and whole**2 == square:
+                powers.append((power, whole, None))
+            else:
+                values = {name: enclosure(value) for name, value in at_one.items()}
+                name = f"{generator} at {self.sign}" if square is None else f"sqrt({square})"
+                powers.append((power, Fraction(1), RealConstant(name, later(call, values))))
+        return powers
 
     def at(self, gain: arb) -> list[arb_series]:
         """Return the gain and its functions to first order, at the current precision."""
@@ -143,11 +164,11 @@ class GainFunctions:
     def domain(self, limits: Limits, *, is_endless: bool) -> Limits:
         """Return the part of a range about the gain's own value in which all functions are real.
 
-        Unless it may be endless, it goes to 100 times that value by default. SF804 where there is no value,
-        SF228 where it is not inside.
+        It goes to 100 times that value by default; of powers alone it may be endless. SF804 where there is no
+        value, SF228 where it is not inside.
         """
         low, high = limits
-        if is_endless:
+        if is_endless and self.root is not None:
             if self.sign > 0:
                 return max(low or ZERO, ZERO), high
             return low, min(high or ZERO, ZERO)

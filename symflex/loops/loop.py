@@ -88,8 +88,6 @@ class Loop:
     source: TransferFunction  # with the gain as a symbol
     given: Mapping[str, Given] = field(default_factory=dict)  # values in place of declared ones
     functions: GainFunctions | None = None  # of the gain, which the factors hold
-    # The same in the root of the gain of which all functions are powers.
-    rooted: Loop | None = None
 
     def __repr__(self) -> str:
         return f"<Loop of {self.bound.name} with gain {self.gain.name}>"

@@ -8,7 +8,7 @@ for every gain; between the real roots of its discriminant their number on the a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial, reduce
 from math import lcm
@@ -54,7 +54,8 @@ class LumpedFactor:
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
     loop: Loop | None = None  # whose factor it is
-    # Of a factor with functions of the gain, which follow it in the ring: these, and the range examined.
+    # Of a factor with functions of the gain: these, which follow it in the ring unless all are powers of one
+    # root of the gain, whose place that root takes; and the range examined.
     functions: GainFunctions | None = None
     limits: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
 
@@ -68,12 +69,13 @@ class LumpedFactor:
     ) -> LumpedFactor:
         """Return a factor without kernels as E and O; of one with functions of the gain limits are known."""
         terms = _integer_terms(factor)
-        constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
-        names = bound.ratio.ring.names[1 : 1 + len(constants)]
-        used = [i for i, _ in enumerate(names) if any(key[2][i] for key in terms)]
+        constants = [RealConstant(name, evaluate) for name, evaluate in bound.constants]
         functions = None if loop is None or not factor.exponents else loop.functions
         own = [] if functions is None else [f"{name} of the gain" for name in functions.calls]
-        ring = Ring(("w", "K", *own, *(names[i] for i in used)))
+        if functions is not None and functions.root is not None:
+            terms, own = _in_root(terms, functions, constants), []
+        used = [i for i, _ in enumerate(constants) if any(key[2][i] for key in terms)]
+        ring = Ring(("w", "K", *own, *(constants[i].name for i in used)))
         zeros = min(s for s, _, _ in terms)
         parts: tuple[dict[tuple[int, ...], int], ...] = ({}, {})
         for (s, k, rest), number in terms.items():
@@ -100,8 +102,21 @@ class LumpedFactor:
         end = len(self.ring.names) - len(self.constants)
         return any(degree_in(f, i) for f in polynomials for i in range(K, end))
 
+    @property
+    def _mixed(self) -> GainFunctions | None:
+        """The functions of the gain in the ring."""
+        return self.functions if self.functions is not None and self.functions.root is None else None
+
     def crossings(self, digits: int) -> list[Crossing]:
         """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
+        crossings, functions = self._crossings(digits), self.functions
+        if functions is None or functions.root is None:
+            return crossings
+        with precision(max([COUNT_DIGITS, *(2 * c.gain.bits() for c in crossings)])):
+            powers = ((c, functions.sign * c.gain**functions.root) for c in crossings if not c.gain < 0)
+            return [replace(crossing, gain=gain) for crossing, gain in powers]
+
+    def _crossings(self, digits: int) -> list[Crossing]:
         crossings: list[Crossing] = []
         whole = self.even * self.common, self.odd * self.common
         if not self._moves(*whole):
@@ -127,7 +142,7 @@ class LumpedFactor:
         if degree_in(simple, W) < 2 or not self._moves(simple):  # noqa: PLR2004 (two roots can meet)
             return []
         slope = simple.derivative(w)
-        if self.functions is not None:
+        if self._mixed is not None:
             return self._with_functions(simple.discriminant(w), (simple, slope), digits, is_symmetric=True)
         gains = self._real_roots(simple.discriminant(w), K, digits)
         squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
@@ -139,7 +154,7 @@ class LumpedFactor:
         even, odd = (self.ring.coefficients(f, K) for f in (self.even, self.odd))
         if not len(self.odd) or not self._moves(self.even, self.odd):
             return []
-        if self.functions is not None:
+        if self._mixed is not None:
             resultant = self.even.resultant(self.odd, str(self.ring.context.gen(W)))
             return self._with_functions(resultant, (self.even, self.odd), digits)
         if max(len(even), len(odd)) <= 2:  # noqa: PLR2004 (affine)
@@ -189,7 +204,7 @@ class LumpedFactor:
 
     def _numbers(self, gain: arb) -> list[arb]:
         """Return the gain, its functions and the constants, at the current precision."""
-        own = [gain] if self.functions is None else [x[0] for x in self.functions.at(gain)]
+        own = [gain] if self._mixed is None else [x[0] for x in self._mixed.at(gain)]
         return [*own, *(constant.evaluate() for constant in self.constants)]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
@@ -229,9 +244,9 @@ class LumpedFactor:
 
     def _gains(self, polynomial: fmpz_mpoly, digits: int) -> list[arb]:
         """Return gains at which a polynomial without w vanishes, and narrow ranges where it may."""
-        if self.functions is None:
+        functions, gains = self._mixed, list[arb]()
+        if functions is None:
             return [root.re for root in self._real_roots(polynomial, K, digits)]
-        functions, gains = self.functions, list[arb]()
         for factor, _ in irreducible_factors(polynomial)[1] if self._moves(polynomial) else ():
             if self._moves(factor):
 
@@ -275,7 +290,34 @@ class LumpedFactor:
         return PolynomialInS(tuple(moved), small.context, self.constants)
 
 
-def _integer_terms(factor: GainPolynomial) -> dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]:
+Terms = dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]
+"""Integer coefficients by the exponents of s, of the gain and its functions, and of the ring's others."""
+
+
+def _in_root(terms: Terms, functions: GainFunctions, constants: list[RealConstant]) -> Terms:
+    """Return terms in the root of the gain; what its powers are multiplied by is added to the constants."""
+    places = []
+    for _, _, constant in functions.powers:
+        if constant is not None and constant.name not in [c.name for c in constants]:
+            constants.append(constant)
+        places.append(None if constant is None else [c.name for c in constants].index(constant.name))
+    most = [max(key[1][j] for key in terms) for j in range(1, 1 + len(places))]
+    moved: dict[tuple[int, int, tuple[int, ...]], int] = {}
+    for (s, (own, *others), rest), number in terms.items():
+        exponents = [*rest[: len(constants)], *[0] * (len(constants) - len(rest))]
+        power, value = own * (functions.root or 1), number * functions.sign**own
+        for (each, factor, _), place, times, top in zip(functions.powers, places, others, most, strict=True):
+            power += each * times
+            value *= factor.numerator**times * factor.denominator ** (top - times)
+            if place is not None:
+                exponents[place] += times
+        key = (s, power, tuple(exponents))
+        moved[key] = moved.get(key, 0) + value
+    least = min(power for _, power, _ in moved)
+    return {(s, (power - least,), rest): value for (s, power, rest), value in moved.items() if value}
+
+
+def _integer_terms(factor: GainPolynomial) -> Terms:
     """Return powers of s, K and constants with integer coefficients, scaled by what has no roots."""
     rational: dict[tuple[int, tuple[int, ...], tuple[int, ...]], Fraction] = {}
     for k, coefficient in factor.terms:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError
-from symflex.expressions import Expression, Name, Negative, Number, Power
 from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.loop import pick_gain
 from symflex.loops.networks import network_loop
-from symflex.model import Model, rewritten, with_numbers
+from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.options import (
@@ -75,27 +72,7 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
             return network
         message = f"'{gain}' occurs in several places of a network that is too large to be written out"
         raise loop_room.no_loop("SF803", message, parameter) from error
-    loop = loop_room.characteristic_loop(tf, parameter, given)
-    if loop.functions is None or loop.functions.root is None:
-        return loop
-    # Everything is a polynomial in a root of the gain, which takes its place.
-    power: Expression = Power(Name(gain), Number(Fraction(loop.functions.root)))
-    power = power if loop.functions.sign > 0 else Negative(power)
-    root = replace(parameter, value=None, assume="positive")
-    tf = _seeing(_in_place_of(root, power, prepared), pairs, root)
-    given.pop(gain, None)
-    rooted = loop_room.characteristic_loop(tf, root, given)
-    return loop if rooted.functions is not None else replace(loop, rooted=rooted)
-
-
-def _in_place_of(parameter: ModelParameter, value: Expression, model: Model) -> Model:
-    """Return a model with an expression in place of a parameter, and another parameter of that name."""
-
-    def each_submodel(submodel: Model) -> Model:
-        return _in_place_of(parameter, value, submodel)
-
-    parameters = tuple(parameter if p.name == parameter.name else p for p in model.parameters)
-    return replace(rewritten(model, {parameter.name: value}, each_submodel), parameters=parameters)
+    return loop_room.characteristic_loop(tf, parameter, given)
 
 
 def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter) -> TransferFunction:

@@ -19,7 +19,7 @@ from symflex.model.units import exact_expression
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from symflex.expressions import Expression
     from symflex.model.declarations import DeclaredParameter
@@ -157,26 +157,15 @@ def with_numbers(
         if value is not None and name not in symbolic and not value.is_imaginary
     }
 
-    def each_submodel(submodel: Model) -> Model:
-        return with_numbers(submodel, symbolic, values)
-
-    left = tuple(p for p in model.parameters if p.name not in numbers)
-    return replace(rewritten(model, numbers, each_submodel), parameters=left)
-
-
-def rewritten(
-    model: Model, mapping: Mapping[str, Expression], each_submodel: Callable[[Model], Model]
-) -> Model:
-    """Return a model with expressions in place of names; ``each_submodel`` rewrites those of its blocks."""
-
     def put_in(expression: Expression) -> Expression:
-        return substitute(expression, mapping)
+        return substitute(expression, numbers)
 
     def each(given: Values) -> Values:
         return tuple((name, put_in(e)) for name, e in given)
 
     return replace(
         model,
+        parameters=tuple(p for p in model.parameters if p.name not in numbers),
         definitions=tuple(replace(d, expression=put_in(d.expression)) for d in model.definitions),
         elements=tuple(replace(e, values=each(e.values)) for e in model.elements),
         signals=tuple(replace(x, expression=put_in(x.expression)) for x in model.signals),
@@ -184,7 +173,7 @@ def rewritten(
             replace(
                 b,
                 values=each(b.values),
-                submodel=None if b.submodel is None else each_submodel(b.submodel),
+                submodel=None if b.submodel is None else with_numbers(b.submodel, symbolic, values),
             )
             for b in model.blocks
         ),

@@ -98,6 +98,29 @@ X = "x"
     )
 
 
+def test_with_another_value_of_a_parameter_beside_the_gain_no_bound_is_needed():
+    # Poles depend on K/m alone.
+    model = symflex.loads("""
+symflex = 1
+[parameters]
+K = "2 N/m"
+m = "1 kg"
+[elements]
+a = { type = "mass", at = "x", m = "m" }
+k = { type = "spring", between = ["x", "ground"], k = "K" }
+b = { type = "damper", between = ["x", "ground"], b = "1.4*sqrt(K*m)" }
+f = { type = "force_source", at = "x", f = "3*K*(r - x)/(1 + 0.5*s)^2" }
+[inputs]
+r = { unit = "m" }
+[outputs]
+X = "x"
+""")
+    one, three = (model.stability("K", m=m) for m in (1, 3))
+    assert one.proved.limits == three.proved.limits == (0, None)
+    for small, large in zip(one.boundaries, three.boundaries, strict=True):
+        assert float(large.gain) == pytest.approx(3 * float(small.gain), rel=1e-13)
+
+
 def test_a_function_that_only_touches_its_limit_is_not_certified():
     # 4 sin(K) is 4 at pi/2, and less beside it.
     found = loop("4*sin(K)", value=1).stability("K", limits=(0, 3))
