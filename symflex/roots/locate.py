@@ -17,6 +17,7 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedErr
 from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY
 from symflex.model.signs import is_passive
+from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.distributed.proof import TOUCHING, limits
 from symflex.roots.distributed.right_half_plane import (
     COMPRESSED,
@@ -28,9 +29,8 @@ from symflex.roots.distributed.right_half_plane import (
     last_on_axis,
     search_right,
 )
-from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
+from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
-from symflex.roots.functions.kernel_function import split_off_kernels
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
 from symflex.roots.passive import fastest_growth, observed, passive_loop
@@ -327,11 +327,8 @@ class _Searched:
         return degenerate_points(self.bound)
 
     @cached_property
-    def _without_modes(self) -> list[Root]:
-        """The degenerate points without hidden factors of s alone: those are modes, as rigid motions are."""
-        plain, _ = split_off_kernels(cancelled(self.bound), self.bound.kernels)
-        modes = polynomial_roots(self.bound, plain, ACCUMULATION_DIGITS) if self._degenerate else []
-        return [point for point in self._degenerate if not any(overlap(point, mode) for mode in modes)]
+    def _points(self) -> DegeneratePoints:
+        return DegeneratePoints(self.bound, self._degenerate)
 
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""
@@ -342,8 +339,9 @@ class _Searched:
             HiddenRoot(root)
             for root in _chosen(gone, within)
             # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
-            if root.is_zero or not any(overlap(root, other) for other in self._without_modes)
+            if root.is_zero or not any(overlap(root, other) for other in self._degenerate)
         ]
+        self.hidden += self._points.hidden(_chosen(self._points.distinct, within))
         self.hidden += [
             HiddenRoot(root, "coincident")
             for root in _chosen(shared, within)
@@ -368,6 +366,7 @@ class _Searched:
                 reasons.append(proof.reason or f"{abs(missing)} roots were counted but not found")
         if engines != [side.engine for side in self.sides]:
             reasons += self._match_again()
+        reasons += filter(None, [self._points.unproved])
         return "; ".join(dict.fromkeys(reasons)) or None
 
     def _match_again(self) -> list[str]:
@@ -416,16 +415,19 @@ class _Searched:
         bound = self.bound
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
-        coincident = [h for h in self.hidden if h.cause == "coincident"]
+        coincident = self._points.coincident_elsewhere(self.hidden)
         proof, rests = _passivity_of(bound)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
+        degenerate = self._points.hidden(
+            p for p in self._points.distinct if not (rests or p.re < 0 or (proof and p.re > 0))
+        )
         model = observed(bound.source.model, bound.source.output)
         growth = fastest_growth(model, bound.all_values) if bound.is_of_model else None
         limit = growth[0] if growth else None
         sides: list[tuple[Root, ...]] = []
-        gaps: list[RightHalfPlane] = []
-        has_more = False  # poles than those that are known
+        gaps = [RightHalfPlane((), self._points.unproved)]
+        has_more = bool(self._points.unproved)  # poles than those that are known
         for place, part in (*poles, (2 * len(poles), product)):
             is_hidden, is_searched, known = part is product, place < len(self.sides), list[Root]()
             try:
@@ -450,11 +452,10 @@ class _Searched:
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
-            degenerate = self._without_modes if is_hidden else self._degenerate
             apart = tuple(
                 r
                 for r in whole.roots
-                if (proof and r in known) or not any(overlap(r, p) for p in degenerate if not p.is_zero)
+                if (proof and r in known) or not self._points.is_spurious(r, is_hidden=is_hidden)
             )
             has_more = has_more or bool(whole.unproved) or len(apart) < len(whole.roots)
             if any(is_right(r) for r in whole.roots if r not in apart):
@@ -467,7 +468,7 @@ class _Searched:
             rests = growth is not None and growth[1]
         if proof:
             unsure = "" if rests or not has_more else NONE_ON_AXIS
-        seen = list(chain(*sides[:-1]))
+        seen = [*chain(*sides[:-1]), *(h.root for h in degenerate if not h.is_proved)]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
         unseen = [r for r in sides[-1] if not r.is_zero] + root_at_zero(at_rest)
@@ -558,16 +559,6 @@ def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]
     if loop is None:
         return "", False
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
-
-
-def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
-    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
-    roots: list[Root] = []
-    for law in bound.kernels.dispersions:
-        pair = (law.characteristic[2], law.discriminant) if law.kind == "pair" else ()
-        for value in (*law.characteristic[:1], *law.meets, *pair):
-            roots += [] if value.is_zero else polynomial_roots(bound, value, ACCUMULATION_DIGITS)
-    return roots
 
 
 def _exclusion(hole: Cell) -> Exclusion:

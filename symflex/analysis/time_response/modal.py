@@ -30,9 +30,9 @@ from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.degenerate import degenerate_points
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
-from symflex.roots.locate import degenerate_points
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Modes

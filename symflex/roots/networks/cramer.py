@@ -282,6 +282,16 @@ class CramerEquations:
         den = _hadamard(sizes[:-1], len(sizes) - 1) + _log(divisor)
         return den, _hadamard(sizes, len(sizes))
 
+    def bounds_on(self, box: acb) -> tuple[float, float]:
+        """Return ln of bounds on abs(den) and abs(num) on a box; infinite where a denominator may vanish."""
+        values, factors = self._values(box), dict[int, acb]()
+        sizes = [{j: x.abs_upper() for j, x in row.items()} for row in self._rows(values, factors)]
+        divisor = self._value(self.divisor, values, factors).abs_upper()
+        if not all(x.is_finite() for x in (divisor, *(x for row in sizes for x in row.values()))):
+            return inf, inf
+        den = _hadamard(sizes[:-1], len(sizes) - 1) + _log(divisor)
+        return den, _hadamard(sizes, len(sizes))
+
     def _majorants(self, radius: float) -> dict[str, tuple[arb, bool]]:
         """Return a bound on every generator in the disc, and whether it is a constant."""
         equations = self.equations

@@ -1,0 +1,130 @@
+"""Points at which wavenumbers vanish or meet, and which poles and hidden modes a model has there.
+
+Input: a bound transfer function with kernels and the points where its laws of waves degenerate.
+Output: how often denominator and numerator of the equations vanish there. A formula in wavenumbers is 0/0 at
+such a point, so its factors do not say.
+
+    a free beam on a foundation, k_f + rho A s^2 = 0: all wavenumbers vanish, and it turns without strain
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.balls import precision
+from symflex.model import with_numbers
+from symflex.model.along import is_tapered
+from symflex.roots.distributed.side import polynomial_roots
+from symflex.roots.functions.kernel_function import split_off_kernels
+from symflex.roots.pole_zero_map import HiddenRoot
+from symflex.roots.problem import cancelled
+from symflex.roots.root import Root, count_roots, overlap
+from symflex.transfer.of_model import assemble_sparse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from symflex.roots.networks.cramer import CramerEquations
+    from symflex.transfer import BoundTransferFunction
+
+NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
+POINT_DIGITS = 50
+"""Of degenerate points: more than roots of the equations are told from them by."""
+
+
+def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
+    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
+    roots: list[Root] = []
+    for law in bound.kernels.dispersions:
+        pair = (law.characteristic[2], law.discriminant) if law.kind == "pair" else ()
+        for value in (*law.characteristic[:1], *law.meets, *pair):
+            roots += [] if value.is_zero else polynomial_roots(bound, value, POINT_DIGITS)
+    return roots
+
+
+@dataclass(eq=False)
+class DegeneratePoints:
+    """The degenerate points of a function, with what its equations say of them."""
+
+    bound: BoundTransferFunction
+    roots: Sequence[Root]
+    # How many poles and hidden modes lie at points of the upper half plane; ``None`` where that is not known.
+    _counts: dict[complex, tuple[int, int] | None] = field(default_factory=dict)
+
+    @cached_property
+    def distinct(self) -> list[Root]:
+        """The points but 0, each once, as often as hidden factors of s alone vanish there."""
+        points: list[Root] = []
+        for point in self.roots:
+            if not (point.is_zero or any(overlap(point, other) for other in points)):
+                points.append(point)
+        plain, _ = split_off_kernels(cancelled(self.bound), self.bound.kernels)
+        modes = polynomial_roots(self.bound, plain, POINT_DIGITS) if points else []
+        return [replace(p, multiplicity=count_roots(m for m in modes if overlap(p, m))) for p in points]
+
+    @property
+    def unproved(self) -> str:
+        """Why hidden modes may be missing at the points that were looked at; empty where none is."""
+        return NOT_COUNTED if None in self._counts.values() else ""
+
+    def hidden(self, points: Iterable[Root]) -> list[HiddenRoot]:
+        """Return what is hidden at some of the distinct points, in the equations where that is known."""
+        modes: list[HiddenRoot] = []
+        for point in points:
+            counts = self._counted(point)
+            exact = point.multiplicity if counts is None else min(point.multiplicity, counts[1])
+            modes += [HiddenRoot(replace(point, multiplicity=exact))] if exact else []
+            if counts is not None and (times := counts[1] - exact):
+                modes.append(HiddenRoot(_about(point, times), "coincident"))
+        return modes
+
+    def coincident_elsewhere(self, modes: Iterable[HiddenRoot]) -> list[HiddenRoot]:
+        """Return the modes that are hidden because a pole and a zero agree, but for those at points."""
+        shared = (h for h in modes if h.cause == "coincident")
+        return [h for h in shared if not any(overlap(h.root, p) for p in self.distinct)]
+
+    def is_spurious(self, root: Root, *, is_hidden: bool) -> bool:
+        """Tell whether a root of a formula belongs, for all that is known, to how the formula is written."""
+        for point in self.distinct:
+            if overlap(root, point):
+                counts = self._counted(point)
+                return not (counts[is_hidden] if counts else is_hidden and point.multiplicity)
+        return False
+
+    def _counted(self, point: Root) -> tuple[int, int] | None:
+        """Return how many poles and hidden modes the equations have at a point, ``None`` if not known."""
+        from symflex.roots.networks.at_point import roots_about  # few models have such points
+
+        place = complex(float(point.re.mid()), abs(float(point.im.mid())))
+        if place not in self._counts and self.bound.is_of_model:
+            den, num = (None, None) if self._cramer is None else roots_about(self._cramer, point.enclosure())
+            num = den if self.bound.ratio.is_zero else num if den else 0
+            counts = None if den is None or num is None else (max(den - num, 0), min(den, num))
+            self._counts[place] = counts
+        return self._counts.get(place)
+
+    @cached_property
+    def _cramer(self) -> CramerEquations | None:
+        """The equations of the function; ``None`` of members that taper."""
+        from symflex.roots.networks.cramer import CramerEquations
+
+        bound, source = self.bound, self.bound.source
+        if is_tapered(source.model):
+            return None
+        equations = assemble_sparse(with_numbers(source.model, (), dict(bound.values), in_kernels=True))
+        return CramerEquations.of(equations, source.output.name, source.input.name)
+
+
+def _about(point: Root, times: int) -> Root:
+    """Return roots of the equations that are proved to lie about a point; conjugates of one are equal."""
+    from symflex.roots.networks.at_point import NARROW
+
+    with precision(point.working_bits()):
+        reach = arb(0, (point.size() * arb(2) ** -NARROW).upper())
+        is_real = point.is_real and times == 1
+        re, im = point.re + reach, point.im if is_real else point.im + reach
+    return Root(re, im, times, on_imaginary_axis=False, is_real=is_real, certified=times == 1)

@@ -1,0 +1,114 @@
+"""What is hidden where wavenumbers vanish or meet, against motions without strain that are known there.
+
+A free slender beam on a foundation moves without strain, w = a + b x, where rho A s^2 + c_f s + k_f = 0. A
+force at one end, with the motion there as output, sees one of these motions; the turn about that end is
+hidden.
+Axial force and rotary inertia resist the turn, not the translation.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symflex import pipeline
+from symflex.roots import Band, Modes
+from symflex.roots.degenerate import NOT_COUNTED, DegeneratePoints, degenerate_points
+from symflex.roots.locate import locate
+from symflex.roots.networks import at_point
+from tests.unit.roots.stand_ins import places
+
+BEAM = """
+symflex = 1
+[elements]
+b = {{ type = "beam", between = ["a", "c"], EI = 4, rhoA = 2, l = 1, {more} }}
+{ends}
+[inputs]
+F = {{ {load} }}
+[outputs]
+Y = "{output}"
+"""
+TURNED = """
+symflex = 1
+[elements]
+e0 = { type = "beam", between = ["x0", "x1"], EI = 1e4, rhoA = 1, l = 100, k_f = 100 }
+e1 = { type = "beam", between = ["x1", "x2"], EI = 1e4, rhoA = 1, l = 100, k_f = 100, eta = 0.001 }
+tip = { type = "rigid_body", at = "x2", m = 6.97 }
+sp = { type = "spring", between = ["x2", "ground"], k = 3.75 }
+[inputs]
+F = { torque = "x2.theta" }
+[outputs]
+X = "x2"
+T = "x2.theta"
+"""
+
+
+def bound(more="k_f = 18", load='force = "a.y"', output="a.y", ends=""):
+    model = pipeline.loads(BEAM.format(more=more, load=load, output=output, ends=ends))
+    return pipeline.derive_bound(model, model.transfer_functions)[0]
+
+
+def hidden(function, place):
+    """Return how many modes are hidden at a degenerate point."""
+    points = DegeneratePoints(function, degenerate_points(function))
+    (here,) = [p for p in points.distinct if abs(complex(p) - place) < 1e-9]
+    assert not points.unproved
+    return sum(h.root.multiplicity for h in points.hidden([here]))
+
+
+def test_motions_without_strain_that_input_or_output_do_not_see_are_hidden():
+    pinned = 'p = { type = "pin", at = "a" }'
+    damped = complex(-1, 8**0.5)
+    for given, place, expected in [
+        ((), 3j, 1),
+        (("k_f = 18", 'force = "a.y"', "c.y"), 3j, 1),
+        (("k_f = 18", 'torque = "a.theta"', "a.theta"), 3j, 1),
+        (("k_f = 18", 'force = "a.y"', "a.y", 'm = { type = "mass", at = "c.y", m = 1 }'), 3j, 0),
+        (("k_f = 18", 'torque = "a.theta"', "a.theta", pinned), 3j, 0),
+        (("k_f = 18, N = 3",), 3j, 0),
+        (('k_f = 18, theory = "rayleigh", rhoI = 0.1',), 3j, 0),
+        (("k_f = 18, c_f = 4",), damped, 1),
+        (("k_f = 18, c_f = 4, eta = 0.01",), damped.conjugate(), 1),
+        (("c_f = 4",), -2, 1),
+    ]:
+        assert hidden(bound(*given), place) == expected, given
+
+
+def test_sections_that_turn_alike_at_the_cut_off_frequency_are_hidden_from_a_force():
+    # Pinned ends: w = 0, phi = 1 at kappa G A = -rho I s^2 does no work with a force across.
+    more = 'theory = "timoshenko", rhoI = 2, kappaGA = 18'
+    ends = 'p = { type = "pin", at = "a" }\nq = { type = "pin", at = "c" }'
+    assert hidden(bound(more, 'torque = "a.theta"', "a.theta", ends), 3j) == 0
+    halves = BEAM.replace('"c"], EI', '"m"], EI') + 'Z = "m.y"\n'
+    second = f'r = {{ type = "beam", between = ["m", "c"], EI = 4, rhoA = 2, l = 1, {more} }}\n{ends}'
+    model = pipeline.loads(halves.format(more=more, load='force = "m.y"', output="m.y", ends=second))
+    for function in pipeline.derive_bound(model, model.transfer_functions[:1]):
+        assert hidden(function, 3j) == 1
+
+
+def test_a_hidden_turn_is_listed_among_the_roots_with_its_place_and_in_the_verdict():
+    found = locate(bound(), Band(Fraction("0.4"), Fraction("0.5")), 15)
+    assert places(h.root for h in found.hidden) == [(0, 3, 1), (0, -3, 1)]
+    assert places(found.poles) == [(0, 3, 1), (0, -3, 1)]
+    assert found.certificate.certified
+
+
+def test_what_is_not_counted_is_said_and_nothing_is_certified(monkeypatch):
+    monkeypatch.setattr(at_point, "roots_about", lambda *_: (None, None))
+    found = locate(bound(), Band(Fraction("0.4"), Fraction("0.5")), 15)
+    assert found.certificate.reason == NOT_COUNTED
+
+
+@pytest.mark.slow
+def test_two_beams_that_turn_about_the_tip_without_strain_hide_it_from_its_deflection():
+    # The determinant by transfer matrices (mpmath, 150 digits) has one zero within 1e-6 of 10j.
+    model = pipeline.loads(TURNED)
+    seen, turned = pipeline.derive_bound(model, model.transfer_functions)
+    found = locate(seen, Modes(3), 15)
+    assert found.certificate.certified
+    assert [(round(float(h.root.im.mid()), 12), h.root.multiplicity) for h in found.hidden] == [
+        (10, 1),
+        (-10, 1),
+    ]
+    assert hidden(turned, 10j) == 0
