@@ -239,8 +239,18 @@ class RespondOptions:
         "step",
         "--to",
         **SHOWN,
-        metavar="step|impulse|ramp|FILE.csv",
-        help="Input from t = 0 on; a file has two columns, time_s and the value.",
+        metavar="step|impulse|ramp|free|FILE.csv",
+        help="Input from t = 0 on; a file has two columns, time_s and the value; free: no input.",
+    )
+    hold: bool = option(
+        False, "--hold", help="Hold every value of a file until the next one, as digital controllers do."
+    )
+    initial: Sequence[str] = option(
+        (),
+        "--initial",
+        metavar="STATE=VALUE",
+        multiple=True,
+        help="Value before t = 0: x='1 mm', 's*x=0.1 m/s', coil.i=2; may be repeated.",
     )
     until: str | None = option(
         None,

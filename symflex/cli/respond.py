@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.model import read_settings
 from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
@@ -27,9 +28,10 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     The input is of unit size; the system is at rest before t = 0. Every value is proved to lie within its
     radius: the response is computed from proved poles, not from time steps.
 
-    --to FILE.csv joins its samples by straight lines; the input is 0 before the first sample and constant
-    after the last. This is exact, too. --shaped passes the input through the shaper that 'symflex shape'
-    prints for the same transfer function.
+    --to FILE.csv joins its samples by straight lines, or with --hold by steps; the input is 0 before the
+    first sample and constant after the last. This is exact, too. Two samples at one time are a jump.
+    --initial begins with values of states, at the first sample of a file; --to free adds no input. --shaped
+    passes the input through the shaper that 'symflex shape' prints for the same transfer function.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from above.
@@ -48,23 +50,25 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         evenly,
         find_step_info,
         forced_response,
+        free_motion,
+        response_from,
         response_text,
-        time_response,
     )
     from symflex.data.measurement.input_signal import ENDINGS, read_signal
     from symflex.transfer import BoundNested
 
-    _check_place(given)
-    if given.shaped is None and (given.joint or given.modes != 1):
-        raise UsageError(Diagnostic("SF902", "--modes and --joint need --shaped zv, zvd or ei"))
-    until = None if given.until is None else duration(given.until, "--until")
     place = Path(given.to)
-    signal = read_signal(place) if place.suffix.lower() in ENDINGS else None
+    is_file = place.suffix.lower() in ENDINGS
+    _check_options(given, is_file=is_file)
+    initial = read_settings(given.initial, "--initial")
+    until = None if given.until is None else duration(given.until, "--until")
+    signal = read_signal(place) if is_file else None
     for guess in signal.guesses if signal else ():
         note(f"{place}: {guess}")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
+    free = free_motion(model, pair, initial) if initial else None
     shaper = None
     if given.shaped is not None:
         from symflex.analysis.input_shaping import input_shaper
@@ -74,26 +78,25 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     if signal is None:
         # With waves, poles are found only where they are needed for the last time anyway.
         known = roots_if_found(bound) if until is None or not bound.is_distributed else None
-        last = until or Fraction(f"{default_until(bound, known):.2g}")
+        last = until or Fraction(
+            f"{max(default_until(bound, known), default_until(free) if free else 0):.2g}"
+        )
         times = SampleTimes.evenly(last, given.points or POINTS)
-        response = time_response(bound, given.to, times, given.digits, shaper)
+        response = response_from(free, bound, given.to, times, given.digits, shaper)
     else:
-        wanted = signal.times
+        wanted = tuple(dict.fromkeys(signal.times))
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
         whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
-        forced = forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
-        response = replace(forced, input=Path(given.to).name)
-    if given.output and Path(given.output).suffix.lower() == TABLE:
-        from symflex.files.write import write_atomically
-
-        write_atomically(Path(given.output), response.to_csv().encode())
-        note(f"wrote {given.output}")
-    elif given.output:
-        _draw(response, given, Path(given.output))
-        note(f"wrote {given.output}")
+        forced = forced_response(
+            whole, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
+        )
+        response = replace(forced, input=place.name)
+    response = replace(response, initial=", ".join(f"{name} = {x}" for name, x in initial.items()))
+    if given.output:
+        _write(response, given, Path(given.output))
     else:
-        is_told = given.to == "step" and shaper is None and response.certified and _may_rest(known)
+        is_told = given.to == "step" and not (shaper or free) and response.certified and _may_rest(known)
         info = find_step_info(bound, given.digits, response.modes) if is_told else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
@@ -118,8 +121,18 @@ def _may_rest(known: PoleZeroMap | None) -> bool:
     return not any(not p.is_zero and (p.on_imaginary_axis or p.re > 0) for p in poles)
 
 
-def _check_place(given: RespondOptions) -> None:
-    """Refuse what is not said of a file, or of a figure where none is written."""
+def _check_options(given: RespondOptions, *, is_file: bool) -> None:
+    """Refuse options that need others: a file, a figure, a shaper, initial values."""
+    for is_wrong, message in (
+        (
+            given.shaped is None and (given.joint or given.modes != 1),
+            "--modes and --joint need --shaped zv, zvd or ei",
+        ),
+        (given.hold and not is_file, "--hold needs a file of samples: --to FILE.csv"),
+        (given.to == "free" and not given.initial, "--to free needs --initial, as in --initial x='1 mm'"),
+    ):
+        if is_wrong:
+            raise UsageError(Diagnostic("SF902", message))
     if given.output:
         check_place(given.output, (TABLE, *PICTURES))
         if given.as_json:
@@ -128,6 +141,17 @@ def _check_place(given: RespondOptions) -> None:
     if not is_figure and any((given.xlim, given.ylim, given.width, given.font)):
         message = "--xlim, --ylim, --width and --font apply only to a figure"
         raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
+
+
+def _write(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:
+    """Write a table, or a figure as options ask for it."""
+    from symflex.files.write import write_atomically
+
+    if path.suffix.lower() == TABLE:
+        write_atomically(path, response.to_csv().encode())
+    else:
+        _draw(response, given, path)
+    note(f"wrote {path}")
 
 
 def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:

@@ -31,8 +31,8 @@ Setting = str | int | float | Fraction | Decimal
 OPTION = "--set"
 
 
-def read_settings(texts: Sequence[str]) -> dict[str, str]:
-    """Return what ``NAME=VALUE`` texts say.
+def read_settings(texts: Sequence[str], option: str = OPTION) -> dict[str, str]:
+    """Return what ``NAME=VALUE`` texts of an option say.
 
     Raises UsageError: SF902 for a text that is not NAME=VALUE, or a name that is given twice.
 
@@ -45,8 +45,9 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (sign and name and value):
-            message = f"{OPTION} takes NAME=VALUE, found '{text[:60]}'"
-            raise UsageError(Diagnostic("SF902", message, None, f"for instance {OPTION} k='80 kN/m'"))
+            message = f"{option} takes NAME=VALUE, found '{text[:60]}'"
+            example = f"{option} k='80 kN/m'" if option == OPTION else f"{option} x='1 mm'"
+            raise UsageError(Diagnostic("SF902", message, None, f"for instance {example}"))
         if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"":
             value = value[1:-1]  # as a specification writes it
         if name in settings:

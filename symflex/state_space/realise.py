@@ -427,39 +427,45 @@ class _Realisation:
         taken: set[str] = set()
         for (column, order), parts in zip(keys, direct, strict=True):
             variable = self.rows.unknowns[column]
-            owner, component = variable.owner, variable.component
-            quantity = Attribute(owner, component) if component else Name(owner)
-            terms: Combination = ((_derivative(quantity, order), one),)
+            terms: Combination = ((derivative(quantity_of(variable), order), one),)
             for i, part in sorted(parts.items()):
                 for j, value in sorted(part.items()):
-                    terms = (*terms, (_derivative(Name(self.rows.inputs[j]), i), -value))
+                    terms = (*terms, (derivative(Name(self.rows.inputs[j]), i), -value))
             rate = NAMES_OF_RATES[order] if order < len(NAMES_OF_RATES) else f"_dot{order}"
             label = str(variable).replace(".", "_") + rate + (REST if parts else "")
             while label in taken:
                 label += "_"
             taken.add(label)
-            states.append(State(label, terms, self._unit(variable, order)))
+            states.append(State(label, terms, unit_of_quantity(self.model, variable, order)))
         return tuple(states)
 
-    def _unit(self, variable: Variable, power: int) -> str:
-        domains = {n.name: n.domain for n in self.model.nodes}
-        if variable.kind == "node":
-            domain = COMPONENT_DOMAIN.get(variable.component) or domains.get(variable.owner)
-            unit = ACROSS_UNIT.get(str(domain), "")
-        elif variable.component in THROUGH_UNITS:
-            unit = THROUGH_UNITS.get(variable.component, "")
-        elif variable in dict(self.model.signal_units):
-            unit = str(dict(self.model.signal_units)[variable])
-        else:
-            unit = next((o.unit for o in self.model.outputs if variable == Variable("value", o.name)), "")
-        if not unit or not power:
-            return unit
-        if unit in RATES and power < len(RATES[unit]):
-            return RATES[unit][power]
-        return str(unit_of(unit).dimension / unit_of("s").dimension ** power)
+
+def unit_of_quantity(model: Model, variable: Variable, power: int) -> str:
+    """Return the SI unit of a derivative of an unknown, empty when it is not known."""
+    domains = {n.name: n.domain for n in model.nodes}
+    if variable.kind == "node":
+        domain = COMPONENT_DOMAIN.get(variable.component) or domains.get(variable.owner)
+        unit = ACROSS_UNIT.get(str(domain), "")
+    elif variable.component in THROUGH_UNITS:
+        unit = THROUGH_UNITS.get(variable.component, "")
+    elif variable in dict(model.signal_units):
+        unit = str(dict(model.signal_units)[variable])
+    else:
+        unit = next((o.unit for o in model.outputs if variable == Variable("value", o.name)), "")
+    if not unit or not power:
+        return unit
+    if unit in RATES and power < len(RATES[unit]):
+        return RATES[unit][power]
+    return str(unit_of(unit).dimension / unit_of("s").dimension ** power)
 
 
-def _derivative(quantity: Expression, order: int) -> Expression:
+def quantity_of(variable: Variable) -> Expression:
+    """Return an unknown as models write it."""
+    return Attribute(variable.owner, variable.component) if variable.component else Name(variable.owner)
+
+
+def derivative(quantity: Expression, order: int) -> Expression:
+    """Return a derivative of a quantity in time."""
     return product_of([power_of(Name(LAPLACE), order), quantity])
 
 

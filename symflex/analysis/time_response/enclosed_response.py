@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 SCHEMA = "symflex.respond/1"
 INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
 """How often the unit impulse is integrated to become the input."""
+FREE = "free"
+"""The name of no input."""
+OF_UNIT_SIZE = (*INTEGRATIONS, FREE)
 UP = 1 + 2.0**-40
 """Makes up for rounding when the radius of a ball becomes a double."""
 LARGEST_POWER = 100_000
@@ -41,7 +44,7 @@ IMPULSES = ("an impulse", "the derivative of an impulse")
 
 @dataclass(frozen=True, eq=False)
 class EnclosedResponse:
-    """What an output does after t = 0, the system being at rest before, when an input of unit size begins.
+    """What an output does after t = 0 when an input of unit size begins, from rest or from ``initial``.
 
     Where it jumps it has two values: that at t = 0 is the limit from above, and the ball of one at a later
     jump holds both sides.
@@ -75,6 +78,8 @@ class EnclosedResponse:
         The proved sum over modes that it is, at any time, where it was found so.
     method : str
         What found it, such as ``partial fractions`` or ``passive modes``; empty where nothing is to be found.
+    initial : str
+        Values of states from which it begins, such as ``x = 1 mm``.
     refused : tuple of str
         Where it is not certified, the ways that would prove it, and why each does not answer.
     """
@@ -92,6 +97,7 @@ class EnclosedResponse:
     shaper: str | None = None
     modes: PartialSum | None = field(default=None, repr=False)
     method: str = ""
+    initial: str = ""
     refused: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -120,8 +126,8 @@ class EnclosedResponse:
     def title(self) -> str:
         """What it is, such as ``step response``."""
         shaped = f", shaped by {self.shaper.upper()}" if self.shaper else ""
-        plain = f"{self.input} response" if self.input in INTEGRATIONS else f"response to {self.input}"
-        return plain + shaped
+        plain = f"{self.input} response" if self.input in OF_UNIT_SIZE else f"response to {self.input}"
+        return plain + shaped + (f" from {self.initial}" if self.initial else "")
 
     @property
     def values(self) -> npt.NDArray[np.float64]:
@@ -162,12 +168,14 @@ class EnclosedResponse:
             ],
         }
         document |= {"shaper": self.shaper} if self.shaper else {}
+        document |= {"initial": self.initial} if self.initial else {}
         return document if self.reason is None else {**document, "reason": self.reason}
 
     def to_csv(self) -> str:
         """Return a table of times, values and radii, with a header."""
         heads = [f"# tf: {self.tf}", f"# input: {self.input}", f"# unit: {self.unit or 'unknown'}"]
         heads += [f"# shaper: {self.shaper}"] if self.shaper else []
+        heads += [f"# initial: {self.initial}"] if self.initial else []
         if not self.certified:
             heads.append(f"# not certified: {self.reason}")
         told = [self.told(y) for y in self.enclosures]

@@ -1,20 +1,20 @@
-"""The response to an input that is given by samples, and is a straight line between them.
+"""The response to an input that is given by samples, with straight lines or steps between them.
 
 Input: a bound transfer function, samples of its input, times. Output: an enclosed response.
 
     u = 0, 2, 3 at t = 0, 1, 2    is    2 r(t) - r(t - 1) - r(t - 2)
 
 with the ramp r: one ramp more at every bend, and after the last sample the input stays where it is. So is the
-response, with the ramp's response in place of r; one step comes first where the input begins with a jump.
-Nothing is approximated between samples, and a step in time is never made. All times are whole multiples of
-one duration, so the sum is a product of two polynomials, in balls.
+response, with the ramp's response in place of r. Where the input jumps, as it does at every sample that is
+held and where two samples have one time, a step's response begins. Nothing is approximated between samples.
+All times are whole multiples of one duration, so the sum is a product of polynomials, in balls.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from math import gcd, lcm
 from typing import TYPE_CHECKING
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response.enclosed_response import EnclosedResponse
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 MORE_DIGITS = 10
 """Of the ramp's response: after many bends large terms cancel each other."""
@@ -54,16 +54,21 @@ def forced_response(
     times: Sequence[Fraction],
     digits: int = 12,
     shaper: InputShaper | None = None,
+    *,
+    is_held: bool = False,
+    free: AnyBoundFunction | None = None,
 ) -> EnclosedResponse:
     """Return the response, from rest, at ``times`` to an input with ``values`` at the times ``sampled`` [s].
 
     Before the first sample the input is 0, between two a straight line, after the last one it keeps its
-    value; a ``shaper`` convolves it with its impulses.
+    value; with ``is_held`` it keeps every value until the next. Two samples at one time are a jump; there the
+    value of the response is that after it. A ``shaper`` convolves the input with its impulses. A
+    :func:`~symflex.analysis.time_response.free_motion` from the first sample on is added.
 
     Raises
     ------
     UsageError
-        SF811 for times that do not increase, or have no common measure coarse enough.
+        SF811 for times that decrease, or have no common measure coarse enough.
     UncertifiedError
         SF810 where the transfer function differentiates its input: the response would have impulses.
 
@@ -83,37 +88,52 @@ def forced_response(
     bends, moments = places[: len(sampled)], places[len(sampled) :]
     count = max(moments, default=0) + 1
     lags = SampleTimes.evenly(step * max(count - 1, 1), max(count, 2))
-    ramp = time_response(bound, "ramp", lags, digits + MORE_DIGITS, shaper)
-    if ramp.impulses or ramp.jumps:
+    turns, leaps = dict.fromkeys(bends, Fraction(0)), dict.fromkeys(bends, Fraction(0))
+    leaps[bends[0]] = values[0]
+    for (start, low), (end, high) in pairwise(zip(bends, values, strict=True)):
+        if is_held or start == end:
+            leaps[end] += high - low
+        else:
+            slope = (high - low) / ((end - start) * step)
+            turns[start], turns[end] = turns[start] + slope, turns[end] - slope
+    parts = {
+        kind: {i: x for i, x in sizes.items() if x and i < count}
+        for kind, sizes in (("ramp", turns), ("step", leaps))
+    }
+    if not any(parts.values()):
+        parts["ramp"] = {0: Fraction(0)}  # whose response says what is proved
+    unit = {
+        k: time_response(bound, k, lags, digits + MORE_DIGITS, shaper) for k, sizes in parts.items() if sizes
+    }
+    if free is not None:
+        parts["free"] = {0: Fraction(1)}
+        unit["free"] = time_response(free, "impulse", lags, digits + MORE_DIGITS)
+    if "ramp" in unit and (unit["ramp"].impulses or unit["ramp"].jumps):
         message = f"{bound.name} differentiates its input: an input with kinks makes its output jump"
         raise UncertifiedError(Diagnostic("SF810", message, None, "filter the output, or the input"))
-    reasons = [ramp.reason]
-    rises, runs = [b - a for a, b in pairwise(values)], [b - a for a, b in pairwise(bends)]
-    slopes = [rise / (run * step) for rise, run in zip(rises, runs, strict=True)]
-    impulses: tuple[ImpulseAt, ...] = ()
-    jumps: tuple[JumpAt, ...] = ()
+    total = [arb(0)] * count
+    impulses: list[ImpulseAt] = []
+    jumps: list[JumpAt] = []
     with precision(BITS):
-        turns = [arb(0)] * (bends[-1] + 1)
-        for place, before, after in zip(bends, [Fraction(0), *slopes], [*slopes, Fraction(0)], strict=True):
-            turns[place] = ball(after - before)
-        total = (arb_poly(turns[:count]) * arb_poly(list(ramp.enclosures))).coeffs()
-        total += [arb(0)] * (count - len(total))
-        if values[0]:
-            begun, origin = ball(values[0]), ball(first)
-            sudden = time_response(bound, "step", lags, digits + MORE_DIGITS, shaper)
-            reasons.append(sudden.reason)
-            total = [y + begun * s for y, s in zip(total, sudden.enclosures, strict=False)]
-            impulses = tuple(ImpulseAt(i.time + origin, i.order, i.weight * begun) for i in sudden.impulses)
-            jumps = tuple(JumpAt(j.time + origin, j.height * begun) for j in sudden.jumps)
+        for kind, own in unit.items():
+            sizes = [ball(parts[kind].get(i, Fraction(0))) for i in range(max(parts[kind]) + 1)]
+            summed = (arb_poly(sizes) * arb_poly(list(own.enclosures))).coeffs()
+            total = [a + b for a, b in zip_longest(total, summed[:count], fillvalue=arb(0))]
+            for place, size in parts[kind].items():
+                at, factor = ball(first + place * step), ball(size)
+                impulses += [ImpulseAt(i.time + at, i.order, i.weight * factor) for i in own.impulses]
+                at_once = [JumpAt(arb(0), own.enclosures[0])] if place and kind == "step" else []
+                fronts = [j for j in (*at_once, *own.jumps) if not j.height.contains(0)]
+                jumps += [JumpAt(j.time + at, j.height * factor) for j in fronts]
         response = tuple(total[i] if i >= 0 else arb(0) for i in moments)
-    reason = next((r for r in reasons if r is not None), None)
+    reason = next((own.reason for own in unit.values() if own.reason is not None), None)
     return replace(
-        ramp,
+        next(iter(unit.values())),
         input=FORCED,
         times=np.array([float(t) for t in times]),
         enclosures=response,
-        impulses=impulses,
-        jumps=jumps,
+        impulses=tuple(impulses),
+        jumps=tuple(sorted(jumps, key=lambda j: j.time.mid())),
         certified=reason is None,
         reason=reason,
         digits=digits,
@@ -144,10 +164,10 @@ def exact_values(values: npt.ArrayLike, count: int) -> list[Fraction]:
 def _grid(sampled: Sequence[Fraction], times: Sequence[Fraction]) -> tuple[Fraction, Fraction, list[int]]:
     """Return the first sample's time, a step all times are multiples of from there, and these multiples."""
     every = [*sampled, *times]
-    for a, b in (*pairwise(sampled), *pairwise(times)):
-        if not a < b:
-            message = f"times must increase: {float(b):g} s follows {float(a):g} s"
-            raise UsageError(Diagnostic("SF811", message))
+    falling = (p for p in pairwise(sampled) if p[1] < p[0])
+    for a, b in (*falling, *(p for p in pairwise(times) if p[1] <= p[0])):
+        message = f"times must increase: {float(b):g} s follows {float(a):g} s"
+        raise UsageError(Diagnostic("SF811", message))
     off = [t - sampled[0] for t in every]
     scale = lcm(*(t.denominator for t in off))
     step = Fraction(gcd(*(int(t * scale) for t in off)), scale) or Fraction(1)

@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from itertools import pairwise
+from operator import eq, le, lt
 from pathlib import Path
 from typing import Final
 
@@ -67,7 +68,7 @@ EVEN: Final = 1e-6
 class InputSignal:
     """Samples of an input, exact as written."""
 
-    times: tuple[Fraction, ...]  # increasing [s]
+    times: tuple[Fraction, ...]  # increasing [s]; twice where the input jumps
     values: tuple[Fraction, ...]  # as many
     guesses: tuple[str, ...] = ()  # what the file does not say, or holds besides
 
@@ -87,7 +88,10 @@ def read_signal(path: str | Path) -> InputSignal:
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     suffix = format_of(name, data)
-    return _of_arrays(name, arrays_in(name, data, suffix)) if suffix in ARRAYS else _signal(name, data)
+    signal = _of_arrays(name, arrays_in(name, data, suffix)) if suffix in ARRAYS else _signal(name, data)
+    jumps = [f"{float(a):g} s" for a, b in pairwise(signal.times) if a == b]
+    said = f"the input jumps where two samples have one time: {listed_names(jumps)}"
+    return replace(signal, guesses=(*signal.guesses, said)) if jumps else signal
 
 
 def _signal(name: str, data: bytes) -> InputSignal:
@@ -135,7 +139,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
         if numbers[0] is None or numbers[1] is None:
             continue
         time = start + numbers[0] * unit
-        if times and time <= times[-1]:
+        if times and (time < times[-1] or times[-2:] == [time, time]):
             problems.append(Diagnostic("SF604", "times do not increase", cells[at]))
         times.append(time)
         values.append(numbers[1])
@@ -207,7 +211,8 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
             place = int(np.argmin(np.isfinite(numbers))) + 1
             raise DataError(Diagnostic("SF603", f"'{name}': {what} {place} is not a finite number"))
         exact.append([Fraction(number) for number in numbers.tolist()])
-    if not all(a < b for a, b in pairwise(exact[0])):
+    a, b = exact[0], exact[0][1:]
+    if not (all(map(le, a, b)) and all(map(lt, a, b[1:]))):  # two at one time are a jump
         raise DataError(Diagnostic("SF604", f"'{name}': times do not increase"))
     seconds = (time * factor for time in _decimal_times(exact[0]))
     return InputSignal(tuple(seconds), tuple(exact[1]), tuple(guesses))
@@ -223,7 +228,8 @@ def _decimal_times(times: list[Fraction]) -> list[Fraction]:
     decimal = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
     if np.all(np.abs(numbers - places * step) <= EVEN * step):
         decimal = [Fraction(str(step)) * int(place) for place in places.tolist()]
-    return decimal if all(a < b for a, b in pairwise(decimal)) else times
+    is_kept = map(eq, *(map(lt, x, x[1:]) for x in (decimal, times)))
+    return decimal if all(is_kept) else times
 
 
 def _decimal(text: str, decimal: str = ".") -> Fraction | None:

@@ -221,11 +221,13 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
         (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 mode that oscillate, not 7"),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
         (["--to", "odd.csv"], 2, "the times have no usable common step"),
-        (["--to", "same.csv"], 3, "same.csv:3:1: error[SF604]: times do not increase"),
+        (["--to", "same.csv"], 3, "same.csv:4:1: error[SF604]: times do not increase"),
+        (["--to", "free"], 2, "--to free needs --initial"),
+        (["--hold"], 2, "--hold needs a file of samples"),
     ):
         (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
         (tmp_path / "odd.csv").write_text("time_s,u\n0,0\n0.1234567890123456,1\n1,1\n", encoding="utf-8")
-        (tmp_path / "same.csv").write_text("time_s,u\n0,0\n0,1\n", encoding="utf-8")
+        (tmp_path / "same.csv").write_text("time_s,u\n0,0\n0,1\n0,2\n", encoding="utf-8")
         done = oscillator("respond", "osc.toml", "--tf", "X/F", *asked)
         assert (done.code, done.err.count(said)) == (code, 1), (asked, code, said)
 
@@ -263,3 +265,129 @@ def test_a_response_of_an_unstable_system_says_that_it_grows(oscillator, tmp_pat
     for until in ((), ("--until", "1s")):
         assert said in oscillator("respond", "fall.toml", *until).out
     assert "grows" not in oscillator("respond", "osc.toml", "--tf", "X/F").out
+
+
+def motion_of_oscillator(t, x, v, m=2.0, b=4.0, k=800.0):
+    """Return the closed form of a damped oscillator's motion from a place and a speed."""
+    decay, omega = b / (2 * m), math.sqrt(k / m - (b / (2 * m)) ** 2)
+    return math.exp(-decay * t) * (x * math.cos(omega * t) + (v + decay * x) / omega * math.sin(omega * t))
+
+
+@pytest.mark.parametrize(
+    ("initial", "x", "v"),
+    [
+        (["x=1 mm"], 0.001, 0),
+        (["x=0.001", "s*x=0.1 m/s"], 0.001, 0.1),
+        (["s*x = 360 km/h"], 0, 100),
+        (["s * x=-pi/2 m/s", "x = 2 cm"], 0.02, -math.pi / 2),
+    ],
+)
+def test_a_free_motion_is_the_closed_form(initial, x, v, oscillator):
+    options = [part for text in initial for part in ("--initial", text)]
+    found = oscillator(
+        "respond", "osc.toml", "--to", "free", *options, "--until", "0.5", "--points", "6", "--json"
+    )
+    truth = [motion_of_oscillator(0.1 * i, x, v) for i in range(6)]
+    assert [float(y) for y in found.json["value"]] == pytest.approx(truth, rel=1e-10)
+    assert found.json["certified"]
+
+
+def test_a_step_from_initial_values_is_the_sum_of_both(oscillator):
+    found = oscillator(
+        "respond", "osc.toml", "--initial", "x=1 mm", "--until", "0.5", "--points", "6", "--json"
+    )
+    truth = [step_of_oscillator(0.1 * i) + motion_of_oscillator(0.1 * i, 0.001, 0) for i in range(6)]
+    assert [float(y) for y in found.json["value"]] == pytest.approx(truth, rel=1e-10)
+    assert found.json["initial"] == "x = 1 mm"
+
+
+LEVERS = """
+symflex = 1
+inputs.F = { force = "x" }
+outputs.X = "x"
+signals.z = "x + y"
+[elements]
+a = { type = "mass", at = "x", m = "1 kg" }
+b = { type = "mass", at = "y", m = "1 kg" }
+c = { type = "spring", between = ["x", "ground"], k = "4 N/m" }
+d = { type = "spring", between = ["y", "ground"], k = "9 N/m" }
+"""
+FREE = {
+    "discharge": (
+        'inputs.V = { voltage = "a" }\noutputs.U = "b"\n[elements]\n'
+        'r = { type = "resistor", between = ["a", "b"], R = "1 kOhm" }\n'
+        'c = { type = "capacitor", between = ["b", "ground"], C = "1 uF" }',
+        "b=5 V",
+        lambda t: 5 * math.exp(-t / 1e-3),
+    ),
+    "rotor": (
+        'inputs.T = { torque = "w" }\noutputs.W = "s*w"\n[elements]\n'
+        'j = { type = "inertia", at = "w", J = "0.1 kg*m^2" }\n'
+        'd = { type = "rotary_damper", between = ["w", "ground"], b = "0.2 N*m*s/rad" }',
+        "s*w=3000 rpm",
+        lambda t: 100 * math.pi * math.exp(-2 * t),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_initial_values_of_other_domains(name, shell, tmp_path):
+    text, initial, truth = FREE[name]
+    (tmp_path / "model.toml").write_text(f"symflex = 1\n{text}\n", encoding="utf-8")
+    options = [part for each in initial.split(", ") for part in ("--initial", each)]
+    options += ["--to", "free", "--until", "2 ms", "--points", "3", "--json"]
+    found = shell("respond", "model.toml", *options).json
+    assert [float(y) for y in found["value"]] == pytest.approx([truth(t) for t in found["time"]], rel=1e-10)
+
+
+def test_what_is_no_state_of_a_lumped_model_has_no_initial_value(oscillator, tmp_path):
+    bar = (
+        'symflex = 1\ninputs.F = { force = "x" }\noutputs.X = "x"\n[elements]\n'
+        'bar = { type = "rod", between = ["ground", "x"], EA = "7 MN", rhoA = "0.27 kg/m", l = "1 m" }\n'
+    )
+    (tmp_path / "bar.toml").write_text(bar, encoding="utf-8")
+    (tmp_path / "levers.toml").write_text(LEVERS, encoding="utf-8")
+    refused = {
+        ("bar.toml", "x=1 mm"): "SF235",
+        ("osc.toml", "y=1 mm"): "'y' is not a quantity whose initial value can be given",
+        ("levers.toml", "z=1 mm"): "give values of x, y, s*x, s*y",
+        ("osc.toml", "x=1 N"): "'x' is in 'm', its initial value in 'N'",
+        ("osc.toml", "s^2*x=1"): "give values of x, s*x",
+        ("osc.toml", "x"): "--initial takes NAME=VALUE",
+    }
+    said = {key: oscillator("respond", key[0], "--initial", key[1]).err for key in refused}
+    assert not [key for key, text in refused.items() if text not in said[key]]
+
+
+STAIRS = [(0.0, 1.0), (0.1, 2.0), (0.25, 0.5)]
+JUMPS = {
+    "held": ("time_s,F\n0,1\n0.1,2\n0.25,0.5\n", ("--hold",)),
+    "two lines at a time": ("time_s,F\n0,1\n0.1,1\n0.1,2\n0.25,2\n0.25,0.5\n", ()),
+    "held in milliseconds": ("time_ms;F\n0;1\n100;2\n250;0,5\n", ("--hold",)),
+}
+
+
+@pytest.mark.parametrize("case", JUMPS)
+def test_a_staircase_is_a_sum_of_steps(case, oscillator, tmp_path):
+    text, options = JUMPS[case]
+    (tmp_path / "in.csv").write_text(text, encoding="utf-8")
+    found = oscillator(
+        "respond", "osc.toml", "--to", "in.csv", *options, "--until", "0.4", "--points", "9", "--json"
+    ).json
+    before = [0.0, *(u for _, u in STAIRS)]
+    truth = [
+        sum(
+            (u - was) * step_of_oscillator(t - at)
+            for (at, u), was in zip(STAIRS, before, strict=False)
+            if t > at
+        )
+        for t in found["time"]
+    ]
+    assert [float(y) for y in found["value"]] == pytest.approx(truth, rel=1e-9, abs=1e-18)
+
+
+def test_an_output_that_follows_at_once_jumps_with_its_input(oscillator, tmp_path):
+    (tmp_path / "in.csv").write_text(JUMPS["held"][0], encoding="utf-8")
+    found = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "in.csv", "--hold", "--json").json
+    jumps = [float(j[key]) for j in found["jumps"] for key in ("time", "height")]
+    assert jumps == pytest.approx([0.1, 0.5, 0.25, -0.75])  # a jump of F over m
