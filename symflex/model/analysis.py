@@ -23,6 +23,7 @@ from symflex.expressions import (
     names,
     names_among,
     nodes,
+    product_of,
 )
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
-ANALYSIS_KEYS = ("band", "modes", "digits")
+ANALYSIS_KEYS = ("band", "modes", "digits", "print")
 FIGURE_KEYS = ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc")
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
@@ -58,6 +59,7 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
         _band(reader, band) if band else None,
         _count(reader, section, "modes", MODES_LIMIT),
         _count(reader, section, "digits", DIGITS_LIMIT),
+        _where(reader, section, "[analysis]", "print") or (),
     )
 
 
@@ -314,10 +316,12 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
     return tuple(published)
 
 
-def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...] | None:
+def _where(
+    reader: Reader, table: TableValue, what: str, key: str = "where"
+) -> tuple[tuple[str, Expression], ...] | None:
     """Return the lines, ``None`` when one cannot be read."""
-    entry = table.get("where")
-    inner = reader.table(entry, f"where of {what}") if entry else None
+    entry = table.get(key)
+    inner = reader.table(entry, f"{key} of {what}") if entry else None
     definitions = []
     items = inner.entries if inner else ()
     for item in items:
@@ -330,6 +334,12 @@ def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Exp
 
 NUMBERS = Line({}, frozenset(), frozenset(), {})
 """Knows the value of numbers alone."""
+
+
+def in_own_names(analysis: Analysis) -> Published:
+    """Return the names in which formulas are printed as lines of a formula, which are read alike."""
+    lines = analysis.print
+    return Published(("", ""), product_of([Name(n, span=e.span) for n, e in lines]), lines)
 
 
 @dataclass(frozen=True, slots=True)

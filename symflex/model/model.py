@@ -256,11 +256,12 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Defaults for the commands: band [Hz], number of modes, digits."""
+    """Defaults for the commands: band [Hz], number of modes, digits; names in which formulas are printed."""
 
     band: tuple[Fraction, Fraction] | None = None
     modes: int | None = None
     digits: int | None = None
+    print: tuple[tuple[str, Expression], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

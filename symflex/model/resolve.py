@@ -15,6 +15,7 @@ from symflex.expressions import Equation, Expression, substitute
 from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
     check_printed,
+    in_own_names,
     read_analysis,
     read_drawing,
     read_figures,
@@ -196,7 +197,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         ),
     )
     readable = readable_names(model, broken)
-    for published in model.published:
+    own = printed_in_cycles(in_own_names(model.analysis), draft, turned)
+    model = replace(model, analysis=replace(model.analysis, print=own.where))
+    meant = {*readable.constants, *readable.definitions, *readable.varying}
+    for name, expression in own.where:
+        if name in meant:
+            message = f"'{name}' in print of [analysis] has a meaning already"
+            reader.note("SF213", message, expression.span, "give the combination of parameters another name")
+    for published in (*model.published, *([] if {n for n, _ in own.where} & meant else [own])):
         later.take(check_printed(published, readable))
     # A transfer function is missing where its output or input could not be read: no second mistake.
     whole = all(

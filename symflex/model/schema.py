@@ -250,10 +250,11 @@ def _count(most: int, description: str) -> Schema:
 
 
 def _analysis() -> Schema:
-    known = {
+    known: dict[str, Schema] = {
         "band": _said(FREQUENCIES, "frequencies of interest [Hz]"),
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
+        "print": _said({"type": "object", "additionalProperties": VALUE}, "names formulas are printed in"),
     }
     keys = {key: known.get(key, {}) for key in ANALYSIS_KEYS}
     return {**_closed(keys), "description": "defaults of the commands"}

@@ -133,6 +133,11 @@ def _arranged(
     if form is not None and form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
+    if form is None and tf.model.analysis.print:
+        from symflex.print.forms.own import own_form  # few models ask for it
+
+        if (own := _proposed(tf, own_form(tf))) is not None:
+            return own
     if tf.is_distributed:
         made = _distributed(tf, form, digits, arranged or Arranged())
     else:
@@ -200,13 +205,17 @@ def _written(tf: TransferFunction) -> PrintedForm | None:
     """Return a function as a sum of blocks, None where it is not written so."""
     from symflex.print.forms.written import written_form  # few prints are so long
 
-    made = written_form(tf)
+    return _proposed(tf, written_form(tf))
+
+
+def _proposed(tf: TransferFunction, made: PrintedForm | None) -> PrintedForm | None:
+    """Return a form that nobody asked for, made from a text or from values alone, if it is read back."""
     if made is None:
         return None
     made = _explained(tf, made)
     try:
         read_back(tf, made)
-    except InternalError:  # it is proposed from a text alone, and nobody asked for it
+    except InternalError:
         return None
     return made
 
@@ -252,6 +261,11 @@ def print_forms(
     for tf in tfs:
         try:
             printed.append(print_form(tf, form, digits, arranged))
+            own = [name for name, _ in tf.model.analysis.print]
+            if own and form is None and not any(name in own for name, _ in printed[-1].where):
+                sentences.append(
+                    f"{tf.name} has no factor in {', '.join(own)}: in its {printed[-1].name} form"
+                )
         except UsageError as error:
             refusal = refusal or error
             printed.append(print_form(tf, None, digits, arranged))

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.errors import ModelError, UncertifiedError
+from symflex.errors import ModelError, SpecError, UncertifiedError
 from symflex.expressions import format_expression, quotient
-from symflex.print.forms import hidden_expressions, print_form
+from symflex.print.forms import hidden_expressions, print_form, print_forms
 from symflex.print.forms.printed import RATIONAL
 from symflex.print.json_format import derive_json
 from symflex.print.text import derive_text
@@ -723,7 +723,7 @@ flexure = { type = "spring", between = ["x", "ground"], k = "k_f" }
     assert "(m*s^2 + k + k_f)" in den
 
 
-def of_network(elements, names="R_1 R_2 R_3 C_1 C_2"):
+def of_network(elements, names="R_1 R_2 R_3 C_1 C_2", own_names=""):
     """Return the voltage gain from node in to node out of resistors and capacitors between nodes."""
     parts = [line.split() for line in elements.split(";")]
     kinds = {"R": "resistor", "C": "capacitor"}
@@ -738,7 +738,8 @@ def of_network(elements, names="R_1 R_2 R_3 C_1 C_2"):
         if n == "op"
     ]
     values = ", ".join(f"{name} = {{}}" for name in names.split())
-    text = f"symflex = 1\nparameters = {{ {values} }}\n[elements]\n" + "\n".join(lines)
+    own = f"analysis = {{ print = {{ {own_names} }} }}\n"
+    text = f"symflex = 1\nparameters = {{ {values} }}\n{own}[elements]\n" + "\n".join(lines)
     return tf_of(text + '\n[inputs]\nv_i = { voltage = "in" }\n[outputs]\nv_o = "out"\n', "v_o", "v_i")
 
 
@@ -797,3 +798,64 @@ N = "n"
 """
         den = printed(tf_of(text, "N", "rho"))[1]
         assert den.startswith("s*("), (n, den)
+
+
+OSCILLATOR = """symflex = 1
+parameters = { m = {ASSUME}, k = {}, c = {} }
+analysis = { print = { PRINT } }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.damper = { type = "damper", between = ["x", "ground"], b = "c" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+RESONANCE = 'omega_0 = "sqrt(k/m)", zeta = "c/(2*sqrt(k*m))"'
+
+
+def oscillator(own_names, assume=""):
+    text = OSCILLATOR.replace("PRINT", own_names).replace("ASSUME", assume)
+    return tf_of(text, "X", "F")
+
+
+def test_a_standard_form_is_printed_in_names_of_ones_own():
+    # m*s^2 + c*s + k is m times s^2 + 2*zeta*omega_0*s + omega_0^2, or k times T^2*s^2 + 2*zeta*T*s + 1.
+    forms = {
+        RESONANCE: ("1", "m*(s^2 + 2*zeta*omega_0*s + omega_0^2)"),
+        'T = "sqrt(m/k)", zeta = "c/(2*sqrt(k*m))"': ("1", "k*(T^2*s^2 + 2*zeta*T*s + 1)"),
+        'a = "1/k", T = "sqrt(m/k)", zeta = "c/(2*k*T)"': ("a", "T^2*s^2 + 2*zeta*T*s + 1"),
+        'f_0 = "sqrt(k/m)/(2*pi)", Q = "sqrt(k*m)/c"': ("1", "m*(s^2 + 2*pi*f_0*s/Q + 4*pi^2*f_0^2)"),
+    }
+    for own_names, sides in forms.items():
+        assert printed(oscillator(own_names)) == sides, own_names
+
+
+def test_a_gain_is_printed_in_ones_own_names_too():
+    # Franco (see above): H = -A*(omega_0/Q)*s/(s^2 + omega_0/Q*s + omega_0^2), A = R_3*C_2/(R_1*(C_1 + C_2)).
+    elements = "R_1 in a; R_2 a ground; R_3 n out; C_1 a out; C_2 a n; op n out"
+    own_names = (
+        'omega_0 = "sqrt((R_1 + R_2)/(R_1*R_2*R_3*C_1*C_2))", A = "R_3*C_2/(R_1*(C_1 + C_2))", '
+        'Q = "sqrt(R_3*(R_1 + R_2)*C_1*C_2/(R_1*R_2))/(C_1 + C_2)"'
+    )
+    tf = of_network(elements, own_names=own_names)
+    assert printed(tf) == ("-omega_0*A*s", "Q*(s^2 + omega_0*s/Q + omega_0^2)")
+
+
+def test_names_that_are_not_equal_or_only_for_some_signs_are_not_printed():
+    # sqrt(k*m)*sqrt(k/m) is k, but -k where m is negative and k is not; m*s^2 + c*s + k holds no k + c.
+    for own_names, assume in [(RESONANCE, 'assume = "real"'), ('a = "k + c"', "")]:
+        tf = oscillator(own_names, assume)
+        assert printed(tf) == ("1", "m*s^2 + c*s + k"), own_names
+        assert any("has no factor in" in sentence for sentence in print_forms([tf])[1]), own_names
+
+
+def test_names_of_ones_own_are_checked():
+    for own_names, code in {
+        'k = "c/m"': "SF213",
+        'a = "sqrt(kk/m)"': "SF210",
+        'a = "b", b = "a"': "SF215",
+        'a = "x"': "SF212",
+        "a = 'k*'": "SF111",
+    }.items():
+        with pytest.raises(SpecError) as refused:
+            oscillator(own_names)
+        assert [d.code for d in refused.value.diagnostics] == [code], own_names
