@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.scheme import DrawnPart, End
 from symflex.drawing.symbols import DOTS
-from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,8 +29,8 @@ MOST_MOVES: Final = 40
 """Rounds of moving single nodes; small networks need three or four."""
 LARGEST: Final = 40
 """Nodes of a network whose order is improved; longer ones are chains."""
-LANES: Final = {**dict.fromkeys(CIRCUITS, 0), "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
-"""Which domain stands to the left of which, where a part joins both."""
+LANES: Final = {"rotation": 1, "translation": 2, "planar": 2, "plane": 2}
+"""Which domain stands to the left of which, where a part joins both; circuits stand at 0."""
 LONGEST: Final = 8
 """Links of a chain that is drawn as a whole."""
 KEPT: Final = 2
@@ -52,7 +51,7 @@ def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ..
         moved = mark.style in ("motion", "raise", "twist")
         pull[mark.node] += (-2.0 if moved else -0.4) if "input" in kinds else 0.15
     joints = [(pair, p.symbol.role == "member") for p in network.parts for pair in pairwise(p.nodes)]
-    found = _ordered(network.nodes, joints, pull, {n: LANES[domains[n]] for n in network.nodes})
+    found = _ordered(network.nodes, joints, pull, {n: LANES.get(domains[n], 0) for n in network.nodes})
     wanted = iter(network.order)
     return tuple(next(wanted) if n in network.order else n for n in found)
 

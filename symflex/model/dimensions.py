@@ -123,14 +123,14 @@ class Measure:
         return self.written > (self.weight == PARAMETER)
 
     @property
-    def has_factor(self) -> bool:
-        """Whether a parameter without unit stands beside one with a unit."""
-        return self.weight == PARAMETER and any(map(_is_bare, self.unknowns))
+    def bare(self) -> frozenset[tuple[Variable, Fraction]]:
+        """Parameters without unit, with their exponents."""
+        return frozenset(u for u in self.unknowns if u[0].kind == "parameter")
 
     @property
     def core(self) -> tuple[Dimension, frozenset[tuple[Variable, Fraction]]]:
-        """What remains without s and parameters without unit: ``m*s^2*x`` and ``alpha*m*s*x`` share it."""
-        return self.dimension * SECOND**self.laplace, frozenset(u for u in self.unknowns if not _is_bare(u))
+        """What remains without s and bare parameters: ``m*s^2*x`` and ``alpha*m*s*x`` share it."""
+        return self.dimension * SECOND**self.laplace, frozenset(self.unknowns) - self.bare
 
     @property
     def is_time(self) -> bool:
@@ -312,18 +312,16 @@ class DimensionSystem:
         guesses = [_bare(name) for name in numbers]
         for pair in sorted(self._pairs, key=lambda p: p.may_lack):
             ratio = self._reduce(pair.ratio)
-            is_bare = [v.kind == "parameter" for v, _ in ratio.unknowns]
-            lacks = pair.may_lack and ratio.is_time and is_bare in ([], [True])
+            lacks = pair.may_lack and ratio.is_time and len(ratio.unknowns) == len(ratio.bare) <= 1
             is_gain = pair.first[1].is_gain or pair.second[1].is_gain
-            is_guess = is_gain or pair.is_free or (ratio.written and any(is_bare))
-            if is_guess:
-                guesses.append(pair.ratio)
-            is_open = is_guess and (is_bare or pair.is_free or (is_gain and ratio.is_time))
+            is_guess = is_gain or pair.is_free or bool(ratio.written and ratio.bare)
+            guesses += [pair.ratio] * is_guess
+            is_open = is_guess and (ratio.unknowns or pair.is_free or (is_gain and ratio.is_time))
             if lacks or not (is_open or self._learn(ratio)):
                 self.lacks_an_s |= lacks
                 self._disagree(pair)
         before = dict(self._solved)
-        for some in (guesses, [g for g in guesses if any(map(_is_bare, g.unknowns))]):
+        for some in (guesses, [g for g in guesses if g.bare]):
             if all(self._learn(self._reduce(guess)) for guess in some):
                 break
             self._solved = dict(before)
@@ -485,9 +483,6 @@ class DimensionSystem:
             return self._block(meaning.name)
         return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
 
-    def _without_unit(self, name: str) -> Measure:
-        return _bare(name) if self._infers else Measure(open=True)
-
     def _varies(self, expression: Expression) -> bool:
         """Tell whether a name is a node, signal or input: a function of it is refused as not linear."""
         if not isinstance(expression, Name | Attribute):
@@ -498,7 +493,7 @@ class DimensionSystem:
     def _parameter(self, name: str) -> Measure:
         quantity = self._quantities.get(name)
         if quantity is None:
-            return self._without_unit(name)
+            return _bare(name) if self._infers else Measure(open=True)
         cyclic = frozenset({name} if quantity.cycles else ())
         weight = 1 if quantity.dimension == DIMENSIONLESS else PARAMETER
         return Measure(quantity.dimension, weight=weight, cycles=Fraction(quantity.cycles), cyclic=cyclic)
@@ -510,8 +505,10 @@ class DimensionSystem:
             expression = self._definitions[name]
             measure = self.measure(expression)
             has_unit = bool(names(expression)) or isinstance(expression, QuantityLiteral)
-            measure = measure if has_unit else self._without_unit(name)
-            self._defined[name] = Measure(open=True) if measure.is_extreme else measure
+            if not has_unit and self._infers:
+                self._defined[name] = _bare(name)
+            elif has_unit and not measure.is_extreme:
+                self._defined[name] = measure
         return self._defined[name]
 
     def _block(self, name: str) -> Measure:
@@ -520,9 +517,8 @@ class DimensionSystem:
         if not isinstance(gain, Measure):
             measure = self._reduce(self.measure(gain))
             is_open = measure.open or measure.written > measure.weight
-            gain = self._blocks[name] = Measure(
-                measure.dimension, measure.unknowns, is_open, weight=measure.weight
-            )
+            gain = Measure(measure.dimension, measure.unknowns, is_open, weight=measure.weight)
+            self._blocks[name] = gain
         return gain
 
     def variable(self, variable: Variable) -> Measure:
@@ -563,10 +559,8 @@ class DimensionSystem:
         # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
         first_term, first = min(closed, key=lambda m: (m[1].is_gain, bool(m[1].unknowns), m[1].written))
         others = [m for _, m in closed]
-        # Where all terms have numbers, or no term of an equation a unit, they are gains and coefficients.
-        is_free = all(m.written for m in others) or (
-            is_equation and all(m.weight < PARAMETER for m in others)
-        )
+        # Without units, numbers of an equation are coefficients, and those in all terms of a sum are gains.
+        is_free = all(m.weight < PARAMETER and (is_equation or m.written) for m in others)
         cores, written = [m.core for m in others], first.written
         for term, measure in closed:
             is_alike = (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns)
@@ -575,12 +569,13 @@ class DimensionSystem:
             both = (first, measure)
             is_alone = any(m.written and not m.weight for m in both)
             fits = is_free or is_alone or any(m.is_gain and m.laplace for m in both)
-            may_lack = [cores.count(m.core) for m in both if m.has_factor] == [1]
+            with_bare = [m for m in both if m.weight == PARAMETER and m.bare]
+            may_lack = [cores.count(m.core) for m in with_bare] == [1]
             pair = Pair(expression, (first_term, first), (term, measure), fits, may_lack)
             ratio = self._reduce(pair.ratio)
             if is_alone and ratio.is_time and not ratio.unknowns:
                 written = TIMED
-            if ratio.written or first.has_factor or measure.has_factor:
+            if ratio.written or with_bare:
                 self._pairs.append(pair)
             elif not self._learn(ratio):
                 self._disagree(pair)
@@ -672,10 +667,6 @@ def misplaced(unit: str, given: Dimension, wanted: Dimension) -> str | None:
 def _bare(name: str) -> Measure:
     """Return the measure of a parameter without unit."""
     return Measure(unknowns=((Variable("parameter", name), Fraction(1)),), weight=1)
-
-
-def _is_bare(unknown: tuple[Variable, Fraction]) -> bool:
-    return unknown[0].kind == "parameter"
 
 
 def _said(term: Expression) -> str:

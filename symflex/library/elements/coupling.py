@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symflex.library.elements.element import Placing, Variable
 
 
-PER_FLOW = dict(zip(DOMAINS, ("*s/m", "*s/rad", "/A", "*s/m^3", "/W"), strict=True))
+PER_FLOW: dict[str, str] = dict(zip(DOMAINS, ("*s/m", "*s/rad", "/A", "*s/m^3", "/W"), strict=True))
 """One over the unit of what flows: a velocity, a current, a volume or heat flow."""
 
 

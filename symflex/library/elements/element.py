@@ -34,22 +34,10 @@ THROUGH_NAME: dict[str, str] = dict(zip(DOMAINS, ("f", "tau", "i", "q", "phi"), 
 CIRCUITS = DOMAINS[2:]
 """Domains of nodes whose voltage, pressure or temperature is an effort; mechanical ones have a motion."""
 COMPONENT_UNIT: dict[str, str] = {
-    "f": "N",
-    "f_x": "N",
-    "f_y": "N",
-    "f_u": "N",
-    "f_v": "N",
-    "tau": "N*m",
-    "i": "A",
-    "i_1": "A",
-    "i_2": "A",
-    "q": "m^3/s",
-    "phi": "W",
-    "supplied": "A",
-    "supplied_q": "m^3/s",
-    "supplied_phi": "W",
-    "supplied_f": "N",
-    "supplied_tau": "N*m",
+    **{THROUGH_NAME[domain]: unit for domain, unit in THROUGH_UNIT.items()},
+    **{f"supplied_{THROUGH_NAME[domain]}": unit for domain, unit in THROUGH_UNIT.items()},
+    **dict.fromkeys(("f_x", "f_y", "f_u", "f_v"), "N"),
+    **dict.fromkeys(("i_1", "i_2", "supplied"), "A"),
 }
 """Of through variables, by component; what inputs supply is named so that no element's quantity is meant."""
 

@@ -7,6 +7,7 @@ from typing import ClassVar
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
     LOSS_FACTOR,
+    THROUGH_NAME,
     Element,
     ElementUse,
     LinearForm,
@@ -20,7 +21,15 @@ from symflex.library.elements.element import (
 )
 
 
-class Branch(Element):
+class Lumped(Element):
+    """Base of what carries one quantity, that of the domain of its one port."""
+
+    def __init_subclass__(cls) -> None:
+        """Name the quantity."""
+        cls.through = tuple(THROUGH_NAME[p.domain] for p in getattr(cls, "ports", ()))
+
+
+class Branch(Lumped):
     """Base of what is one branch, ``through = value * s^order * (a - b)`` of its one port and parameter."""
 
     passive = Passivity()
@@ -39,7 +48,6 @@ class Mass(Branch):
     summary = "Point mass"
     ports = (Port("at", 1, "translation", "node that moves with the mass"),)
     parameters = (ParameterPort("m", "kg", "a mass"),)
-    through = ("f",)
     is_inertia = True
     order = 2
 
@@ -51,7 +59,6 @@ class Spring(Branch):
     summary = "Translational spring"
     ports = (Port("between", 2, "translation", "the two ends"),)
     parameters = (ParameterPort("k", "N/m", "a stiffness"), LOSS_FACTOR)
-    through = ("f",)
     compliance = "stretching"
     stiffness = "k"
 
@@ -63,7 +70,6 @@ class Damper(Branch):
     summary = "Translational viscous damper"
     ports = (Port("between", 2, "translation", "the two ends"),)
     parameters = (ParameterPort("b", "N*s/m", "a damping coefficient"),)
-    through = ("f",)
     damping = "b"
     order = 1
 
@@ -75,7 +81,6 @@ class Inertia(Branch):
     summary = "Rotational inertia"
     ports = (Port("at", 1, "rotation", "node that turns with the inertia"),)
     parameters = (ParameterPort("J", "kg*m^2", "a moment of inertia"),)
-    through = ("tau",)
     is_inertia = True
     order = 2
 
@@ -87,7 +92,6 @@ class TorsionSpring(Branch):
     summary = "Torsion spring"
     ports = (Port("between", 2, "rotation", "the two ends"),)
     parameters = (ParameterPort("k", "N*m/rad", "a torsional stiffness"), LOSS_FACTOR)
-    through = ("tau",)
     compliance = "stretching"
     stiffness = "k"
 
@@ -99,12 +103,11 @@ class RotaryDamper(Branch):
     summary = "Rotary viscous damper"
     ports = (Port("between", 2, "rotation", "the two ends"),)
     parameters = (ParameterPort("b", "N*m*s/rad", "a rotary damping coefficient"),)
-    through = ("tau",)
     damping = "b"
     order = 1
 
 
-class Impedance(Element):
+class Impedance(Lumped):
     """Base of what is one impedance, ``value * s^order * flow = v_a - v_b``; the flow is from a to b."""
 
     passive = Passivity()
@@ -127,7 +130,6 @@ class Resistor(Impedance):
     summary = "Resistor"
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("R", "Ohm", "a resistance"),)
-    through = ("i",)
 
 
 class Inductor(Impedance):
@@ -137,7 +139,6 @@ class Inductor(Impedance):
     summary = "Inductor"
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("L", "H", "an inductance"),)
-    through = ("i",)
     order = 1
 
 
@@ -148,11 +149,10 @@ class Capacitor(Branch):
     summary = "Capacitor"
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("C", "F", "a capacitance"),)
-    through = ("i",)
     order = 1
 
 
-class ThroughSource(Element):
+class ThroughSource(Lumped):
     """Base of the sources whose value is what they deliver."""
 
     is_source = True
@@ -171,7 +171,6 @@ class ForceSource(ThroughSource):
     summary = "Force applied to a node"
     ports = (Port("at", 1, "translation", "node the force acts on", pair="between"),)
     parameters = (ParameterPort("f", "N", "a force", signal=True),)
-    through = ("f",)
 
 
 class TorqueSource(ThroughSource):
@@ -181,7 +180,6 @@ class TorqueSource(ThroughSource):
     summary = "Torque applied to a node"
     ports = (Port("at", 1, "rotation", "node the torque acts on", pair="between"),)
     parameters = (ParameterPort("tau", "N*m", "a torque", signal=True),)
-    through = ("tau",)
 
 
 class CurrentSource(ThroughSource):
@@ -191,10 +189,9 @@ class CurrentSource(ThroughSource):
     summary = "Current delivered into a node"
     ports = (Port("at", 1, "electrical", "node the current enters", pair="between"),)
     parameters = (ParameterPort("i", "A", "a current", signal=True),)
-    through = ("i",)
 
 
-class AcrossSource(Element):
+class AcrossSource(Lumped):
     """Base of the sources whose value is what they impose."""
 
     is_source = True
@@ -213,7 +210,6 @@ class VoltageSource(AcrossSource):
     summary = "Voltage imposed on a node"
     ports = (Port("at", 1, "electrical", "node held at the voltage", pair="between"),)
     parameters = (ParameterPort("v", "V", "a voltage", signal=True),)
-    through = ("i",)
 
 
 class AcousticMass(Impedance):
@@ -227,7 +223,6 @@ class AcousticMass(Impedance):
     summary = "Air in a port or tube; inertance of a liquid"
     ports = (Port("between", 2, "acoustic", "the two ends"),)
     parameters = (ParameterPort("M", "kg/m^4", "an acoustic mass"),)
-    through = ("q",)
     order = 1
 
 
@@ -241,7 +236,6 @@ class AcousticResistance(Impedance):
     summary = "Mesh, slit or orifice in a flow"
     ports = (Port("between", 2, "acoustic", "the two ends"),)
     parameters = (ParameterPort("R", "Pa*s/m^3", "an acoustic resistance"),)
-    through = ("q",)
 
 
 class AcousticCompliance(Branch):
@@ -255,7 +249,6 @@ class AcousticCompliance(Branch):
     summary = "Air in a box; accumulator or compressed liquid"
     ports = (Port("at", 1, "acoustic", "node of its pressure"),)
     parameters = (ParameterPort("C", "m^3/Pa", "an acoustic compliance"),)
-    through = ("q",)
     order = 1
 
 
@@ -266,7 +259,6 @@ class FlowSource(ThroughSource):
     summary = "Volume flow delivered into a node"
     ports = (Port("at", 1, "acoustic", "node the flow enters", pair="between"),)
     parameters = (ParameterPort("q", "m^3/s", "a volume flow", signal=True),)
-    through = ("q",)
 
 
 class PressureSource(AcrossSource):
@@ -276,7 +268,6 @@ class PressureSource(AcrossSource):
     summary = "Pressure imposed on a node"
     ports = (Port("at", 1, "acoustic", "node held at the pressure", pair="between"),)
     parameters = (ParameterPort("p", "Pa", "a pressure", signal=True),)
-    through = ("q",)
 
 
 class ThermalResistance(Impedance):
@@ -286,7 +277,6 @@ class ThermalResistance(Impedance):
     summary = "Wall, contact or convection that heat flows through"
     ports = (Port("between", 2, "thermal", "the two sides"),)
     parameters = (ParameterPort("R", "K/W", "a thermal resistance"),)
-    through = ("phi",)
 
 
 class ThermalCapacity(Branch):
@@ -296,7 +286,6 @@ class ThermalCapacity(Branch):
     summary = "Body that stores heat"
     ports = (Port("at", 1, "thermal", "node of its temperature", pair="between"),)
     parameters = (ParameterPort("C", "J/K", "a heat capacity"),)
-    through = ("phi",)
     order = 1
 
 
@@ -307,7 +296,6 @@ class HeatSource(ThroughSource):
     summary = "Heat flow delivered into a node"
     ports = (Port("at", 1, "thermal", "node that is heated", pair="between"),)
     parameters = (ParameterPort("phi", "W", "a heat flow", signal=True),)
-    through = ("phi",)
 
 
 class TemperatureSource(AcrossSource):
@@ -317,4 +305,3 @@ class TemperatureSource(AcrossSource):
     summary = "Temperature imposed on a node"
     ports = (Port("at", 1, "thermal", "node held at the temperature", pair="between"),)
     parameters = (ParameterPort("T", "K", "a temperature", signal=True),)
-    through = ("phi",)

@@ -103,6 +103,7 @@ WRONG = [
     motion("(1/2)*m*s^2*x + (c + 2*k)*s*x + k*x = F"),
     motion("2*(m*s^2*x + 3*(c*x + k*x/7)) = F"),
     motion("m*s^2*x + sqrt(2)*c*x + k*x = F"),
+    motion("0.5*m*s^2*x + 0.5*c*x + 0.5*k*x = 0.5*F"),
     body("F + 2*x"),
     body("2*c*x + k*x"),
     body("wall.f - x/2"),
