@@ -309,7 +309,7 @@ class DimensionSystem:
 
     def settle(self, numbers: Iterable[str]) -> None:
         """Compare terms with numbers; if nothing speaks against it, the bare ``numbers`` are pure ones."""
-        guesses = [_bare(name) for name in numbers]
+        guesses: list[Measure] = []
         for pair in sorted(self._pairs, key=lambda p: p.may_lack):
             ratio = self._reduce(pair.ratio)
             lacks = pair.may_lack and ratio.is_time and len(ratio.unknowns) == len(ratio.bare) <= 1
@@ -321,6 +321,7 @@ class DimensionSystem:
                 self.lacks_an_s |= lacks
                 self._disagree(pair)
         before = dict(self._solved)
+        guesses = [m for m in map(_bare, numbers) if self._reduce(m).unknowns] + guesses
         for some in (guesses, [g for g in guesses if g.bare]):
             if all(self._learn(self._reduce(guess)) for guess in some):
                 break
@@ -575,7 +576,9 @@ class DimensionSystem:
             ratio = self._reduce(pair.ratio)
             if is_alone and ratio.is_time and not ratio.unknowns:
                 written = TIMED
-            if ratio.written or with_bare:
+            if is_alone and 0 < len(ratio.unknowns) == len(ratio.bare):
+                self._learn(ratio)  # the T of 1 + T*s is a time
+            elif ratio.written or with_bare:
                 self._pairs.append(pair)
             elif not self._learn(ratio):
                 self._disagree(pair)

@@ -91,6 +91,7 @@ RIGHT = [
     (pushed("k_f*u", '[signals]\nu = "-100*x - 3*wall.f"\n'), "m/N"),  # a feedback of states by numbers
     (beam("EI*w'''' - 2*N*w'' + 0.5*mu*s^2*w = 0"), "m/N"),
     (beam("mu*s^2*w - n*N*w'' + EI*w'''' = 0"), "m/N"),
+    (beam("(1 + n*s)*EI*w'''' + a*mu*s*w + mu*s^2*w = 0", "n = 1e-4, a = 0.2"), "m/N"),
     (controlled("K/(20*T)"), "V/m"),
     (controlled(5), "V/m"),
 ]
