@@ -60,6 +60,7 @@ from symflex.library.elements import LUMPED, Variable
 from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
+from symflex.model.scope import LISTED_NAMES
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of, unit_slip
 
 if TYPE_CHECKING:
@@ -373,22 +374,30 @@ class DimensionSystem:
         self._note("SF204", message, other.span, hint)
 
     def readings(self) -> Iterator[Diagnostic]:
-        """Yield a warning for every use whose reading its place left open."""
+        """Yield one warning for all uses of a unit whose reading their places left open, at the first."""
+        groups: dict[tuple[bool, str], list[tuple[str, Use]]] = {}
         for name, uses in self._uses.items():
             quantity = self._quantities[name]
-            unit = quantity.unit if quantity is not None else ""
-            turned = turned_name(name, quantity.cycles if quantity is not None else 1)
-            shown = format_expression(turned)
-            is_frequency = quantity is not None and quantity.dimension == PER_SECOND
             for use in dict.fromkeys(u for u in uses if u.inferred):
-                without = f"give '{name}' in '1/s'" if is_frequency else "give it without turns"
-                if use.angular:
-                    message = f"'{name}', in '{unit}', is read in radians here: as {shown}"
-                    hint = f"write {shown} to make that clear, or {without} if no 2*pi is meant"
-                else:
-                    message = f"'{name}', in '{unit}', is read in cycles here: without 2*pi"
-                    hint = f"write {shown} if radians are meant; if not, {without} to make that clear"
-                yield Diagnostic("SF655", message, use.span, hint, "warning")
+                unit = quantity.unit if quantity is not None else ""
+                groups.setdefault((use.angular, unit), []).append((name, use))
+        for (is_angular, unit), each in groups.items():
+            each.sort(key=lambda pair: pair[1].span.start if pair[1].span else 0)
+            first, quantity = each[0][0], self._quantities[each[0][0]]
+            quoted = [f"'{name}'" for name in dict.fromkeys(name for name, _ in each)]
+            listed = ", ".join([*quoted[:LISTED_NAMES], *["..."][: len(quoted[LISTED_NAMES:])]])
+            shown = format_expression(turned_name(first, quantity.cycles if quantity is not None else 1))
+            places = f"here and elsewhere ({len(each)} places)" if each[1:] else "here"
+            read = f"{listed}, in '{unit}', {'are' if quoted[1:] else 'is'} read"
+            is_frequency = quantity is not None and quantity.dimension == PER_SECOND
+            without = f"give '{first}' in '1/s'" if is_frequency else "give it without turns"
+            if is_angular:
+                message = f"{read} in radians {places}: as {shown}"
+                hint = f"write {shown} to make that clear, or {without} if no 2*pi is meant"
+            else:
+                message = f"{read} in cycles {places}: without 2*pi"
+                hint = f"write {shown} if radians are meant; if not, {without} to make that clear"
+            yield Diagnostic("SF655", message, each[0][1].span, hint, "warning")
 
     def measure(self, expression: Expression) -> Measure:
         """Return what an expression is measured in; disagreeing sums become problems."""

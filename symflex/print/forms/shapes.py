@@ -52,7 +52,7 @@ from symflex.print.forms.arrange import length
 from symflex.transfer.enclose import enclosure, principal_values
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from symflex.model import Model
     from symflex.print.forms.printed import PrintedForm
@@ -75,6 +75,7 @@ LINE: Final = 4
 """Characters by which one line in place of two has to be shorter than these."""
 RATIOS: Final = (("sinh", "cosh", "tanh"), ("sin", "cos", "tan"))
 S: Final = Name(LAPLACE)
+PI: Final = Name("pi")
 
 
 def shaped(model: Model, form: PrintedForm) -> PrintedForm:
@@ -84,11 +85,30 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
     form = _with_plain_lines(form)
     signs = _Signs.of(model).with_decays(form.where)
     made = _signed(form, signs, model)
-    if not _minus_signs(*_parts(form)):
-        return made
-    # Differences turned by the declared values: as often as not that gives more minus signs.
-    turned = _signed(form, replace(signs, turns=True), model)
-    return min(made, turned, key=lambda f: _minus_signs(*_parts(f)))
+    if _minus_signs(*_parts(form)):
+        # Differences turned by the declared values: as often as not that gives more minus signs.
+        turned = _signed(form, replace(signs, turns=True), model)
+        made = min(made, turned, key=lambda f: _minus_signs(*_parts(f)))
+    if counted := {Name(p.name) for p in model.parameters if p.cycles == 1}:
+        num, den = (rebuilt(e, lambda part: _in_radians(part, counted)) for e in (made.num, made.den))
+        made = replace(made, num=num, den=den)
+    return made
+
+
+def _in_radians(part: Expression, counted: Collection[Expression]) -> Expression:
+    """Return a product with what is in Hz beside its 2 pi: ``2*zeta*(2*pi*f)*s``, ``(2*pi*f)^2``."""
+    front, powers = powers_of(part) if isinstance(part, Product) else (Fraction(1), {})
+    n = powers.pop(PI, 0)
+    found = next((b for b in powers if b in counted and powers[b] == n), None)
+    front /= 2**n
+    if found is None or front.denominator != 1 or (n, abs(front)) == (1, 1):
+        return part
+    turns = Product((number(2), PI, found))
+    factors = [
+        turns if (b, n) == (found, 1) else power(turns if b == found else b, k) for b, k in powers.items()
+    ]
+    factors = [*([number(front)] if front != 1 else []), *factors]
+    return Product(tuple(factors)) if len(factors) > 1 else factors[0]
 
 
 def _parts(form: PrintedForm) -> tuple[Expression, ...]:

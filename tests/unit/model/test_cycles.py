@@ -126,10 +126,23 @@ def test_a_frequency_of_a_model_block_means_the_same_outside(tmp_path):
     assert [(p.name, p.value, p.unit) for p in model.parameters] == [("f_c", ExactValue(Fraction(50)), "Hz")]
 
 
-def test_every_use_that_could_be_read_either_way_is_told_with_its_place():
+def test_uses_that_could_be_read_either_way_are_told_at_the_first_with_their_number():
     model = loaded("s*v + u*f_c/9/s", '[signals]\nv = "u/(s + f_c)"')
-    told = "'f_c', in 'Hz', is read in radians here: as 2*pi*f_c"
-    assert readings(model) == [(7, "u*f_c/9/s", told), (9, "f_c", told)]
+    told = "'f_c', in 'Hz', is read in radians here and elsewhere (2 places): as 2*pi*f_c"
+    assert readings(model) == [(7, "u*f_c/9/s", told)]
+
+
+def test_a_table_of_modes_in_hertz_is_told_once_and_prints_the_two_pi_beside_each_frequency():
+    # The modal sum of Ewins (Modal Testing, 2000), with 2*pi*f for every angular frequency.
+    modes = " + ".join(f"a_{i}/(s^2 + 2*z_{i}*f_{i}*s + f_{i}^2)" for i in (1, 2, 3))
+    values = ", ".join(f"f_{i} = '{i} Hz', a_{i} = '1 1/s^2', z_{i} = 0.0{i}" for i in (1, 2, 3))
+    text = f"symflex = 1\nparameters = {{ {values} }}\nblocks = {{ G = '{modes}' }}\n"
+    model = symflex.loads(text + "inputs = { u = {} }\noutputs = { y = 'G*u' }\n")
+    told = "'f_1', 'f_2', 'f_3', in 'Hz', are read in radians here and elsewhere (6 places): as 2*pi*f_1"
+    assert [message for _, _, message in readings(model)] == [told]
+    terms = (f"a_{i}/(s^2 + 2*z_{i}*(2*pi*f_{i})*s + (2*pi*f_{i})^2)" for i in (1, 2, 3))
+    shown = str(model.transfer_function("y", "u").form()).replace("\n", "").replace(" ", "")
+    assert "+".join(terms).replace(" ", "") in shown
 
 
 def test_a_time_is_read_in_cycles_and_told():

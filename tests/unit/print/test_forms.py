@@ -389,10 +389,10 @@ SHAPES = {
         "K = {}", "K*(s^2 + 2*s + 4)*u/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))",
         "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
     "a resonance given in hertz, by powers of s": (
-        "zeta = 0.1, f = '5 Hz'", "u/(s^2 + 2*zeta*f*s + f^2)", "1/(s^2 + 4*pi*zeta*f*s + 4*pi^2*f^2)"),
+        "zeta = 0.1, f = '5 Hz'", "u/(s^2 + 2*zeta*f*s + f^2)", "1/(s^2 + 2*zeta*(2*pi*f)*s + (2*pi*f)^2)"),
     "a notch of typed damping": (
         "f = '60 Hz'", "(s^2 + 2*0.05*f*s + f^2)*u/(s^2 + 2*0.5*f*s + f^2)",
-        "(s^2 + 0.2*pi*f*s + 4*pi^2*f^2)/(s^2 + 2*pi*f*s + 4*pi^2*f^2)"),
+        "(s^2 + 0.2*pi*f*s + (2*pi*f)^2)/(s^2 + 2*pi*f*s + (2*pi*f)^2)"),
     # Sallen & Key 1955, with unity gain.
     "a filter of second order, by powers of s": (
         "R_1 = {}, R_2 = {}, C_1 = {}, C_2 = {}", "u/(C_2*s*(R_1*(R_2*C_1*s + 1) + R_2) + 1)",
@@ -464,10 +464,10 @@ inputs.r = { unit = "m" }
 outputs.Y = "y"
 """
     num, den = printed(tf_of(text, "Y", "r"))
-    assert num == "K*(b*s + k)*(s^2 + 4*pi^2*f^2)"
+    assert num == "K*(b*s + k)*(s^2 + (2*pi*f)^2)"
     assert den == (
-        "s^2*(m*(M*s^2 + b*s + k) + M*(b*s + k))*(s^2 + 2.8*pi*f*s + 4*pi^2*f^2)"
-        " + K*(M*s^2 + b*s + k)*(s^2 + 4*pi^2*f^2)"
+        "s^2*(m*(M*s^2 + b*s + k) + M*(b*s + k))*(s^2 + 2.8*pi*f*s + (2*pi*f)^2)"
+        " + K*(M*s^2 + b*s + k)*(s^2 + (2*pi*f)^2)"
     )
 
 
@@ -633,8 +633,8 @@ elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
 elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
 elements.drive = { type = "force_source", at = "x", f = "K*G*(r - x)" }
 """
-    whole = "(m*s^2 + b*s + k)*(s^2 + 2*pi*f*s + 4*pi^2*f^2) + 4*pi^2*f^2*K"
-    assert printed(tf_of(text, "X", "r")) == ("4*pi^2*f^2*K", whole)
+    whole = "(m*s^2 + b*s + k)*(s^2 + 2*pi*f*s + (2*pi*f)^2) + (2*pi*f)^2*K"
+    assert printed(tf_of(text, "X", "r")) == ("(2*pi*f)^2*K", whole)
 
 
 def test_like_terms_are_added_and_whole_numbers_stand_in_front():
