@@ -8,6 +8,7 @@ Output: the :class:`Thing` it names, with the element, block or command for it a
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,118 +37,81 @@ class Thing:
         return f"for {word} write {self.use}" + (f": {self.how}" if self.how else "")
 
 
-THINGS: tuple[Thing, ...] = (
-    # What moves
-    Thing(("mass", "body", "block", "cart", "payload", "load", "weight"), "mass"),
-    Thing(("wheel", "disc", "disk", "flywheel", "rotor", "pulley_inertia"), "inertia"),
-    Thing(
-        ("bar", "link", "rigid_bar", "rigid_beam", "rigid_arm"), "rigid_link", "with rigid_body for its mass"
-    ),
-    Thing(
-        ("pendulum", "inverted_pendulum", "pole"),
-        "rigid_body",
-        "at a pin; gravity is a torsion_spring of m*g*l, negative if it is inverted",
-    ),
-    Thing(("damper", "dashpot", "shock_absorber", "viscous_friction"), "damper, rotary_damper"),
-    Thing(("tyre", "tire", "mount", "isolator", "bearing", "contact"), "spring", "with a damper beside it"),
-    Thing(("torsion_damper", "torsional_damper", "rotational_damper", "angular_damper"), "rotary_damper"),
-    Thing(("coupling", "joint_stiffness", "harmonic_drive", "flexspline"), "torsion_spring"),
-    Thing(("torsional_spring", "rotational_spring", "rotary_spring", "angular_spring"), "torsion_spring"),
-    Thing(("inerter",), "transformer", "to an inertia of its own: J = b*r^2, ratio = 1/r"),
-    Thing(("dry_friction", "coulomb_friction", "stiction", "backlash"), "", "it is not linear; linearise it"),
-    Thing(("force", "actuator_force"), "force_source", 'or give it as an input, { force = "x" }'),
-    Thing(("torque", "moment"), "torque_source", 'or give it as an input, { torque = "theta" }'),
-    Thing(
-        ("imposed_motion", "displacement", "velocity", "acceleration", "base_excitation", "ground_motion"),
-        "[inputs]",
-        'z = { displacement = "base" }, or velocity or acceleration',
-    ),
-    # Transmissions
-    Thing(
-        ("gear", "gearbox", "gears", "reducer"),
-        "transformer",
-        "ratio = speed of the output over speed of the input",
-    ),
-    Thing(("planetary", "epicyclic", "differential", "power_split"), "planetary_gear"),
-    Thing(("rack", "rack_and_pinion", "pinion", "drum", "winch"), "transformer", 'ratio = "r" [m/rad]'),
-    Thing(
-        ("screw", "ball_screw", "ballscrew", "lead_screw", "leadscrew", "spindle"),
-        "transformer",
-        'ratio = "10 mm/rev"',
-    ),
-    Thing(
-        ("belt", "timing_belt", "chain", "pulley"),
-        "transformer",
-        'ratio = "r_1/r_2", with a spring for its stretch',
-    ),
-    Thing(("lever", "rocker", "bell_crank"), "transformer, rigid_link"),
-    # Structures
-    Thing(
-        ("cantilever", "flexible_arm", "arm", "flexible_link", "blade", "boom"), "beam", "fixed at one end"
-    ),
-    Thing(("flexure", "leaf_spring", "massless_arm"), "massless_beam"),
-    Thing(
-        ("truss", "truss_member", "portal", "frame_member"), "frame", "at an angle; pins join without moments"
-    ),
-    Thing(("axial_bar", "strut", "tie_rod", "drill_string"), "rod"),
-    Thing(("rope", "cable", "wire", "thread"), "string", "in transverse motion; a rope that pulls is a rod"),
-    Thing(("torsion_bar", "drive_shaft", "driveshaft", "drill_pipe"), "shaft"),
-    Thing(("clamp", "clamped", "wall", "encastre", "built_in"), "fixed"),
-    Thing(("hinge", "hinged", "pinned", "simply_supported", "simple_support", "revolute"), "pin"),
-    Thing(("roller", "guide", "guided", "sliding", "prismatic"), "slider"),
-    Thing(
-        ("membrane", "plate", "shell", "solid"), "", "fields have one coordinate, x; take modes as resonances"
-    ),
-    # Circuits
-    Thing(("motor", "dc", "dcmotor", "servo_motor", "servomotor", "brushless", "bldc", "pmsm"), "dc_motor"),
-    Thing(("generator", "tachogenerator"), "dc_motor", "with a resistor at its terminals"),
-    Thing(
-        ("linear_motor", "solenoid", "shaker", "coil", "lorentz_actuator", "moving_coil", "vca"), "voice_coil"
-    ),
-    Thing(
-        ("loudspeaker", "speaker", "driver", "woofer", "microphone"), "voice_coil", "with a piston to its box"
-    ),
-    Thing(("piezo_actuator", "pzt", "stack", "piezoelectric"), "piezo"),
-    Thing(
-        ("electrical_transformer", "transformer_windings", "mutual_inductance"),
-        "coupled_inductors, transformer",
-    ),
-    Thing(
-        ("opamp", "operational_amplifier", "amp", "amplifier"),
-        "op_amp",
-        "a gain alone is a factor in a signal",
-    ),
-    Thing(("choke", "winding", "solenoid_coil"), "inductor"),
-    Thing(("battery", "supply", "inverter"), "voltage_source", "or an input { voltage = ... }"),
-    Thing(("controlled_source", "dependent_source", "transconductance", "ota"), "vccs, vcvs, ccvs, cccs"),
-    Thing(("transmission_line", "rlgc_line", "telegraph_line"), "[fields]", "two unknowns, v and i, along x"),
-    # Sound, liquids, heat
-    Thing(("box", "enclosure", "cavity", "volume", "accumulator"), "acoustic_compliance"),
-    Thing(("port", "vent", "tube", "neck", "inertance"), "acoustic_mass"),
-    Thing(("orifice", "valve", "leak", "restrictor", "mesh"), "acoustic_resistance"),
-    Thing(("cylinder", "diaphragm", "hydraulic_cylinder", "cone"), "piston"),
-    Thing(("pump",), "flow_source", "or an input { flow = ... }"),
-    Thing(("insulation", "thermal_resistor", "thermal_conductance", "heat_sink"), "thermal_resistance"),
-    Thing(("thermal_capacitance", "thermal_capacitor", "thermal_mass", "heat_capacity"), "thermal_capacity"),
-    Thing(("heater", "heat", "heat_flow", "heating"), "heat_source", 'or an input { heat = "air" }'),
-    Thing(("ambient", "thermostat"), "temperature_source", 'or an input { temperature = "outside" }'),
-    # Control
-    Thing(("notch", "notch_filter", "antiresonance"), "notch"),
-    Thing(("low_pass", "lowpass", "first_order", "pt1", "rc_filter", "time_constant"), "lag, low_pass"),
-    Thing(("lead", "compensator", "lead_compensator", "lag_compensator"), "lead_lag"),
-    Thing(("pi", "pd", "controller", "regulator"), "pid"),
-    Thing(("dead_time", "transport_delay", "pure_delay", "latency", "zoh", "sampling"), "delay"),
-    Thing(
-        ("gain", "summer", "sum", "sensor", "encoder", "accelerometer", "tachometer"),
-        "[signals]",
-        'e = "r - k*x"',
-    ),
-    Thing(
-        ("transfer_function", "zpk", "filter", "high_pass", "washout", "butterworth", "pt2", "plant"), "tf"
-    ),
-    Thing(("derivative", "differentiator", "d_term"), "[signals]", 'v = "s*x", or "s/(1 + T*s)*x"'),
-    Thing(("pade",), "delay", "it is exact; `symflex rational` approximates"),
-    Thing(("saturation", "limiter", "relay", "deadzone", "quantizer"), "", "it is not linear"),
+# Words, the element or block, and what to write; indented lines continue one.
+_TABLE = """
+# What moves
+mass body block cart payload load weight | mass
+wheel disc disk flywheel rotor pulley_inertia | inertia
+bar link rigid_bar rigid_beam rigid_arm | rigid_link | with rigid_body for its mass
+pendulum inverted_pendulum pole | rigid_body | at a pin; gravity is a torsion_spring of m*g*l, negative
+  if it is inverted
+damper dashpot shock_absorber viscous_friction | damper, rotary_damper
+tyre tire mount isolator bearing contact | spring | with a damper beside it
+torsion_damper torsional_damper rotational_damper angular_damper | rotary_damper
+coupling joint_stiffness harmonic_drive flexspline | torsion_spring
+torsional_spring rotational_spring rotary_spring angular_spring | torsion_spring
+inerter | transformer | to an inertia of its own: J = b*r^2, ratio = 1/r
+dry_friction coulomb_friction stiction backlash |  | it is not linear; linearise it
+force actuator_force | force_source | or give it as an input, { force = "x" }
+torque moment | torque_source | or give it as an input, { torque = "theta" }
+imposed_motion displacement velocity acceleration base_excitation ground_motion | [inputs] | z = {
+  displacement = "base" }, or velocity or acceleration
+# Transmissions
+gear gearbox gears reducer | transformer | ratio = speed of the output over speed of the input
+planetary epicyclic differential power_split | planetary_gear
+rack rack_and_pinion pinion drum winch | transformer | ratio = "r" [m/rad]
+screw ball_screw ballscrew lead_screw leadscrew spindle | transformer | ratio = "10 mm/rev"
+belt timing_belt chain pulley | transformer | ratio = "r_1/r_2", with a spring for its stretch
+lever rocker bell_crank | transformer, rigid_link
+# Structures
+cantilever flexible_arm arm flexible_link blade boom | beam | fixed at one end
+flexure leaf_spring massless_arm | massless_beam
+truss truss_member portal frame_member | frame | at an angle; pins join without moments
+axial_bar strut tie_rod drill_string | rod
+rope cable wire thread | string | in transverse motion; a rope that pulls is a rod
+torsion_bar drive_shaft driveshaft drill_pipe | shaft
+clamp clamped wall encastre built_in | fixed
+hinge hinged pinned simply_supported simple_support revolute | pin
+roller guide guided sliding prismatic | slider
+membrane plate shell solid |  | fields have one coordinate, x; take modes as resonances
+# Circuits
+motor dc dcmotor servo_motor servomotor brushless bldc pmsm | dc_motor
+generator tachogenerator | dc_motor | with a resistor at its terminals
+linear_motor solenoid shaker coil lorentz_actuator moving_coil vca | voice_coil
+loudspeaker speaker driver woofer microphone | voice_coil | with a piston to its box
+piezo_actuator pzt stack piezoelectric | piezo
+electrical_transformer transformer_windings mutual_inductance | coupled_inductors, transformer
+opamp operational_amplifier amp amplifier | op_amp | a gain alone is a factor in a signal
+choke winding solenoid_coil | inductor
+battery supply inverter | voltage_source | or an input { voltage = ... }
+controlled_source dependent_source transconductance ota | vccs, vcvs, ccvs, cccs
+transmission_line rlgc_line telegraph_line | [fields] | two unknowns, v and i, along x
+# Sound, liquids, heat
+box enclosure cavity volume accumulator | acoustic_compliance
+port vent tube neck inertance | acoustic_mass
+orifice valve leak restrictor mesh | acoustic_resistance
+cylinder diaphragm hydraulic_cylinder cone | piston
+pump | flow_source | or an input { flow = ... }
+insulation thermal_resistor thermal_conductance heat_sink | thermal_resistance | R = "l/(lambda*A)", or
+  "1/(h*A)"
+thermal_capacitance thermal_capacitor thermal_mass heat_capacity | thermal_capacity
+heater heat heat_flow heating | heat_source | or an input { heat = "air" }
+ambient thermostat | temperature_source | or an input { temperature = "outside" }
+# Control
+notch notch_filter antiresonance | notch
+low_pass lowpass first_order pt1 rc_filter time_constant | lag, low_pass
+lead compensator lead_compensator lag_compensator | lead_lag
+pi pd controller regulator | pid
+dead_time transport_delay pure_delay latency zoh sampling | delay
+gain summer sum sensor encoder accelerometer tachometer | [signals] | e = "r - k*x"
+transfer_function zpk filter high_pass washout butterworth pt2 plant | tf
+derivative differentiator d_term | [signals] | v = "s*x", or "s/(1 + T*s)*x"
+pade | delay | it is exact; `symflex rational` approximates
+saturation limiter relay deadzone quantizer |  | it is not linear
+"""
+_ROWS = (row.split("|") for row in re.split(r"\n(?! )", _TABLE.strip()) if not row.startswith("#"))
+THINGS = tuple(
+    Thing(tuple(words.split()), use.strip(), " ".join("".join(how).split())) for words, use, *how in _ROWS
 )
 
 

@@ -92,7 +92,8 @@ def doubtful_units(declared: Iterable[DeclaredParameter]) -> Iterator[Diagnostic
     """Yield a warning for each parameter whose unit data sheets mean differently."""
     for p in declared:
         unit = p.quantity.unit if p.quantity else p.unit_text
-        if doubt := unit_doubt(unit):
+        is_slow = p.quantity and p.quantity.magnitude < 1  # 0.5 1/min is a rate, 3000 1/min a speed
+        if (doubt := unit_doubt(unit)) and not ("min" in unit and is_slow):
             message = f"the unit '{unit}' of '{p.name}' may mean something else: {doubt[0]}"
             yield Diagnostic("SF656", message, p.span, doubt[1], "warning")
 

@@ -47,6 +47,11 @@ SUFFIXES = """1k kOhm, 100n nF, 4k7 kOhm, 2.2u uF, 1Meg MOhm, 3M MOhm, 10p pF, 5
 2Oe A/m, 9r/min rev, 5dps deg/s, 20PSI psi, 5Kgf kgf, 2RPM rpm, 3mho 'S', 20degC 'K'"""
 
 
+def test_a_speed_per_minute_is_warned_of_and_a_slow_rate_is_not():
+    codes = [[w.code for w in loaded(value, "S*x").warnings] for value in ('"3000 1/min"', '"0.2 1/min"')]
+    assert codes == [["SF656"], []]
+
+
 def rows(table):
     return [row.split() for row in table.split(",")]
 
