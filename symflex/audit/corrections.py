@@ -243,8 +243,16 @@ def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
         others = [Name(n) for n in known if n != part.name]
     elif isinstance(part, Call):
         others = [Call(f, part.argument) for f in FUNCTION_SWAPS if f != part.name]
+    quotients = [n for n in nodes(reading.formula.expression) if isinstance(n, Quotient)]
+    around = [(len(nodes(q)), i) for i, q in enumerate(quotients) if any(n is part for n in nodes(q))]
     for other in others:
         if reading.field.equal(reading.value(other), wanted.value):
+            if around and isinstance(part, Name):
+                whole = _replaced(within := quotients[min(around)[1]], part, other)
+                plain = of_powers(*powers_of(whole))
+                if len(nodes(plain)) < len(nodes(whole)):  # T_22 is no T_22*Z_1/Z_1
+                    yield replace(wanted, part=within).replaced_by(plain)
+                    continue
             yield wanted.replaced_by(other)
 
 

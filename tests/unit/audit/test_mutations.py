@@ -301,3 +301,30 @@ def test_a_sign_under_a_root_is_found_where_it_is():
     (found,) = audit(pipeline.loads(f"{text}expr = '{expr}'\n"))
     (change,) = found.changes
     assert format_expression(change.derived) == "sqrt(k/m - (b/(2*m))^2)"
+
+
+CHAMBER = """symflex = 1
+parameters = { rho = "1.2 kg/m^3", c = "343 m/s", S_1 = "1 m^2", S_2 = "5 m^2", S_3 = "2 m^2", L = "3 m" }
+definitions = { Z_1 = "rho*c/S_1", Z_2 = "rho*c/S_2", Z_3 = "rho*c/S_3" }
+inputs.p_i = { unit = "Pa" }
+outputs.p_t = "p(L)"
+[fields.chamber]
+domain = ["0", "L"]
+unknowns = ["p", "q"]
+equations = ["p' = -rho*s/S_2*q", "q' = -S_2*s/(rho*c^2)*p"]
+conditions = ["p(0) + Z_1*q(0) = 2*p_i", "p(L) = Z_3*q(L)"]
+[published."p_t/p_i"]
+expr = "2/(T_11*Z_1/Z_3 + T_12/Z_3 + Z_1*T_21 + T_22*Z_3/Z_1)"
+where = { T_11 = "cosh(s*L/c)", T_12 = "Z_2*sinh(s*L/c)", T_21 = "sinh(s*L/c)/Z_2", T_22 = "cosh(s*L/c)" }
+"""
+
+
+@pytest.mark.slow
+def test_a_repair_divides_no_name_by_itself():
+    # Munjal, Acoustics of Ducts and Mufflers: 2/(T_11 + T_12/Z_3 + Z_1*T_21 + T_22*Z_1/Z_3), T_11 = T_22.
+    for misprint in ("T_22*Z_3/Z_1", "T_22*Z_1/Z_2"):
+        text = CHAMBER.replace("T_22*Z_3/Z_1", misprint)
+        (found,) = audit(pipeline.loads(text))
+        (change,) = found.changes
+        sides = format_expression(change.printed), format_expression(change.derived)
+        assert sides == (misprint, "T_22")
