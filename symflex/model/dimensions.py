@@ -334,7 +334,8 @@ class DimensionSystem:
         message = f"terms of a sum disagree: {_said(one)}'{there}' and {_said(term)}'{here}'"
         hint = _gain_hint(pair.whole, here, there)
         if pair in self._pairs:
-            hint = "a number beside them is a pure number; one with a unit is a parameter with that unit"
+            hint = "numbers here are pure; declare one that has a unit as a parameter with that unit"
+            hint = f"an 's' may be missing; {hint}" if pair.may_lack else hint
         self._note("SF205", message, term.span or pair.whole.span, hint)
 
     def finish(self) -> Mapping[str, CycleReading]:
