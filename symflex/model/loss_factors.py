@@ -10,10 +10,13 @@ Example: ``{ type = "spring", k = "k", eta_s = "eta" }`` has the value ``k*(1 + 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Name, Number, names, number, product_of, sum_of
+from symflex.expressions import Name, Number, Product, Sum, names, names_among, number, product_of, sum_of
+from symflex.expressions.nodes import nodes
+from symflex.model.complex_values import with_real_values
 from symflex.model.model import IMAGINARY, J, ModelParameter
 
 if TYPE_CHECKING:
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.library.elements import Element
+    from symflex.model.model import Model
     from symflex.model.network import Draft
     from symflex.model.reading import Reader
 
@@ -47,6 +51,8 @@ def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:
             )
             reader.note("SF211", message, taken[IMAGINARY] or here[0], "rename what the model calls j")
         return draft
+    draft = with_real_values(draft)
+    here = next(_uses(draft), None)
     if here is None or any(p.name == IMAGINARY for p in draft.inherited):
         return draft
     unit = ModelParameter(IMAGINARY, J, "1", "real", doc="imaginary unit", span=here[0])
@@ -63,6 +69,8 @@ def _uses(draft: Draft) -> Iterator[tuple[Span | None, bool]]:
             yield factor.span or use.span, True
     for field in draft.fields:
         expressions += [*field.equations, *field.conditions]
+    expressions += [e for block in draft.blocks for _, e in block.values]
+    expressions += [x.expression for x in draft.signals] + [x.expression for x in draft.outputs]
     for expression in expressions:
         yield from ((n.span, False) for n in names(expression) if n == Name(IMAGINARY))
 
@@ -79,8 +87,28 @@ def with_loss(
     return tuple((n, replace(product_of([e, loss]), span=e.span) if n in lossy else e) for n, e in values)
 
 
+def has_loss_factors(model: Model) -> bool:
+    """Tell whether j belongs to loss factors, so that a model holds on s = j*omega, omega > 0, alone.
+
+    It does in values of elements and in fields, but beside s, and in ``1 + j*eta``. Elsewhere coefficients
+    are complex at every s, as of a motor's currents in axes that turn, or of a rotor's deflection x + j*y.
+    """
+    if model.imaginary is None:
+        return False
+    unit, held = Name(IMAGINARY), {IMAGINARY}
+    for _ in model.definitions:
+        held |= {d.name for d in model.definitions if names_among(d.expression, held)}
+    stiff = [e for use in model.elements for _, e in use.all_values]
+    stiff += [e for f in model.fields for e in (*f.equations, *f.conditions)]
+    parts = [n for e in stiff for n in nodes(e) if isinstance(n, Product) and unit in n.factors]
+    if any(names_among(e, held) for e in stiff) and not any(Name(LAPLACE) in names(p) for p in parts):
+        return True
+    sums = [n.terms for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum)]
+    return any(len(t) == 2 and number(1) in t and any(unit in names(x) for x in t) for t in sums)  # noqa: PLR2004
+
+
 def check_causal(model: object, what: str) -> None:
-    """Refuse what needs more than s = j omega of a model with loss factors; other subjects pass.
+    """Refuse what needs real coefficients, or more than s = j omega; other subjects than models pass.
 
     Raises ModelError: SF251 the model holds j.
     """
@@ -92,4 +120,10 @@ def check_causal(model: object, what: str) -> None:
         "formulas, frequency responses, modes (roots) and numpy code are available; "
         "a damper or eta in seconds holds at every s"
     )
+    if not has_loss_factors(cast("Model", model)):
+        message = f"{what} is not available with complex coefficients (j)"
+        hint = (
+            "formulas, frequency responses, roots and numpy code are available; "
+            "if the model is real, complex values must come in conjugate pairs"
+        )
     raise ModelError(Diagnostic("SF251", message, unit.span, hint))

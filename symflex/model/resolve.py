@@ -326,11 +326,13 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         draft.fields,
     )
     unsound: set[Span | None] = set()
-    scopes: dict[Kind, ModelScope] = {"varying": scope.varying(), "constant": scope}
+    scopes: dict[Kind, ModelScope] = {"varying": scope.varying(), "constant": scope, "signal": scope}
     unreal = {p.name for p in draft.inherited if p.is_imaginary}
     plain = replace(scope, meanings={n: m for n, m in scope.meanings.items() if n not in unreal})
+    outputs = {id(x.expression) for x in draft.outputs}
     for expression, kind in _all_expressions(draft):
-        problems = _check(expression, scopes.get(kind, plain), constant=kind != "signal")
+        readable = plain if id(expression) in outputs else scopes.get(kind, plain)
+        problems = _check(expression, readable, constant=kind != "signal")
         reader.take(problems)
         if problems:
             unsound.add(expression.span)
@@ -472,6 +474,6 @@ def _all_expressions(draft: Draft) -> list[tuple[Expression, Kind]]:
         kinds |= {p.name: "varying" for p in use.element.parameters if p.varies}
         kinds |= {"l": "real"} if isinstance(use.element, LineElement) else {}
         expressions += [(e, kinds.get(name, "constant")) for name, e in use.values]
-    expressions += [(e, "real") for b in draft.blocks for _, e in b.values]
+    expressions += [(e, "constant") for b in draft.blocks for _, e in b.values]
     expressions += [(x.expression, "signal") for x in draft.signals]
     return expressions + [(x.expression, "signal") for x in draft.outputs]

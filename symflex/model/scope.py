@@ -44,8 +44,8 @@ RESERVED: dict[str, str] = {
 """Names that have a meaning of their own, and which."""
 IN_TIME = "a derivative in time is written with s: s*x"
 WHERE_J = (
-    "j, with j^2 = -1, is for loss factors such as 'k*(1 + j*eta)': it is allowed in values of elements "
-    "(not lengths), in definitions and in [fields]; for j*omega write s"
+    "j, with j^2 = -1, is for loss factors such as 'k*(1 + j*eta)' and for complex coefficients: it is not "
+    "allowed in lengths and outputs; for j*omega write s"
 )
 LISTED_NAMES = 8
 """Names that a hint lists."""

@@ -39,7 +39,7 @@ MOST_FUNCTIONS: Final = 24
 DIGITS: Final = 15
 MODES: Final = 5
 TOO_LARGE: Final = "the closed form is too large"
-ONLY_ON_AXIS: Final = "loss factors hold on s = j*omega alone"
+ONLY_ON_AXIS: Final = "loss factors and other complex coefficients are not examined"
 T = TypeVar("T")
 
 

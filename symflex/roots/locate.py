@@ -161,7 +161,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
 
     source = bound.source
     if source.model.imaginary:
-        message = f"modes of {bound.name} are not searched: its closed form is too large with loss factors"
+        message = f"modes of {bound.name} are not searched: its closed form is too large with j"
         hint = "its frequency response shows them (plot bode); or let equal parts share their parameters"
         raise UncertifiedError(Diagnostic("SF404", message, source.model.imaginary.span, hint))
     model = _with_values(bound)

@@ -27,13 +27,14 @@ from symflex.balls import expansion, precision, stays_inside
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.model import with_numbers
+from symflex.model.loss_factors import has_loss_factors
 from symflex.model.model import IMAGINARY, ExactValue
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.proof import limits
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
-from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict
+from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict, judge
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
@@ -56,6 +57,7 @@ NO_STABILITY: Final = StabilityVerdict(
     certified=False,
     reason="loss factors hold only on s = j*omega and do not decide stability",
 )
+COMPLEX: Final = "coefficients are complex, and poles need no conjugates"
 FOLLOWED: Final = "Newton steps from roots without losses"
 NOT_COUNTED: Final = "each root is proved, but not that no other lies between them"
 FURTHER: Final = 3
@@ -100,17 +102,27 @@ def locate_lossy(
     sides = (bound.ratio.denominator(), bound.ratio.numerator())
     reason: str | None = None
     engine, missing = POLYNOMIAL, 0
+    is_lossy = has_loss_factors(bound.source.model)
+    if bound.is_distributed and not is_lossy:
+        message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
+        hint = "its frequency response shows them (plot bode)"
+        raise UncertifiedError(Diagnostic("SF404", message, None, hint))
     if bound.is_distributed:
         followed, engine = _followed(bound, region, digits, locate), FOLLOWED
         roots_of_sides = [[r for r in side.roots if not r.im < 0] for side in followed]
         missing = sum(side.missing for side in followed)
         reason = "; ".join(dict.fromkeys(side.reason for side in followed if side.reason)) or None
     else:
-        roots_of_sides = [_of_polynomials(bound, side.factors, digits) for side in (*sides, cancelled(bound))]
+        every = (*sides, cancelled(bound))
+        roots_of_sides = [_of_polynomials(bound, x.factors, digits, is_lossy=is_lossy) for x in every]
     cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
     poles, zeros = (_inside(region, roots) for roots in roots_of_sides[:2])
     concealed = _inside(_among(poles, region) if bound.is_distributed else region, roots_of_sides[2])
     total = count_roots((*poles, *zeros, *concealed))
+    verdict = NO_STABILITY
+    if not is_lossy:
+        verdict = judge(roots_of_sides[0], hidden=roots_of_sides[2])
+        verdict = replace(verdict, reason="; ".join(filter(None, (verdict.reason, COMPLEX))))
     return PoleZeroMap(
         bound.name,
         region,
@@ -120,7 +132,7 @@ def locate_lossy(
         Certificate(engine, total + missing, total, reason),
         digits,
         is_infinite=bound.is_distributed,
-        verdict=NO_STABILITY,
+        verdict=verdict,
     )
 
 
@@ -132,8 +144,13 @@ def _inside(region: Region, roots: Sequence[Root]) -> tuple[Root, ...]:
 
 
 def _of_polynomials(
-    bound: BoundTransferFunction, factors: Iterable[tuple[fmpz_mpoly, int]], digits: int
+    bound: BoundTransferFunction,
+    factors: Iterable[tuple[fmpz_mpoly, int]],
+    digits: int,
+    *,
+    is_lossy: bool = True,
 ) -> list[Root]:
+    """Return the roots of polynomials in s and j; with loss factors, those not below the real axis."""
     ring, roots = bound.ratio.ring, list[Root]()
     place = ring.index[IMAGINARY] if IMAGINARY in ring.index else None
     for factor, exponent in factors:
@@ -143,23 +160,23 @@ def _of_polynomials(
         g, h = (parts.get(n, ring.constant(0)) for n in (0, 1))
         common = g.gcd(h)
         real = [(common, abs(exponent))] if degree_in(common, 0) else []
-        roots += [_lossy(r) for r in find_polynomial_roots(problem_of(bound, real), digits) if not r.im < 0]
+        roots += find_polynomial_roots(problem_of(bound, real), digits)
         g, h = g // common, h // common
         if not h.is_zero() and (degree_in(g, 0) or degree_in(h, 0)):
-            roots += _upper(bound, g, h, abs(exponent), digits)
-    return roots
+            roots += _apart(bound, g, h, abs(exponent), digits)
+    return [_lossy(r) for r in roots if not r.im < 0] if is_lossy else roots
 
 
-def _upper(
+def _apart(
     bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, exponent: int, digits: int
 ) -> list[Root]:
-    """Return the roots of g + j h above the real axis."""
+    """Return the roots of g + j h, of which g and h share none."""
     problem = problem_of(bound, [(g * g + h * h, exponent)])
     for doubling in range(DOUBLINGS):
         roots = [r for r in find_polynomial_roots(problem, digits << doubling) if r.im > 0 and not r.is_real]
         sides = [_vanishes(bound, g, h, root) for root in roots]
         if None not in sides:
-            return [_lossy(r) for r, side in zip(roots, sides, strict=True) if side]
+            return [r if side else replace(r, im=-r.im) for r, side in zip(roots, sides, strict=True)]
     message = f"a root of {bound.name} cannot be told from the mirror image of another"
     raise UncertifiedError(
         Diagnostic("SF404", message, None, "loss factors as small as this may be left out")

@@ -12,6 +12,7 @@ from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import DynamicColocation, StabilityMap, degrees
 from symflex.loops.stability_map import bandwidth_text
+from symflex.model.loss_factors import has_loss_factors
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
@@ -47,6 +48,12 @@ LEFT_OUT: Final = (
 )
 
 
+COMPLEX: Final = (
+    "Coefficients are complex. The report lists all poles and zeros, in both half planes. It has no mode "
+    "shapes, responses in time, state equations, or code in languages other than Python."
+)
+
+
 def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
     explained = {each.tf: told for _, each, told in study.located}
@@ -55,7 +62,7 @@ def root_section(study: Study) -> ChapterPart:
     tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
     blocks: list[Block] = []
     if study.model.imaginary:
-        blocks.append(text(LEFT_OUT))
+        blocks.append(text(LEFT_OUT if has_loss_factors(study.model) else COMPLEX))
     warnings = []
     sections: list[Section] = []
     for i, each in enumerate(study.maps):
