@@ -60,11 +60,11 @@ def with_real_values(draft: Draft) -> Draft:
     """
     ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     values = {d.name: d.expression for d in draft.definitions} | ratios
-    reading = _Reading({})
+    reading = _ComplexNames({})
     while len(found := {n: e for n, e in values.items() if reading.has_unit(e)}) > len(reading.values):
-        reading = _Reading(found)
+        reading = _ComplexNames(found)
     settled = {n: reading.real(e) for n, e in found.items()}
-    reading = _Reading({n: e for n, e in found.items() if reading.has_unit(settled[n])})
+    reading = _ComplexNames({n: e for n, e in found.items() if reading.has_unit(settled[n])})
     real = {n: e for n, e in settled.items() if n not in reading.values}
     definitions = [replace(d, expression=real.get(d.name, d.expression)) for d in draft.definitions]
     blocks = list(draft.blocks)
@@ -75,7 +75,7 @@ def with_real_values(draft: Draft) -> Draft:
             blocks[i] = replace(block, values=(("num", num), ("den", den)))
     signals = tuple(replace(x, expression=reading.real(x.expression)) for x in draft.signals)
     outputs = tuple(replace(x, expression=reading.real(x.expression)) for x in draft.outputs)
-    needed = [x.expression for x in (*signals, *outputs)]
+    needed = [x.expression for x in signals] + [x.expression for x in outputs]
     needed += [e for use in draft.elements for _, e in use.values]
     needed += [e for f in draft.fields for e in (*f.equations, *f.conditions)]
     used: set[str] = set()
@@ -98,7 +98,7 @@ def _ratio(block: PlacedBlock) -> Expression:
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _ComplexNames:
     """Definitions and blocks with j, by name."""
 
     values: Mapping[str, Expression]

@@ -17,6 +17,7 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import AnyLoop, DynamicColocation, StabilityMap, find_stable_gains
 from symflex.loops.of_model import characteristic_loop, colocation
 from symflex.model import Model, with_numbers
+from symflex.model.loss_factors import has_loss_factors
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.facts import ModelFacts, facts_of
@@ -39,7 +40,8 @@ MOST_FUNCTIONS: Final = 24
 DIGITS: Final = 15
 MODES: Final = 5
 TOO_LARGE: Final = "the closed form is too large"
-ONLY_ON_AXIS: Final = "loss factors and other complex coefficients are not examined"
+ONLY_ON_AXIS: Final = "loss factors hold on s = j*omega alone"
+COMPLEX: Final = "coefficients are complex"
 T = TypeVar("T")
 
 
@@ -171,8 +173,9 @@ class Study:
         if isinstance(self._bound, SymflexError):
             return ()
         by_name = {each.tf: each for each in self.maps}
+        why = ONLY_ON_AXIS if has_loss_factors(self.model) else COMPLEX if self.model.imaginary else TOO_LARGE
         return tuple(
-            (bound.source, by_name[bound.name], ONLY_ON_AXIS if self.model.imaginary else TOO_LARGE)
+            (bound.source, by_name[bound.name], why)
             for bound in self.bounds
             if bound.name in by_name and (self.model.imaginary or isinstance(bound, BoundNested))
         )
