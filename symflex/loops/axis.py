@@ -149,6 +149,8 @@ def _joined(intervals: list[arb]) -> tuple[arb, ...]:
 
 
 ORIGIN_BITS = 320
+SHRINKINGS, SHRUNK = 4, 0.7
+"""Tries of a radius to which functions are expanded about 0, and its share of the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +239,7 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
     They reach as far as roots next to 0 can be told from it, times a factor.
     """
     ring = function.bound.ratio.ring
-    orders, lowest_terms = [], []
+    orders, parts = [], []
     for polynomial in (function.a, function.b):
         whole = Factored.polynomial(ring, polynomial)
         try:
@@ -250,21 +252,27 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             spend()
             return None
         orders.append(order)
-        lowest_terms.append((part, lowest, whole.unit))
-    lowest = min(low for _, low, _ in lowest_terms)
+        parts.append((part, lowest, whole.unit))
+    lowest = min(low for _, low, _ in parts)
     if lowest == -inf:
         return None
     with precision(ORIGIN_BITS):
         reach = arb(exp(lowest) * times)
+        # Where waves lose energy, a wavenumber may vanish on the circle, at a root that it shares.
+        for _ in range(SHRINKINGS):
+            own = [local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2) for part, _, _ in parts]
+            known = [each for each in own if each is not None]
+            if len(known) == len(parts):
+                break
+            reach = (reach * SHRUNK).mid()
+        else:
+            return None
         series = []
-        for part, _, unit in lowest_terms:
-            own = local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2)
-            if own is None:
-                return None
+        for each, (_, _, unit) in zip(known, parts, strict=True):
             # Functions whose roots are sought are known but for a factor, which counts here.
             scale = ball(unit)
-            scaled = tuple(scale * coefficient for coefficient in own.coefficients)
-            series.append(replace(own, coefficients=scaled, bound=own.bound * abs(scale)))
+            scaled = tuple(scale * coefficient for coefficient in each.coefficients)
+            series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
     return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function))
 
 

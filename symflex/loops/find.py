@@ -38,7 +38,6 @@ from symflex.loops.stability_map import (
     StabilityMap,
 )
 from symflex.roots import find_polynomial_roots
-from symflex.roots.distributed.far_out import NEUTRAL
 from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
@@ -115,11 +114,8 @@ def find_stable_gains(
         is_passive=along is not None and along.passive is not None,
         is_narrowed=along is not None and along.is_narrowed,
     )
-    is_alone = stability.nominal_interval is None and (along is None or along.is_narrowed)
-    # Terms that do not outweigh one another for all gains may do so for one; and where a passive loop is
-    # counted up to a frequency, poles beyond it may lie on the axis.
-    is_open = stability.is_passive and not is_complete
-    if nominal is not None and (is_alone or is_open or NEUTRAL in stability.reasons):
+    # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
+    if nominal is not None and stability.verdict.word == "unknown":
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
