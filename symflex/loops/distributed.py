@@ -8,16 +8,17 @@ principle about a half disc, beyond which, where this can be proved, there are n
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from math import exp, log
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.balls import ball, precision
+from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
@@ -32,7 +33,7 @@ from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import count_roots
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from symflex.transfer import BoundTransferFunction
 
@@ -50,6 +51,8 @@ NEXT_TO_ZERO = 1e-6
 """Share of the frequency of one wave at which the search for crossings begins, if 0 stays open."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
+ARCS, SHORTEST = 64, 1e-5
+"""Parts of a quarter of a circle, at first and at least, on which no pole is shown to lie."""
 COUNT_DIGITS = 12
 """Digits of poles of which only the side of the axis is asked for."""
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
@@ -200,11 +203,19 @@ class DistributedFactors:
             self.reasons.append("it could not be decided whether the loop gain is one at high frequencies")
         return last
 
-    def count(self, gain: Fraction) -> PoleCount:
+    def count(
+        self, gain: Fraction, below: PoleCount | None = None, crossed: Sequence[Crossing] = ()
+    ) -> PoleCount:
         """Return how many poles lie right of the axis and on it, as far as they are searched.
 
-        SF802 when a pole lies on the path of the count.
+        Where that is proved, they are those ``below`` and what comes at the crossings between. SF802 when a
+        pole lies on the path of the count.
         """
+        changes = [c.change for c in crossed if c.change != 0 and not c.frequencies[0] > self._circle]
+        known = [change for change in changes if change is not None]
+        is_proved = self._circle > 0 and not self.reasons[not self.radius[1] :]
+        if below is not None and is_proved and len(known) == len(changes):
+            return PoleCount(below.right + sum(known), below.axis)
         side = Side(self.bound, self._product(gain), COUNT_DIGITS)
         # Where wavenumbers vanish, what cancelled may have a root at 0 that is no pole.
         origin = side
@@ -218,9 +229,9 @@ class DistributedFactors:
             return PoleCount(count_right(side.roots), zeros)
         if self.passive is not None and self.passive.rests:
             return PoleCount(0, zeros)
-        for nudge in NUDGES:
+        for circle in [self._circle] if self._circle else self._circles:
             try:
-                return PoleCount(side.count_right(log(self.radius[0] * 1.01) + nudge), zeros)
+                return PoleCount(side.count_right(log(circle)), zeros)
             except RootOnAxisError:
                 break
             except RootOnPathError:
@@ -228,6 +239,33 @@ class DistributedFactors:
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
+
+    @property
+    def _circles(self) -> list[float]:
+        return [self.radius[0] * 1.01 * exp(nudge) for nudge in NUDGES]
+
+    @cached_property
+    def _circle(self) -> float:
+        """The first circle that no pole passes right of the axis, whatever the gain; 0 without one."""
+
+        def is_passed(circle: float) -> bool:
+            def known(function: LoopFunction, low: float, high: float) -> bool | None:
+                with precision(BITS):
+                    s = circle * acb(0, arb(low).union(arb(high)) * arb.pi() / 2).exp()
+                    value = function.around(s, BITS)[0]
+                    apart = bool((value.a * value.b.conjugate()).imag != 0)
+                return True if apart or self._is_far(value) else None
+
+            try:
+                for function in self.with_gain:
+                    deque(covered(partial(known, function), ARCS, SHORTEST), 0)
+            except UndecidedError:
+                return True
+            return False
+
+        return (
+            self._circles[0] if self.radius[1] else next((c for c in self._circles if not is_passed(c)), 0.0)
+        )
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
@@ -239,7 +277,7 @@ class DistributedFactors:
         if origin is not None:
             gain = origin.gain()
             if gain is not None and self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (arb(0),)))
+                crossings.append(Crossing(gain, (arb(0),), change=None))
         result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.bits())
@@ -252,9 +290,17 @@ class DistributedFactors:
                     self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
                     continue
                 gain = around.gain()
+                # Of a simple pole s: ds/dK = -B/(A' + K B'); its mirror image moves alike.
+                slope = -(around.b / (around.a_slope + gain * around.b_slope)).real
+                change = 2 if slope > 0 else -2 if slope < 0 else None
             if self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (omega,)))
+                crossings.append(Crossing(gain, (omega,), change=change if self._is_simple else None))
         return crossings
+
+    @property
+    def _is_simple(self) -> bool:
+        """Whether each factor that depends on the gain occurs once."""
+        return all(factor.multiplicity == 1 for factor in self.factors if factor.degree)
 
     def on_axis(
         self,

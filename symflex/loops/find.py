@@ -275,11 +275,18 @@ class _GainSearch:
         gains = [_hull(group) for group in groups]
         ends: list[arb | None] = [low, *gains, high]
         counts = []
+        own: PoleCount | None = None  # of the factors with kernels
         for i, (below, above) in enumerate(pairwise(ends)):
             entered_budget().progress.report(
                 i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals"
             )
-            counts.append(self._count(_sample(below, above)))
+            sample = _sample(below, above)
+            total = sum((factor.count(sample) for factor in self.lumped), self.apart)
+            if self.along is not None:
+                own = self.along.count(sample, own, groups[i - 1] if i else ())
+                total = total + own
+            counts.append(total)
+            spend()
         boundaries, intervals = [], []
         is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
         start: arb | None = ends[0]
@@ -303,13 +310,6 @@ class _GainSearch:
             start = gain
         intervals.append(GainInterval(start, ends[-1], counts[-1]))
         return tuple(boundaries), tuple(intervals)
-
-    def _count(self, gain: Fraction) -> PoleCount:
-        spend()
-        total = sum((factor.count(gain) for factor in self.lumped), self.apart)
-        if self.along is not None:
-            total = total + self.along.count(gain)
-        return total
 
 
 def _ball(value: Fraction) -> arb:

@@ -277,20 +277,23 @@ class LoopFunction:
         return self._evaluators[bits]
 
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle.
+        """Return the values on a ball of frequencies, and those in its middle."""
+        return self.around(acb(0, omega), bits)
+
+    def around(self, s: acb, bits: int) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball, and those in its middle.
 
         The first are enclosures by the mean value theorem where these are narrower.
         """
         with precision(bits):
-            middle = omega.mid()
-            wide = acb(0, omega)
+            middle = s.mid()
             sums = self.evaluator(bits)
-            around = sums.at(expansion(wide))
-            centre = sums.at(expansion(acb(0, middle)), around)
+            around = sums.at(expansion(s))
+            centre = sums.at(expansion(middle), around)
             less = sums.largest((0, 1), centre)
             values = [[sums.value(i, place, less) for i in (0, 1)] for place in (around, centre)]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
-            off = acb(0, omega - middle)
+            off = s - middle
             narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
             return (
                 LoopValue(narrow[0], a[1], narrow[1], b[1]),

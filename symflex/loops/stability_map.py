@@ -348,6 +348,8 @@ class Crossing:
     is_symmetric: bool = False
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
+    # By how many the poles of factors with kernels grow right of the axis with the gain, None where unknown.
+    change: int | None = 0
 
 
 @dataclass(frozen=True, slots=True)
