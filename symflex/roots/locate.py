@@ -31,6 +31,7 @@ from symflex.roots.distributed.right_half_plane import (
 )
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
+from symflex.roots.functions.exact_zeros import is_shared_exactly
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
 from symflex.roots.passive import fastest_growth, observed, passive_loop
@@ -343,7 +344,7 @@ class _Searched:
         ]
         self.hidden += self._points.hidden(_chosen(self._points.distinct, within))
         self.hidden += [
-            HiddenRoot(root, "coincident")
+            HiddenRoot(root, "coincident", is_exact=is_shared_exactly(self.bound, root, self.digits))
             for root in _chosen(shared, within)
             if not any(overlap(root, other) for other in (*self._degenerate, *gone))
         ]

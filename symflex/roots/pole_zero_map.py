@@ -275,11 +275,12 @@ class HiddenRoot:
     root: Root  # the mode that input and output do not see together
     # ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
     cause: str = "cancelled"
+    is_exact: bool = False  # what coincides is proved to be equal
 
     @property
     def is_proved(self) -> bool:
         """Whether pole and zero are equal: what agrees in all digits may still be seen."""
-        return self.cause == "cancelled" or self.root.is_zero
+        return self.is_exact or self.cause == "cancelled" or self.root.is_zero
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ from symflex.analysis.time_response.sampled import Sampled
 from symflex.balls import UndecidedError, bits_for_digits, covered, precision
 from symflex.budget import spend
 from symflex.roots import Modes
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem
@@ -147,6 +148,8 @@ def late_response(
     longest = max((p.seconds.upper() for p in loop.below), key=float, default=arb(0))
     fastest = max((abs(pole.enclosure()).upper() for pole in loop.poles), key=float, default=arb(0))
     unit = 1 / longest if longest > 0 else fastest
+    below = KernelFunction(bound, bound.ratio.denominator())
+    at_zero = (below.order() or 0) if below.power == 1 else 0  # a zero there may take a pole out
     for share in EFFORT.lines:
         spend()
         rate = (unit * share).mid()
@@ -154,10 +157,11 @@ def late_response(
         if on_line is None:
             continue
         size, count = on_line
-        poles = _right_of(bound, rate, count, digits)
-        if sum(p.multiplicity for p in poles) != count or not all(p.certified for p in poles):
+        poles, cancelled = _right_of(bound, rate, count - at_zero, digits)
+        found = (*poles, *cancelled)
+        if sum(p.multiplicity for p in found) != count - at_zero or not all(p.certified for p in found):
             continue
-        terms = [term_at(bound, root, integrations) for root in poles if not root.im < 0 and not root.is_zero]
+        terms = [term_at(bound, root, integrations) for root in poles if not root.im < 0]
         origin = proved_at_origin(bound, integrations)
         if origin is not None and None not in terms:
             return LateResponse(
@@ -202,15 +206,27 @@ def settled(
     return replace(early, values=(*early.values, *values), method="settled echoes")
 
 
-def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) -> list[Root]:
-    """Return the poles right of a line, of which there are so many; fewer where these are not the lowest."""
+def _right_of(
+    bound: BoundTransferFunction, rate: arb, count: int, digits: int
+) -> tuple[list[Root], list[Root]]:
+    """Return so many poles right of a line, without those at 0; fewer where these are not the lowest.
+
+    Those that a zero is proved to take out are apart. Others that agree with a zero count as poles: their
+    residues are enclosed.
+    """
     poles: list[Root] = []
+    cancelled: list[Root] = []
     for more in (0, EFFORT.line_modes) if count else ():
         located = locate(bound, Modes(count + more), digits)
-        poles = [p for p in located.all_poles if p.enclosure().real + rate > 0]
-        if sum(p.multiplicity for p in poles) == count:
+        shared = [h for h in located.hidden if h.cause == "coincident"]
+        known = (*located.all_poles, *(h.root for h in shared if not h.is_exact))
+        parts = (known, [h.root for h in shared if h.is_exact])
+        poles, cancelled = (
+            [p for p in part if p.enclosure().real + rate > 0 and not p.is_zero] for part in parts
+        )
+        if sum(p.multiplicity for p in (*poles, *cancelled)) == count:
             break
-    return poles
+    return poles, cancelled
 
 
 def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
