@@ -236,6 +236,8 @@ def locate_distributed(
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
+        for side in searched.sides:
+            side.recall()
         reason = "; ".join(d.message for d in error.diagnostics) + searched.extent()
         code = error.diagnostics[0].code
         if all(root.is_zero for side in searched.sides for root in side.roots):
@@ -493,12 +495,20 @@ class _Searched:
 
     def extent(self) -> str:
         """Say how far a search came that was broken off."""
-        reached = self.sides[0].reached if self.sides else -inf
-        if not isinstance(self.region, Modes) or not isfinite(reached):
+        if not isinstance(self.region, Modes) or not self._pair or not isfinite(self._pair[0].reached):
             return ""
-        count = self.sides[0].modes
-        modes = "1 mode was" if count == 1 else f"{count} modes were"
-        return f"; {modes} found up to {exp(reached) / (2 * pi):g} Hz"
+        poles, zeros = self._pair
+        if not poles.modes:
+            return "; no poles were found yet"
+        modes = "1 mode was" if poles.modes == 1 else f"{poles.modes} modes were"
+        said = f"; {modes} found up to {exp(poles.reached) / (2 * pi):g} Hz"
+        if zeros.is_finite or zeros.reached >= poles.reached:
+            return said
+        return (
+            f"{said}, zeros up to {exp(zeros.reached) / (2 * pi):g} Hz"
+            if zeros.modes
+            else f"{said}, no zeros yet"
+        )
 
 
 def _find(sides: Sequence[Side], region: Region) -> list[Root]:

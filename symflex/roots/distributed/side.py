@@ -107,6 +107,7 @@ class Side:
                 raise TypeError(message)
         self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
+        self._most = (self.engine, self._search, self._located)
         self.roots = list(self._located)
         self.missing = 0
 
@@ -324,6 +325,14 @@ class Side:
         self._located = [*self._origin, *distinct]
         self._known = None
         self.roots = list(self._located)
+        if count_roots(self._located) >= count_roots(self._most[-1]):
+            self._most = (self.engine, self._search, self._located)
+
+    def recall(self) -> None:
+        """Go back to the search that found the most, if a later one was broken off: each root is proved."""
+        if self._most[1] is not self._search:
+            self.engine, self._search, self._located = self._most
+            self.restore()
 
     def _proved(self, roots: Sequence[Root]) -> Sequence[Root]:
         """Return the certified roots of polynomial factors in place of those located."""

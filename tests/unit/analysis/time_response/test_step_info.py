@@ -200,3 +200,30 @@ def test_a_string_whose_modes_fall_off_slowly_has_the_peak_of_its_echoes():
     assert abs(float(found.peak.mid()) - highest) < 3e-6
     # Fewer digits than the first modes have ask for no more of them.
     assert proved_modes(bound, 1, SampleTimes.of([0.0, 1.0]), 4, 100).rest < 1e-5
+
+
+def test_a_mode_that_its_command_takes_out_settles_with_it():
+    # w = 20/s: (1 - cos(w t))/2 up to T = pi/w; t/T - sin(w t)/(w T) up to T = 2 pi/w; and of a lag 1/(s + w)
+    # and a mean over T = 1/w, for w t <= 1, w t - 1 + exp(-w t), then 1 - (e - 1) exp(-w t).
+    text = """
+symflex = 1
+parameters.w = "20 rad/s"
+definitions.T = "{period}"
+inputs.r = {{}}
+outputs.y = "{command}*r"
+"""
+    mode = "w^2/(s^2 + w^2)"
+    for period, command, level in [
+        ("pi/w", f"(1 + exp(-s*T))/2*{mode}", acos(-0.96) / 20),
+        (
+            "2*pi/w",
+            f"(1 - exp(-s*T))/(s*T)*{mode}",
+            brentq(lambda x: (x - sin(x)) / (2 * pi) - 0.98, 3, 6) / 20,
+        ),
+        ("1/w", "(1 - exp(-s*T))/(s*T)*w/(s + w)", log((exp(1) - 1) / 0.02) / 20),
+    ]:
+        model = symflex.loads(text.format(period=period, command=command))
+        found = find_step_info(model.transfer_function("y", "r").bind().bound)
+        assert found is not None, command
+        assert float(found.final) == pytest.approx(1, rel=1e-15), command
+        assert float(found.settling_time) == pytest.approx(level, rel=1e-10), command

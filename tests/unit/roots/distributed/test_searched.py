@@ -48,6 +48,7 @@ class Known:
     modes: int = 9
     asked: list = field(default_factory=list)
     restored: list | None = None
+    most: list | None = None
 
     @property
     def all_roots(self):
@@ -73,6 +74,9 @@ class Known:
             raise self.proof
         self.engine = self.engine_after or self.engine
         return self.proof
+
+    def recall(self):
+        self.roots = self.roots if self.most is None else list(self.most)
 
     def restore(self):
         if self.restored is not None:
@@ -340,6 +344,27 @@ def test_a_search_broken_off_says_how_far_it_came(world):
         assert (told.certified, told.is_exceeded, told.code) == (False, True, "SF506"), modes
         assert len(shown.poles) == 2, modes
         assert shown.verdict.reason == told.reason, modes
+
+
+def test_poles_and_zeros_are_each_said_as_far_as_they_came(world):
+    world.sides["poles"] = Known(pair(-1, 9), modes=4, reached=log(4 * pi), proof=OVER)
+    for modes, reached, said in [
+        (2, log(2 * pi), ", zeros up to 1 Hz"),
+        (0, -9, ", no zeros yet"),
+        (9, 3, ""),
+    ]:
+        world.sides["zeros"] = Known([], modes=modes, reached=reached)
+        told = world.locate(region=Modes(9)).certificate.reason
+        assert told == f"the time budget is used up; 4 modes were found up to 2 Hz{said}", modes
+    world.sides["poles"] = Known([], modes=0, reached=-25, fails=OVER)
+    world.sides["zeros"] = Known(pair(-1, 9))
+    told = world.locate(region=Modes(9)).certificate.reason
+    assert told == "the time budget is used up; no poles were found yet"
+
+
+def test_a_search_anew_that_is_broken_off_leaves_what_was_found_before(world):
+    world.sides["poles"] = Known([], most=pair(-1, 9), proof=OVER)
+    assert places(world.locate(region=Modes(9)).poles) == [(-1, 9, 1), (-1, -9, 1)]
 
 
 def test_how_far_is_not_said_of_a_band_or_where_it_came_nowhere(world):

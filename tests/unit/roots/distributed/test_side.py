@@ -12,6 +12,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
+from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell, RootOnPathError
@@ -70,6 +71,18 @@ def test_modes_found_are_those_of_the_closed_form_and_one_met_twice_is_no_proof(
         found._located.append(found._located[0])
         found._known = None
         assert found.counted() == Proof(7, 7, TOUCHING), engine
+
+
+def test_a_search_anew_that_is_broken_off_is_recalled_to_the_one_that_found_the_modes():
+    one = side(ROD, engines=(GUESS_AND_PROVE, SUBDIVISION))
+    one.extend(3)
+    before = (one.modes, one.reached, one.engine)
+    one._known = Proof(20, 12)
+    with pytest.raises(BudgetError), Budget(seconds=0).entered():
+        one.prove(Modes(3))
+    assert one.engine == SUBDIVISION
+    one.recall()
+    assert (one.modes, one.reached, one.engine) == before
 
 
 def test_a_root_taken_away_is_missed_and_one_too_many_is_noticed():
