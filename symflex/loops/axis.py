@@ -149,8 +149,8 @@ def _joined(intervals: list[arb]) -> tuple[arb, ...]:
 
 
 ORIGIN_BITS = 320
-SHRINKINGS, SHRUNK = 4, 0.7
-"""Tries of a radius to which functions are expanded about 0, and its share of the one before."""
+SHARES = (1, 0.7, 0.5)
+"""Of a radius, that to which functions are expanded about 0: the first for which they are bounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,14 +257,12 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
     if lowest == -inf:
         return None
     with precision(ORIGIN_BITS):
-        reach = arb(exp(lowest) * times)
-        # Where waves lose energy, a wavenumber may vanish on the circle, at a root that it shares.
-        for _ in range(SHRINKINGS):
+        for share in SHARES:  # where waves lose energy, a wavenumber may vanish on the circle
+            reach = arb(exp(lowest) * times * share)
             own = [local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2) for part, _, _ in parts]
             known = [each for each in own if each is not None]
             if len(known) == len(parts):
                 break
-            reach = (reach * SHRUNK).mid()
         else:
             return None
         series = []

@@ -9,6 +9,7 @@ principle about a half disc, beyond which, where this can be proved, there are n
 from __future__ import annotations
 
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -248,24 +249,20 @@ class DistributedFactors:
     def _circle(self) -> float:
         """The first circle that no pole passes right of the axis, whatever the gain; 0 without one."""
 
-        def is_passed(circle: float) -> bool:
-            def known(function: LoopFunction, low: float, high: float) -> bool | None:
-                with precision(BITS):
-                    s = circle * acb(0, arb(low).union(arb(high)) * arb.pi() / 2).exp()
-                    value = function.around(s, BITS)[0]
-                    apart = bool((value.a * value.b.conjugate()).imag != 0)
-                return True if apart or self._is_far(value) else None
+        def is_free(circle: float, function: LoopFunction, low: float, high: float) -> bool | None:
+            with precision(BITS):
+                turned = (acb(0, 1) * arb(low).union(arb(high)) * arb.pi() / 2).exp()
+                value = function.around(circle * turned, BITS)[0]
+                return value.crossing()[0] != 0 or self._is_far(value) or None
 
-            try:
+        if self.radius[1]:
+            return self._circles[0]
+        for circle in self._circles:
+            with suppress(UndecidedError):
                 for function in self.with_gain:
-                    deque(covered(partial(known, function), ARCS, SHORTEST), 0)
-            except UndecidedError:
-                return True
-            return False
-
-        return (
-            self._circles[0] if self.radius[1] else next((c for c in self._circles if not is_passed(c)), 0.0)
-        )
+                    deque(covered(partial(is_free, circle, function), ARCS, SHORTEST), 0)
+                return circle
+        return 0.0
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
@@ -279,6 +276,7 @@ class DistributedFactors:
             if gain is not None and self._may_be_in_range(gain):
                 crossings.append(Crossing(gain, (arb(0),), change=None))
         result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
+        is_simple = all(factor.multiplicity == 1 for factor in self.factors if factor.degree)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.bits())
             around, _ = function.on(omega, bits)
@@ -292,15 +290,10 @@ class DistributedFactors:
                 gain = around.gain()
                 # Of a simple pole s: ds/dK = -B/(A' + K B'); its mirror image moves alike.
                 slope = -(around.b / (around.a_slope + gain * around.b_slope)).real
-                change = 2 if slope > 0 else -2 if slope < 0 else None
+                change = 2 if is_simple and slope > 0 else -2 if is_simple and slope < 0 else None
             if self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (omega,), change=change if self._is_simple else None))
+                crossings.append(Crossing(gain, (omega,), change=change))
         return crossings
-
-    @property
-    def _is_simple(self) -> bool:
-        """Whether each factor that depends on the gain occurs once."""
-        return all(factor.multiplicity == 1 for factor in self.factors if factor.degree)
 
     def on_axis(
         self,

@@ -498,17 +498,18 @@ class _Searched:
         if not isinstance(self.region, Modes) or not self._pair or not isfinite(self._pair[0].reached):
             return ""
         poles, zeros = self._pair
-        if not poles.modes:
-            return "; no poles were found yet"
-        modes = "1 mode was" if poles.modes == 1 else f"{poles.modes} modes were"
-        said = f"; {modes} found up to {exp(poles.reached) / (2 * pi):g} Hz"
+        modes = (
+            "no modes were"
+            if not poles.modes
+            else "1 mode was"
+            if poles.modes == 1
+            else f"{poles.modes} modes were"
+        )
+        up_to = [f"{exp(side.reached) / (2 * pi):g} Hz" if side.modes else "" for side in self._pair]
+        said = f"; {modes} found" + (f" up to {up_to[0]}" if up_to[0] else "")
         if zeros.is_finite or zeros.reached >= poles.reached:
             return said
-        return (
-            f"{said}, zeros up to {exp(zeros.reached) / (2 * pi):g} Hz"
-            if zeros.modes
-            else f"{said}, no zeros yet"
-        )
+        return said + (f", zeros up to {up_to[1]}" if up_to[1] else ", no zeros yet")
 
 
 def _find(sides: Sequence[Side], region: Region) -> list[Root]:

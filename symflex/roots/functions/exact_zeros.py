@@ -1,4 +1,4 @@
-"""Modes whose frequency the delays and waves of a function fit a rational number of times, and take out exactly.
+"""Modes that delays and waves take out exactly, as they fit their frequency a rational number of times.
 
 A ramp of one period takes out a mode: with ``s = j w`` and ``w = 2 pi/T``, ``1 - exp(-s T)`` is 0. If ``w T``
 is a rational multiple of pi, every exponential is a root of unity, and a sum of these vanishes if the
@@ -64,7 +64,10 @@ def _order(bound: BoundTransferFunction, part: Factored, square: Factored) -> in
 def _half_turns(bound: BoundTransferFunction, argument: Argument, square: Factored) -> Fraction | None:
     """Return how many half turns an exponential's argument is at such an s, None if that is not rational."""
     law = next((law for law in bound.kernels.dispersions if argument.wavenumber in law.wavenumbers), None)
-    if "pi" not in square.ring.index or (law is not None and (law.kind != "wave" or not law.shift.is_zero)):
+    is_wave = law is None or (
+        law.kind == "wave" and all(c.is_zero for c in (*law.characteristic[1:], law.shift))
+    )
+    if not is_wave or "pi" not in square.ring.index:
         return None
     s, pi = (Factored.generator(square.ring, name) for name in (LAPLACE, "pi"))
     speed = (argument.rate / s) ** 2 if law is None else -law.characteristic[0] / s**2

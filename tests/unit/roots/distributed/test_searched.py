@@ -359,7 +359,7 @@ def test_poles_and_zeros_are_each_said_as_far_as_they_came(world):
     world.sides["poles"] = Known([], modes=0, reached=-25, fails=OVER)
     world.sides["zeros"] = Known(pair(-1, 9))
     told = world.locate(region=Modes(9)).certificate.reason
-    assert told == "the time budget is used up; no poles were found yet"
+    assert told == "the time budget is used up; no modes were found"
 
 
 def test_a_search_anew_that_is_broken_off_leaves_what_was_found_before(world):
