@@ -31,7 +31,7 @@ from symflex.roots.distributed.right_half_plane import (
 )
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
-from symflex.roots.functions.exact_zeros import is_shared_exactly
+from symflex.roots.exact_zeros import is_shared_exactly
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
 from symflex.roots.passive import fastest_growth, observed, passive_loop
