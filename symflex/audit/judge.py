@@ -23,6 +23,7 @@ from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
 from symflex.expressions import Expression, Sum, format_expression, nodes
 from symflex.model import Definition, Model, Published
+from symflex.model.loss_factors import check_causal
 from symflex.model.units import constant_measure
 from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import derive_all
@@ -168,6 +169,8 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
     Raises UsageError: SF902 for a name without a printed formula; SpecError with every problem of all
     formulas, each at its place.
     """
+    if model.root is not None:
+        check_causal(model, "a comparison with printed formulas")
     printed = {"/".join(p.tf): p for p in model.published}
     for name in names:
         if name not in printed:

@@ -49,6 +49,7 @@ from symflex.expressions import (
     names_among,
     substitute,
 )
+from symflex.library.blocks import ROOT
 from symflex.library.elements import (
     COMPONENTS,
     ElementUse,
@@ -250,9 +251,8 @@ class _Assembly:
         scope = scope_of(self.model)
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
-        return ExactEvaluator(
-            self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
-        ), point
+        own = self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
+        return ExactEvaluator(*own, root=self.model.root), point
 
     def _at_point(self, call: Call) -> LinearForm:
         """Return the value at a point along x that a call names."""
@@ -314,7 +314,7 @@ class _Assembly:
             stamp = self._stamp(use, evaluator, nodes, values)
             if stamp is not None:
                 self._take(use, stamp)
-        self._take_inputs(nodes)
+        self._take_inputs(nodes, evaluator)
         for variable, expression in values:
             self._equal(variable, expression, evaluator)
         for signal in self.model.signals:
@@ -424,8 +424,10 @@ class _Assembly:
         transfers: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
         definitions = {d.name: d.expression for d in self.model.definitions}
-        evaluator = ExactEvaluator(self.ring, scope, transfers, {}, definitions, radicals=self._radicals)
-        s = Factored.generator(self.ring, LAPLACE)
+        evaluator = ExactEvaluator(
+            self.ring, scope, transfers, {}, definitions, radicals=self._radicals, root=self.model.root
+        )
+        s = evaluator.s
         for block in self._ordered_blocks():
             if block.name in transfers:
                 continue
@@ -434,7 +436,9 @@ class _Assembly:
             try:
                 values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
                 hidden = Factored.number(self.ring, 1)
-                if block.block is not None:
+                if block.block is ROOT:
+                    transfers[block.name] = Factored.generator(self.ring, LAPLACE)
+                elif block.block is not None:
                     transfers[block.name] = self._radicals.tidy(transfer_of(block, values))
                 elif self.nested is not None:
                     ratio, hidden = self.nested(block, self.ring)
@@ -505,7 +509,7 @@ class _Assembly:
             port: tuple(self._terminal(r, dict(use.domains)[port], nodes) for r in references)
             for port, references in use.nodes
         }
-        s = Factored.generator(self.ring, LAPLACE)
+        s = evaluator.s
         transmissions = {} if self.distributed is None else self.distributed.transmissions
         element_use = ElementUse(
             use.name,
@@ -572,7 +576,7 @@ class _Assembly:
                     balance[here] = _side_by_side(balance[here], out)
         return [EquationRow(node, form, "balance") for node, form in balance.items()]
 
-    def _take_inputs(self, nodes: Mapping[str, NetworkNode]) -> None:
+    def _take_inputs(self, nodes: Mapping[str, NetworkNode], evaluator: ExactEvaluator) -> None:
         one = Factored.number(self.ring, 1)
         for source in self.model.inputs:
             if source.kind == "signal":
@@ -582,7 +586,7 @@ class _Assembly:
             signs = [one, -one]
             if kind.order is not None:
                 delivered = kind.delivered(source.name)
-                rate = Factored.generator(self.ring, LAPLACE) ** kind.order
+                rate = evaluator.s**kind.order
                 moved = LinearForm.of(*zip(ends, signs, strict=False)) * rate
                 self.unknowns.append(delivered)
                 self.rows.append(

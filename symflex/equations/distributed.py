@@ -319,8 +319,8 @@ class _Demands:
         return Medium(system, tuple(parts), along, origin, singular[1], frozenset(held))
 
     def delay(self, name: str, s: Factored, time: Factored) -> int:
-        """Return the number of the dispersion all delays share."""
-        number = self._number(("delay",), Dispersion(name, "exponential", (), s))
+        """Return the number of the dispersion that all delays share, or decays of one power of a root."""
+        number = self._number(("delay", text(s)), Dispersion(name, "exponential", (), s))
         self.demands[number][1].append(time)
         return number
 
@@ -386,7 +386,7 @@ def survey(
     delays: list[tuple[str, int, Factored]] = []
     solutions: dict[str, FieldSolution] = {}
     along: dict[str, str] = {}
-    s = Factored.generator(evaluator.ring, "s")
+    s = evaluator.s
     try:
         for use in model.elements:
             if isinstance(use.element, LineElement):
@@ -403,7 +403,11 @@ def survey(
         for block in model.blocks:
             if block.block is not None and block.block.kernel_time:
                 time = evaluator.constant(dict(block.values)[block.block.kernel_time])
-                delays.append((block.name, demands.delay(block.name, s, time), time))
+                times = dict(block.values).get("m")  # of the exponential of a root, the power of that
+                rate = s
+                if isinstance(times, Number):
+                    rate = Factored.generator(evaluator.ring, "s") ** int(times.value)
+                delays.append((block.name, demands.delay(block.name, rate, time), time))
         for field in model.fields:
             solution = _solution(field, evaluator, demands)
             solutions.update(dict.fromkeys(field.unknowns, solution))

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
     from symflex.model import ModelScope, PlacedBlock
+    from symflex.model.model import RootOfS
 
 
 OPENED_PARTS = 1_000
@@ -102,12 +103,17 @@ class ExactEvaluator:
     field_value: Callable[[Call], LinearForm] | None = None
     # What calls of fields were found to be.
     states: dict[Expression, LinearForm] = field(default_factory=dict, repr=False)
+    root: RootOfS | None = None  # where the ring's s stands for a root of s
     is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
 
-    @property
+    @cached_property
     def s(self) -> Factored:
         """The Laplace variable."""
-        return Factored.generator(self.ring, LAPLACE)
+        own = Factored.generator(self.ring, LAPLACE)
+        if self.root is None:
+            return own
+        plain = replace(self, root=None, is_constant=True)
+        return (own**self.root.order - plain.constant(self.root.shift)) / plain.constant(self.root.slope)
 
     @cached_property
     def opener(self) -> Opener:
@@ -226,7 +232,7 @@ class ExactEvaluator:
             return self.through[meaning.variable]
         if meaning.variable is not None:
             return LinearForm.of((meaning.variable, Factored.number(self.ring, 1)))
-        return Factored.generator(self.ring, meaning.name)
+        return self.s if meaning.name == LAPLACE else Factored.generator(self.ring, meaning.name)
 
     def _block(self, expression: Name | Attribute, name: str) -> Factored:
         if name not in self.blocks:

@@ -201,6 +201,25 @@ class Delay(Block):
     kernel_time = "T"
 
 
+class RootBlock(Block):
+    """``r = (a*s + b)^(1/q)`` on its principal branch, for roots that are written in expressions."""
+
+    type_name = "root"
+    formula = "(a*s + b)^(1/q)"
+    gains = None
+    parameters = tuple(ParameterPort(n, "", "a coefficient of what the root is taken of") for n in "abq")
+
+
+class DecayBlock(Block):
+    """``exp(-k*r^m)`` of the root r of a model."""
+
+    type_name = "decay"
+    formula = "exp(-k*r^m)"
+    parameters = (ParameterPort("k", "", "a rate"), ParameterPort("m", "", "a power of the root"))
+    kernel_time = "k"
+
+
+ROOT, DECAY = RootBlock(), DecayBlock()
 BLOCKS: dict[str, Block] = {
     block.type_name: block
     for block in (

@@ -160,6 +160,7 @@ class LoopAtOrigin:
     orders: tuple[int, int]  # of the roots of A and B at 0, exact
     series: tuple[LocalSeries, LocalSeries]  # of A and B
     ratio: Fraction | None = None  # A/B at 0 where that is known to be a number, neither zero nor infinite
+    turn: acb | None = None  # the direction of the axis where that is not j's
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""
@@ -175,6 +176,8 @@ class LoopAtOrigin:
         """Return balls around ``A/s^order`` and ``B/s^order`` on the piece of the axis within a radius."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
+            if self.turn is not None:
+                return self._turned(0, omega * self.turn), self._turned(1, omega * self.turn)
             (a, a_side), (b, b_side) = (self._parts(i, omega) for i in (0, 1))
             return acb(a, omega * a_side), acb(b, omega * b_side)
 
@@ -182,12 +185,33 @@ class LoopAtOrigin:
         """Tell whether ``Im(A conj(B))`` differs from 0 on the axis within a radius, but for 0 itself."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
+            if self.turn is not None:
+                return bool(self._imaginary(omega, self.turn) != 0)
             first, second = (self._parts(i, omega) for i in (0, 1))
             if (self.orders[0] - self.orders[1]) % 2:
                 value = first[0] * second[0] + omega * omega * first[1] * second[1]
             else:
                 value = first[1] * second[0] - first[0] * second[1]
             return bool(value != 0)
+
+    def _turned(self, which: int, place: acb, beyond: int = 0) -> acb:
+        """Return A or B over its lowest power on a piece of the axis, without its first ``beyond`` terms."""
+        series, order = self.series[which], self.orders[which] + beyond
+        share, total = place.abs_upper() / series.reach, acb(0)
+        for coefficient in reversed(series.coefficients[order:]):
+            total = total * place + coefficient.real
+        rest = series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
+        return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
+
+    def _imaginary(self, omega: arb, turn: acb) -> arb:
+        """Return ``Im(A conj(B))`` over its lowest power of omega, on a piece of the axis."""
+        first, second = (self._turned(i, omega * turn) for i in (0, 1))
+        if apart := self.orders[0] - self.orders[1]:
+            return (first * second.conjugate() * turn**apart).imag
+        a, b = (series.coefficients[self.orders[0]].real for series in self.series)
+        one, other = (turn * self._turned(i, omega * turn, 1) for i in (0, 1))
+        other = other.conjugate()
+        return (one * b + a * other + omega * one * other).imag
 
     def leaves_one(self, gain: Fraction, radius: arb) -> bool:
         """Tell whether the loop gain is exactly one at 0, and nowhere else on the axis within a radius.
@@ -271,7 +295,8 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in each.coefficients)
             series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
-    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function))
+        turn = function.turn if function.bound.sheets > 1 else None
+    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function), turn)
 
 
 def _ratio_at_zero(function: LoopFunction) -> Fraction | None:

@@ -32,6 +32,7 @@ from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import count_roots
+from symflex.roots.sheets import on_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -46,6 +47,8 @@ HALVINGS = 12
 """Halvings of a range: its end is then known to a few hundredths of the gain's own value."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
+WITHOUT_WAVES = 1e-6
+"""A frequency [rad/s] from which a radius is sought for polynomials in a root of s."""
 WIDER = 16.0
 """By how much a disc about 0 is widened."""
 NEXT_TO_ZERO = 1e-6
@@ -143,11 +146,9 @@ class DistributedFactors:
     def passive(self) -> PassiveLoop | None:
         """How the loop is closed, where it is proved to be passive for every gain in the range."""
         source = self.bound.source
-        return (
-            passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
-            if self.limits[0] >= 0
-            else None
-        )
+        if self.limits[0] < 0 or self.bound.sheets > 1:
+            return None
+        return passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
 
     @property
     def axis_end(self) -> float:
@@ -163,7 +164,7 @@ class DistributedFactors:
     @cached_property
     def scale(self) -> float:
         """A frequency at which the largest argument of a kernel is about one [rad/s]."""
-        return self._function(self.limits[1]).frequency_of(1.0)
+        return self._function(self.limits[1]).frequency_of(1.0) if self.bound.kernels else WITHOUT_WAVES
 
     @cached_property
     def _without_end(self) -> float:
@@ -183,6 +184,8 @@ class DistributedFactors:
 
     def is_mirrored(self, function: LoopFunction) -> bool:
         """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""
+        if self.bound.sheets > 1:
+            return False  # what mirrors a pole lies on another sheet
         ring = self.bound.ratio.ring
         parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in (function.a, function.b)]
         if not all(part.is_even for part in parts):
@@ -227,7 +230,11 @@ class DistributedFactors:
         if not all(root.certified for root in seen):
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
         if side.is_finite:
-            return PoleCount(count_right(side.roots), zeros)
+            known, _ = on_sheet(side.roots, self.bound)
+            if any(root.re.contains(0) and not root.is_zero for root in known):
+                message = "it could not be decided on which side of the imaginary axis a pole lies"
+                raise UncertifiedError(Diagnostic("SF802", message))
+            return PoleCount(count_right(known), zeros)
         if self.passive is not None and self.passive.rests:
             return PoleCount(0, zeros)
         for circle in [self._circle] if self._circle else self._circles:
@@ -251,7 +258,8 @@ class DistributedFactors:
 
         def is_free(circle: float, function: LoopFunction, low: float, high: float) -> bool | None:
             with precision(BITS):
-                turned = (acb(0, 1) * arb(low).union(arb(high)) * arb.pi() / 2).exp()
+                quarter = arb.pi() / (2 * self.bound.sheets)
+                turned = (acb(0, 1) * arb(low).union(arb(high)) * quarter).exp()
                 value = function.around(circle * turned, BITS)[0]
                 return value.crossing()[0] != 0 or self._is_far(value) or None
 
@@ -292,7 +300,7 @@ class DistributedFactors:
                 slope = -(around.b / (around.a_slope + gain * around.b_slope)).real
                 change = 2 if is_simple and slope > 0 else -2 if is_simple and slope < 0 else None
             if self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (omega,), change=change))
+                crossings.append(Crossing(gain, (self.bound.frequency(omega),), change=change))
         return crossings
 
     def on_axis(

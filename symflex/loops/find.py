@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 
 
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
+BRANCH = "stable gains are searched where the branch point is s = 0, and not where it lies elsewhere"
 NETWORK = "stable gains are not searched for a network that is too large to be written out"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
@@ -76,6 +77,9 @@ def find_stable_gains(
     """
     if isinstance(loop, NetworkLoop):
         return _at_nominal(loop, limits or (None, None), digits, NETWORK)
+    root = loop.bound.root
+    if root is not None and root.shift != 0:
+        return _at_nominal(loop, limits or (None, None), digits, BRANCH)
     lumped, along, (low, high) = _factors(loop, limits, up_to)
     if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
         return _at_nominal(loop, (low, high), digits, MIRRORED)
@@ -95,7 +99,7 @@ def find_stable_gains(
         return _at_nominal(loop, (low, high), digits, error.diagnostics[0].message)
     nominal = loop.nominal
     reasons = [] if along is None else along.reasons
-    radius = None if along is None else along.radius[0]
+    radius = None if along is None else loop.bound.from_root(along.radius[0])
     is_complete = along is None or along.radius[1]
     stability = StabilityMap(
         loop.gain.name,
@@ -117,7 +121,7 @@ def find_stable_gains(
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
     if nominal is not None and stability.verdict.word == "unknown":
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
-    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
+    loop_gain = None if root else _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = beyond = None
     if loop_gain is not None:
@@ -205,11 +209,16 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
     plain, mixed = [], []
     for factor in loop.factors:
         polynomials = [f for value in factor.coefficients for f, _ in value.factors]
-        if any(degree_in(f, i) for f in polynomials for i in generators) or factor.multiplicity < 0:
+        has_root = factor.degree > 0 and loop.bound.sheets > 1
+        if (
+            has_root
+            or any(degree_in(f, i) for f in polynomials for i in generators)
+            or factor.multiplicity < 0
+        ):
             mixed.append(factor)
         else:
             plain.append(factor)
-    if not loop.bound.kernels:
+    if not loop.bound.kernels and loop.bound.sheets == 1:
         mixed = []
     return tuple(plain), tuple(mixed)
 

@@ -9,7 +9,7 @@ what it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
@@ -22,7 +22,7 @@ from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_
 from symflex.algebra.ring import coefficients_of
 from symflex.balls import Value, expansion, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.expressions import names_among
+from symflex.expressions import Sum, names_among
 from symflex.loops.gain_functions import GainFunctions
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.functions.kernel_function import KernelFactors
@@ -118,7 +118,9 @@ def characteristic_loop(
     ring, given = tf.ratio.ring, dict(values or {})
     calls = {c.generator: c.expression for c in tf.constants if c.generator in gain_generators(tf, gain.name)}
     positions = [ring.index[name] for name in (gain.name, *calls)] if gain.name in ring.index else []
-    if any(value.depends_on(ring.names[i]) for value in tf.kernels.values for i in positions):
+    root = tf.model.root
+    is_in_root = root is not None and names_among(Sum((root.slope, root.shift)), (gain.name,))
+    if is_in_root or any(v.depends_on(ring.names[i]) for v in tf.kernels.values for i in positions):
         message = f"'{gain.name}' is part of a wavenumber, a length or a delay and cannot be a gain"
         raise no_loop("SF801", message, gain)
     factors = [(f, e, False) for f, e in tf.den.factors]
@@ -276,9 +278,24 @@ class LoopFunction:
             )
         return self._evaluators[bits]
 
+    @property
+    def turn(self) -> acb:
+        """The direction of the axis where functions are of a root of s: that of the root of j."""
+        return acb(0, arb.pi() / (2 * self.bound.sheets)).exp()
+
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle."""
-        return self.around(acb(0, omega), bits)
+        """Return the values on a ball of frequencies, and those in its middle.
+
+        Of functions of a root of s, slopes are those of a variable whose axis is that of j.
+        """
+        if self.bound.sheets == 1:
+            return self.around(acb(0, omega), bits)
+        with precision(bits):
+            both, slope = self.around(omega * self.turn, bits), self.turn / acb(0, 1)
+            around, middle = (
+                replace(value, a_slope=value.a_slope * slope, b_slope=value.b_slope * slope) for value in both
+            )
+            return around, middle
 
     def around(self, s: acb, bits: int) -> tuple[LoopValue, LoopValue]:
         """Return the values on a ball, and those in its middle.

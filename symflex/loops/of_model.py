@@ -41,13 +41,18 @@ if TYPE_CHECKING:
     from symflex.transfer import Given, TransferFunction
 
 
-def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> AnyLoop:
+def characteristic_loop(
+    model: Model,
+    gain: str,
+    values: Mapping[str, Given] | None = None,
+    what: str = "a root locus or a loop gain",
+) -> AnyLoop:
     """Return the characteristic function in a gain, of a large network without writing it out.
 
     SF902 when there is no such parameter, SF801 when no pole depends on it or it shapes waves; SF501, SF502
     when it is too large written out, SF803 where the gain stands in more than one row of a large network.
     """
-    check_causal(model, "a root locus or a loop gain")
+    check_causal(model, what)
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
     for name in given:
@@ -105,10 +110,9 @@ def stability(
 
     SF902 when there is no such parameter, SF801 when no pole depends on it.
     """
-    check_causal(model, "stability of a loop")
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
-    loop = characteristic_loop(model, given.gain, values)
+    loop = characteristic_loop(model, given.gain, values, "stability of a loop")
     return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, radians)
 
 

@@ -43,7 +43,7 @@ SHOWN_PROBLEMS = 20
 ORDER_LIMIT = 24
 """Of a derivative at a point; what is beyond the field's own order follows from its equations."""
 DELAY_HINT = "write a dead time in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
-FUNCTION_HINT = "functions of s enter through [fields], through distributed elements, and as delays"
+FUNCTION_HINT = "of s, roots of one a*s + b are available, and exp, sinh, cosh and tanh of their multiples"
 NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
@@ -174,7 +174,7 @@ class _Degrees:
             half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
             hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
             if names_among(power.base, (LAPLACE,)):
-                hint = "powers of s are integers; diffusion along x gives half powers: see [fields]"
+                hint = "of s, write one number over at most 12, as s^0.5; all roots are of one a*s + b"
             self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
             return base
         if abs(value) > EXPONENT_LIMIT:

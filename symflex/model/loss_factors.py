@@ -30,6 +30,13 @@ if TYPE_CHECKING:
     from symflex.model.reading import Reader
 
 LOSS_FACTOR = "eta_s"
+WITH_ROOTS = (
+    "code in this language",
+    "stability of a loop",
+    "a value at another s",
+    "a response at omega <= 0",
+)
+"""What is available with roots of s."""
 LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
 """Values of elements that their loss factor multiplies."""
 
@@ -108,10 +115,15 @@ def has_loss_factors(model: Model) -> bool:
 
 
 def check_causal(model: object, what: str) -> None:
-    """Refuse what needs real coefficients, or more than s = j omega; other subjects than models pass.
+    """Refuse what j or roots of s in a model do not allow; other subjects than models pass.
 
-    Raises ModelError: SF251 the model holds j.
+    Loss factors hold on s = j omega alone. Motion with a root of s decays along a branch cut, besides poles.
+    Raises ModelError: SF251 the model holds j; SF910 a root of s.
     """
+    if getattr(model, "root", None) is not None and what not in WITH_ROOTS:
+        message = f"{what} is not available yet for models with roots of s, such as sqrt(s)"
+        hint = "formulas, frequency responses, poles, zeros, stable gains and code are"
+        raise ModelError(Diagnostic("SF910", message, None, hint))
     unit = getattr(model, "imaginary", None)
     if unit is None:
         return

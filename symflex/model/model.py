@@ -10,7 +10,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.errors import Text
-from symflex.expressions import Attribute, Equation, names, parse
+from symflex.expressions import Attribute, Equation, Number, names, parse
+from symflex.library.blocks import ROOT
 from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
 from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
@@ -298,6 +299,15 @@ class DrawingHints:
 
 
 @dataclass(frozen=True, slots=True)
+class RootOfS:
+    """``(slope*s + shift)^(1/order)``."""
+
+    slope: Expression
+    shift: Expression
+    order: int
+
+
+@dataclass(frozen=True, slots=True)
 class Published:
     """What a paper printed for one transfer function."""
 
@@ -364,6 +374,14 @@ class Model:
                 for b in self.blocks
             )
         )
+
+    @property
+    def root(self) -> RootOfS | None:
+        """The root that its equations have in place of s, where one is written."""
+        values = next((dict(b.values) for b in self.blocks if b.block is ROOT), None)
+        if values is None or not isinstance(order := values["q"], Number):
+            return None
+        return RootOfS(values["a"], values["b"], int(order.value))
 
     @property
     def settable(self) -> tuple[ModelParameter, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
@@ -646,6 +646,26 @@ class Draft:
     signals: tuple[Signal, ...]
     outputs: tuple[Output, ...]
     fields: tuple[FieldProblem, ...] = ()
+
+    def expressions(self) -> list[Expression]:
+        """Return all expressions, of equations each side."""
+        places = [d.expression for d in self.definitions] + [x.expression for x in self.signals]
+        places += [x.expression for x in self.outputs]
+        places += [e for group in (self.elements, self.blocks) for x in group for _, e in x.values]
+        equations = (c for f in self.fields for c in (*f.equations, *f.conditions))
+        return places + [side for c in equations for side in (c.left, c.right)]
+
+    def rewritten(self, new: Callable[[Expression], Expression]) -> Draft:
+        """Return the draft with another expression in place of each but those of definitions."""
+        elements = (replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in self.elements)
+        return replace(
+            self,
+            elements=tuple(elements),
+            blocks=tuple(replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in self.blocks),
+            signals=tuple(replace(x, expression=new(x.expression)) for x in self.signals),
+            outputs=tuple(replace(x, expression=new(x.expression)) for x in self.outputs),
+            fields=tuple(field.rewritten(new) for field in self.fields),
+        )
 
 
 def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> frozenset[str]:

@@ -31,6 +31,7 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
+from symflex.model.branches import with_branches
 from symflex.model.dead_times import with_dead_times
 from symflex.model.declarations import (
     CycleReading,
@@ -180,7 +181,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     nodes, contradictions = infer_nodes(attachments)
     reader.take(contradictions)
     draft = Draft(declared, inherited, definitions, nodes, elements, inputs, blocks, signals, outputs, fields)
-    draft = with_dead_times(draft, taken | loads | {n.name for n in nodes})
+    named = taken | loads | {n.name for n in nodes}
+    draft = with_dead_times(with_branches(draft, named), named)
     draft = with_imaginary_unit(reader, draft)
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)

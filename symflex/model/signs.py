@@ -32,6 +32,7 @@ from symflex.expressions import (
     names,
     substitute,
 )
+from symflex.library.blocks import ROOT
 from symflex.library.elements import CIRCUITS, LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
@@ -329,6 +330,11 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
             what = f"{block.kernel_time} of {block.type_name} '{placed.name}'"
             time = dict(placed.values)[block.kernel_time]
             yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead", is_extent=True)
+        elif block is ROOT:
+            values = dict(placed.values)
+            reason = "the branch point must not lie right of the imaginary axis"
+            yield RangedValue("a of (a*s + b)", values["a"], "positive", reason, is_extent=True)
+            yield RangedValue("b of (a*s + b)", values["b"], "nonnegative", reason, is_extent=True)
 
 
 def check_ranges(

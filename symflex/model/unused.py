@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, nearest
 from symflex.expressions import Attribute, names
+from symflex.library.blocks import ROOT
 from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def _unused_names(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagno
         if source.kind == "signal" and not used.get(source.name):
             yield unused_name("input", source.name, source.span)
     groups = (
-        ("block", ((b.name, (b.name,), b.span) for b in model.blocks)),
+        ("block", ((b.name, (b.name,), b.span) for b in model.blocks if b.block is not ROOT)),
         ("signal", ((x.name, (x.name,), x.span) for x in model.signals)),
         ("field", ((f.name, f.unknowns, f.span) for f in model.fields)),
     )

@@ -15,6 +15,7 @@ from symflex.budget import Budget, entered_budget
 from symflex.equations.elimination import free_at_rest
 from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedError
 from symflex.model import with_numbers
+from symflex.model.loss_factors import check_causal
 from symflex.model.model import IMAGINARY
 from symflex.model.signs import is_passive
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
@@ -55,6 +56,7 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
 from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
+from symflex.roots.sheets import locate_on_sheet
 from symflex.transfer import BoundNested, bind
 from symflex.transfer.of_model import assemble, assemble_sparse, derive_all, derive_bound, may_be_expanded
 
@@ -94,6 +96,12 @@ def locate(
                 bound.located[region, digits] = known
         return known
     bound = without_lengths_of_zero(bound)
+    if bound.sheets > 1:
+        if IMAGINARY in bound.ratio.ring.index:
+            check_causal(bound.source.model, "a search on the sheets of a root of s")
+        where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
+        is_default = bound.is_distributed and (region is None or isinstance(region, Everything))
+        return replace(locate_on_sheet(bound, where, digits, locate), is_default_region=is_default)
     if IMAGINARY in bound.ratio.ring.index:
         where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)

@@ -16,7 +16,7 @@ Example: ``1/(m s^2 - k)`` for a mass m on a spring k at s = 1 + 1j rad/s, m = 2
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from random import Random
@@ -221,7 +221,7 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
         values.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
     if not isinstance(tf, TransferFunction) and not tf.is_distributed:
-        values.append(tf.enclosed(current_bits())(here.s()))
+        values.append(replace(tf.enclosed(current_bits()), root=None)(here.s()))
     return values
 
 

@@ -67,22 +67,49 @@ NAMES_SHOWN = 40
 
 
 @dataclass(frozen=True)
+class BoundRoot:
+    """The principal branch of ``(slope*s + shift)^(1/order)``, which functions have in place of s."""
+
+    slope: arb
+    shift: arb
+    order: int
+
+    def __call__(self, s: acb) -> acb:
+        """Return a ball around the values on a ball; on the cut, those above it."""
+        inside = self.slope * s + self.shift
+        if self.order == 2:  # noqa: PLR2004
+            return inside.sqrt()
+        return (inside.log() / self.order).exp() if inside != 0 else inside
+
+    def value_and_slope(self, s: acb) -> tuple[acb, acb]:
+        """Return balls around the value and its derivative."""
+        r = self(s)
+        return r, self.slope * r / (self.order * (self.slope * s + self.shift))
+
+
+@dataclass(frozen=True)
 class EnclosedTransferFunction:
     """Ball coefficients of a bound transfer function at one precision."""
 
     bits: int  # the precision everything is computed at
     unit: acb  # the factor in front
     factors: tuple[tuple[acb_poly, int], ...]  # polynomials in s with their exponents
+    root: BoundRoot | None = None  # what they are polynomials in instead of s
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]."""
         with precision(self.bits):
+            s = s if self.root is None else self.root(s)
             return prod((f(s) ** exponent for f, exponent in self.factors), start=self.unit)
 
     def logarithmic_derivative(self, s: acb) -> acb:
         """Return a ball around ``G'(s)/G(s)``."""
         with precision(self.bits):
-            return sum((exponent * f.derivative()(s) / f(s) for f, exponent in self.factors), acb(0))
+            slope = acb(1)
+            if self.root is not None:
+                s, slope = self.root.value_and_slope(s)
+            sums = (exponent * f.derivative()(s) / f(s) for f, exponent in self.factors)
+            return sum(sums, acb(0)) * slope
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around ``G(s)`` and ``G'(s)/G(s)``."""
@@ -96,11 +123,13 @@ class EnclosedDistributed:
     bits: int  # the precision everything is computed at
     ratio: Factored  # over the ring of kernels; or any other function over it
     kernels: KernelValues  # the values of its generators
+    root: BoundRoot | None = None  # what the kernels are functions of instead of s
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the value at ``s``; not finite where a wavenumber is zero."""
         spend()
         with precision(self.bits):
+            s = s if self.root is None else self.root(s)
             value = self.kernels.value(self.ratio, self.kernels.at(s))
             return value if isinstance(value, acb) else value[0]
 
@@ -111,6 +140,9 @@ class EnclosedDistributed:
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around ``G(s)`` and ``G'(s)/G(s)``, for which kernels are evaluated once."""
         with precision(self.bits):
+            turn = acb(1)
+            if self.root is not None:
+                s, turn = self.root.value_and_slope(s)
             values = self.kernels.at(expansion(s))
             value, slope = acb(ball(self.ratio.unit)), acb(0)
             for factor, exponent in self.ratio.factors:
@@ -118,7 +150,7 @@ class EnclosedDistributed:
                 if isinstance(series, acb_series):
                     slope = slope + exponent * series[1] / series[0]
                 value = value * at_centre(series) ** exponent
-            return value, slope
+            return value, slope * turn
 
 
 Enclosed = EnclosedTransferFunction | EnclosedDistributed
@@ -239,12 +271,41 @@ class BoundTransferFunction:
                 return [value_at(c, values.__getitem__, arb) for c in terms]
 
             factors = tuple((acb_poly(coefficients(f)), e) for f, e in self.ratio.factors)
-            return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors)
+            return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors, self.root)
 
     def enclosed_part(self, part: Factored, bits: int) -> EnclosedDistributed:
         """Return a function over the ring of kernels, such as :attr:`num`, evaluated in balls."""
         with precision(bits):
-            return EnclosedDistributed(bits, part, self.kernel_values())
+            return EnclosedDistributed(bits, part, self.kernel_values(), self.root)
+
+    @property
+    def sheets(self) -> int:
+        """Q where a root ``(s + c)^(1/q)`` stands in place of s; 1 where s does."""
+        return 1 if self.source.model.root is None else self.source.model.root.order
+
+    def in_root(self, size: float) -> float:
+        """Return the largest ``abs(r)`` of a root of s up to an ``abs(s)`` [rad/s]; that without one."""
+        root = self.root
+        if root is None:
+            return size
+        return float((size * root.slope + root.shift).root(root.order).upper())
+
+    def frequency(self, size: arb) -> arb:
+        """Return the frequency [rad/s] at a place of the axis, where that is the root of one."""
+        return size if self.root is None else (size**self.root.order - self.root.shift) / self.root.slope
+
+    def from_root(self, size: float) -> float:
+        """Return an ``abs(s)`` [rad/s] up to which no ``abs(r)`` exceeds a size."""
+        return max(float(self.frequency(arb(size)).lower()), 0.0)
+
+    @property
+    def root(self) -> BoundRoot | None:
+        """The root of s that stands in place of s, at the current precision."""
+        root = self.source.model.root
+        if root is None:
+            return None
+        values = {name: enclosure(value) for name, value in self.all_values}
+        return BoundRoot(later(root.slope, values)(), later(root.shift, values)(), root.order)
 
     def kernel_values(self, *, is_along: bool = True) -> KernelValues:
         """Return the evaluator of the ring of kernels, with the constants at the current precision.

@@ -353,8 +353,10 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
         message = f"block '{block.name}' holds no model"
         raise ValueError(message)
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
-    if tf.is_distributed:
-        message = f"block '{block.name}' stands for a distributed system, which no block can hold"
+    if tf.is_distributed or tf.model.root:
+        message = (
+            f"block '{block.name}' stands for a distributed system or a root of s, which no block can hold"
+        )
         hint = "write its elements and fields into this file"
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio

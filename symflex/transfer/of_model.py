@@ -152,10 +152,11 @@ def assemble_sparse(model: Model) -> Equations:
     """Return the equations over a ring of any number of names, for the nested form.
 
     A model inside a block is expanded first, and needs the ordinary ring. Raises ModelError: SF910 where
-    coefficients vary along x.
+    coefficients vary along x, or with roots of s.
     """
-    if is_tapered(model):
-        message = "the nested form of networks is not available yet where coefficients vary along x"
+    if _is_expanded(model):
+        reason = "with roots of s" if model.root else "where coefficients vary along x"
+        message = f"the nested form of networks is not available yet {reason}"
         raise ModelError(Diagnostic("SF910", message, None, "ask for the expanded representation"))
     is_sparse = not any(block.submodel is not None for block in model.blocks)
     with uncollected():
@@ -195,7 +196,7 @@ def derive_as(
     if representation == "expanded":
         return derive_all(model, pairs), ""
     solves = solves and model.is_distributed
-    has_nested = model.is_distributed and not is_tapered(model)
+    has_nested = model.is_distributed and not _is_expanded(model)
     if _may_be_large(model, 1 if solves else FEW_MEMBERS):
         equations = assemble_sparse(model)
         most = EXPANDED_PRODUCTS if model.is_distributed else EXPANDED_TERMS
@@ -206,11 +207,11 @@ def derive_as(
             reason = f"in nested form: the expanded determinant would have {_some(terms)} terms"
             return nested_form.derive_nested(equations, pairs), reason
     try:
-        if solves and not is_tapered(model) and assemble(with_numbers(model, in_kernels=True)).is_split:
+        if solves and has_nested and assemble(with_numbers(model, in_kernels=True)).is_split:
             return derive_nested(model, pairs), SPLIT
         derived = _derive_expanded(model, pairs, UNASKED if has_nested else None)
         # Where one beam's motion is another's, the estimate may be far too small.
-        if solves and _may_be_large(model) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
+        if solves and _may_be_large(model, 1) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
         if is_read and _may_be_large(model, 1) and (terms := max(map(_terms, derived))) > READABLE_TERMS:
             reason = f"in nested form: its formula would have {terms} terms (--representation expanded)"
@@ -247,9 +248,14 @@ def _some(terms: float) -> str:
     return f"about {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
 
 
+def _is_expanded(model: Model) -> bool:
+    """Tell whether there is no nested form of a model yet."""
+    return is_tapered(model) or model.root is not None
+
+
 def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:
     """Tell whether the expanded form is worth an estimate; of tapered members there is no other yet."""
-    if is_tapered(model):
+    if _is_expanded(model):
         return False
     if not model.is_distributed:
         return len(model.elements) > NEVER_LARGE
@@ -298,7 +304,7 @@ def derive_for_roots(
     and with ``is_named`` in terms of the parameters.
     Raises what :func:`derive_bound` raises otherwise.
     """
-    if not model.is_distributed or is_tapered(model):
+    if not model.is_distributed or _is_expanded(model):
         return derive_bound(model, pairs)
     is_small = not _may_be_large(model, 1)
     if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:

@@ -276,7 +276,11 @@ class _Draw:
         lengths = [at_centre(own.value(k.length, numbers)) for k in tf.kernels.kernels]
         if not all(x.imag == 0 and x.real > 0 for x in lengths):
             return None
-        return lambda value, bits: bound.enclosed_part(tf.ratio if value is None else value, bits), bound
+
+        def of_ring(value: Factored | None, bits: int) -> Callable[[acb], acb]:
+            return replace(bound.enclosed_part(tf.ratio if value is None else value, bits), root=None)
+
+        return of_ring, bound
 
 
 def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:

@@ -271,6 +271,8 @@ def parameters_named(
     for constant in constants:
         if constant.generator in used:
             used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
+    if model.root is not None:
+        used |= {n.name for e in (model.root.slope, model.root.shift) for n in names(e)}
     return tuple(p for p in model.parameters if p.name in used)
 
 

@@ -28,7 +28,7 @@ from symflex.codegen.program.polynomials import (
     express,
     plan_recurrences,
 )
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import Expression, Name, fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
@@ -69,16 +69,38 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
         raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
     parameters = tuple(p.name for p in tf.parameters)
-    forge = Forge()
+    forge = forge_of(tf.model)
     if tf.is_zero:
         return schedule(forge, parameters, forge.constant(0), None, inf)
     make = _maker(tf, form or forms[0])
     near, degree = make(Generators(forge, tf, is_far=False))
     limit = 10.0 ** (HEADROOM // degree) if degree else inf
-    if limit >= FAR_FROM:
+    if limit >= FAR_FROM or tf.model.root is not None:
         return schedule(forge, parameters, near, None, inf)
     far, _ = make(Generators(forge, tf, is_far=True))
     return schedule(forge, parameters, near, far, limit)
+
+
+def forge_of(model: Model) -> Forge:
+    """Return a workbench on which a root of s stands in place of s where the model has one.
+
+    Raises ModelError: SF910 where that is not made of square roots.
+    """
+    if (root := model.root) is None:
+        return Forge()
+    if root.order & (root.order - 1):
+        message = f"code for powers of s with the denominator {root.order} is not available yet"
+        hint = "that for halves, quarters and eighths is"
+        raise ModelError(Diagnostic("SF910", message, None, hint))
+
+    def made(forge: Forge, s: int) -> int:
+        slope, shift = (constant_of(forge, model, x) for x in (root.slope, root.shift))
+        inside = forge.add([forge.multiply([slope, s]), shift])
+        for _ in range(root.order.bit_length() - 1):
+            inside = forge.apply("complex_sqrt", inside)
+        return forge.label(inside, "r")
+
+    return Forge(root=made)
 
 
 def available_forms(tf: TransferFunction) -> tuple[str, ...]:
@@ -261,7 +283,7 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     if size > OPERATION_LIMIT:
         message = f"a program for {tf.name} would have {size} operations, more than {OPERATION_LIMIT}"
         raise BudgetError(Diagnostic("SF503", message, None, "evaluate it with the Python interface"))
-    forge = Forge()
+    forge = forge_of(tf.model)
     program = tf.program
     named = _generators(forge, tf.model, tf.constants)
     made = program.values(
@@ -292,7 +314,7 @@ def _generators(forge: Forge, model: Model, constants: Iterable[ConstantFunction
 
 def _build_solved(tf: NestedTransferFunction, network: LineNetwork) -> Piecewise:
     """Return the program of a transfer function of a network of line elements, which is solved as it is."""
-    forge = Forge()
+    forge = forge_of(tf.model)
     entries = network.values(
         name=_generators(forge, tf.model, network.equations.constants),
         number=forge.constant,

@@ -20,7 +20,7 @@ from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
 from symflex.balls import value_at
 from symflex.budget import spend
-from symflex.codegen.program.build import TERM_LIMIT
+from symflex.codegen.program.build import TERM_LIMIT, forge_of
 from symflex.codegen.program.exponents import (
     RealAxis,
     derivative_at_zero,
@@ -141,7 +141,11 @@ class Pieces:
 
         ``None`` with losses, and where it would be very long.
         """
-        if self.tf.length > REAL_TERMS or any(law.matrix for law in self.tf.kernels.dispersions):
+        if (
+            self.tf.model.root
+            or self.tf.length > REAL_TERMS
+            or any(law.matrix for law in self.tf.kernels.dispersions)
+        ):
             return None
         positive = tuple(p.name for p in self.tf.parameters if p.assume == "positive")
         axis = RealAxis(self.tf.ratio.ring, self.tf.kernels, positive)
@@ -361,7 +365,7 @@ class _PieceMaker:
 
     def program(self) -> Piecewise:
         """Return the program for complex s."""
-        forge = Forge()
+        forge = forge_of(self.tf.model)
         site = Site(forge, self.tf, self.families)
         tests, counts = self._sizes(site)
         first, one = len(tests), forge.constant(1)
@@ -445,7 +449,7 @@ class _PieceMaker:
         *,
         is_complex: bool = False,
     ) -> CodePiece:
-        forge = Forge()
+        forge = forge_of(self.tf.model)
         delays = dict(zip(self.delays, grows, strict=True))
         site = Site(forge, self.tf, self.families, delays, self._exponents())
         groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]

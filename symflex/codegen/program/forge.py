@@ -45,6 +45,8 @@ class Forge:
     nodes: list[tree.CodeNode] = field(default_factory=list)
     depends: list[Depends] = field(default_factory=list)
     labels: dict[int, str] = field(default_factory=dict)
+    # Makes what stands in place of s, where functions are of a root of it.
+    root: Callable[[Forge, int], int] | None = None
     _numbers: dict[tree.CodeNode, int] = field(default_factory=dict)
 
     def operands(self, x: int) -> tuple[int, ...]:
@@ -96,8 +98,9 @@ class Forge:
 
     @property
     def s(self) -> int:
-        """The Laplace variable."""
-        return self.make(tree.Laplace)
+        """The Laplace variable, or the root that stands in place of it."""
+        s = self.make(tree.Laplace)
+        return s if self.root is None else self.root(self, s)
 
     @property
     def inverse(self) -> int:

@@ -22,7 +22,14 @@ from symflex.codegen.program.build import available_forms, build_nested, build_p
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.errors import BudgetError, Diagnostic, ModelError
-from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.transfer import (
+    BoundNested,
+    BoundTransferFunction,
+    NestedTransferFunction,
+    bind,
+    bind_nested,
+)
 from symflex.transfer.bind import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
@@ -33,10 +40,13 @@ if TYPE_CHECKING:
 
     from symflex.codegen.program.nodes import Piecewise
     from symflex.model import ExactValue
-    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
+
+MOST_WAVES = 300.0
+"""Size of the largest exponent of a member that tapers up to which the error is measured by default."""
 
 SAMPLES = 400
 """Frequencies at which the error is measured, besides those around poles and zeros."""
@@ -254,9 +264,21 @@ def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
         return _Gauge(tf, band, pieces, None, "no values for " + ", ".join(missing))
     try:
         bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
+        if isinstance(bound, BoundTransferFunction) and tf.model.analysis.band is None:
+            band = _with_few_waves(bound, band)
         return _Gauge(tf, band, pieces, References.over(bound, band, samples, pieces=pieces))
     except ModelError as problem:
         return _Gauge(tf, band, pieces, None, problem.diagnostics[0].message)
+
+
+def _with_few_waves(
+    bound: BoundTransferFunction, band: tuple[Fraction, Fraction]
+) -> tuple[Fraction, Fraction]:
+    """Return the part of a band [Hz] in which members that taper are no more than so many waves long."""
+    if not any(law.matrix for law in bound.kernels.dispersions):
+        return band
+    end = KernelFunction(bound, bound.den).frequency_of(MOST_WAVES) / tau
+    return (band[0], max(min(band[1], Fraction(end)), 10 * band[0]))
 
 
 def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:

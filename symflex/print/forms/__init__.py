@@ -114,7 +114,7 @@ def print_form(
     """
     made = _arranged(tf, form, digits, arranged)
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
-    return made
+    return made if tf.model.root is None else made.in_roots(tf.model.root)
 
 
 def _arranged(
@@ -144,7 +144,11 @@ def _arranged(
         made = _lumped(tf, form, digits, arranged)
         parts = nodes(quotient(made.num, made.den)) if form is None else ()
         longest = max((abs(n.value.numerator) for n in parts if isinstance(n, Number)), default=0)
-        if longest > READABLE and not any(isinstance(n, Name) and n != S for n in parts):
+        if (
+            longest > READABLE
+            and not tf.model.root
+            and not any(isinstance(n, Name) and n != S for n in parts)
+        ):
             return _made(tf, "zpk", digits)
     if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))

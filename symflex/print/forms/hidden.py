@@ -20,7 +20,7 @@ from symflex.expressions import Name, format_expression, number, product_of, quo
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import PrintedForm, in_roots
 from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
 from symflex.transfer import NestedTransferFunction
@@ -47,7 +47,8 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
         return ()  # not looked for
     factors = _spelled_out(tf)
     read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
-    return factors
+    root = tf.model.root
+    return factors if root is None else tuple((in_roots(e, root), m) for e, m in factors)
 
 
 def _spelled_out(tf: TransferFunction) -> Hidden:
@@ -76,7 +77,8 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     """
     if isinstance(tf, NestedTransferFunction):
         return form, ()
-    if not tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators):
+    has_kernels = tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators)
+    if tf.model.root or not has_kernels:
         return form, hidden_expressions(tf)
     source = form.source or tf
     if source is not tf and [h.multiplicity for h in source.hidden] == [h.multiplicity for h in tf.hidden]:

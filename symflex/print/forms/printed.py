@@ -3,22 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, format_expression, names
+from symflex.expressions import (
+    FUNCTIONS,
+    Bessel,
+    Call,
+    Expression,
+    Name,
+    Number,
+    Power,
+    format_expression,
+    names,
+    nodes,
+    power,
+    product_of,
+    replace_node,
+    substitute,
+    sum_of,
+)
 from symflex.transfer.transfer_function import degree
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.expressions import Equation
+    from symflex.model.model import RootOfS
     from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import TransferFunction
 
 
 S: Final = Name(LAPLACE)
+SQUARE: Final = 2
+"""The order of a root that has a sign of its own in print."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +63,16 @@ class PrintedForm:
     source: TransferFunction | None = field(default=None, compare=False, repr=False)
     # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     stability: StabilityVerdict | None = None
+
+    def in_roots(self, root: RootOfS) -> PrintedForm:
+        """Return the form with a root of s in place of s."""
+
+        def lines(each: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
+            return tuple((name, in_roots(e, root)) for name, e in each)
+
+        return replace(
+            self, num=in_roots(self.num, root), den=in_roots(self.den, root), where=lines(self.where)
+        )
 
     def at(self, name: str) -> str:
         """Return what a signal is called where it is a function of another argument than s.
@@ -98,12 +128,39 @@ def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     return WITHOUT_FORMULA if not tf.has_formula else DISTRIBUTED
 
 
+def in_roots(expression: Expression, root: RootOfS) -> Expression:
+    """Return an expression with a root of s in place of s, powers of which are written as short as can be.
+
+    Examples
+    --------
+    >>> from symflex.model.model import RootOfS
+    >>> cubed = product_of([power(S, 3), Call("exp", S)])
+    >>> format_expression(in_roots(cubed, RootOfS(number(1), number(0), 2)))
+    's*sqrt(s)*exp(sqrt(s))'
+    """
+    inner, order = Name("_s"), root.order  # until no other s is left
+    base = sum_of([product_of([root.slope, inner]), root.shift])
+
+    def image(exponent: int) -> Expression:
+        whole, part = divmod(exponent, order)
+        if order == SQUARE:
+            return product_of([power(base, whole), *([Call("sqrt", base)] if part else [])])
+        return power(base, whole) if not part else Power(base, Number(Fraction(exponent, order)))
+
+    for node in nodes(expression):
+        if isinstance(node, Power) and node.base == S and isinstance(node.exponent, Number):
+            expression = replace_node(expression, node, image(int(node.exponent.value)))
+    return substitute(substitute(expression, {LAPLACE: image(1)}), {inner.name: S})
+
+
 def require(tf: TransferFunction, form: str) -> None:
     """Refuse a form that a transfer function has not.
 
     Raises UsageError: SF902.
     """
-    if form in KERNELS_ONLY and not tf.is_distributed:
+    if form in ("zpk", "frequency") and tf.model.root is not None:
+        reason = "it holds roots of s"
+    elif form in KERNELS_ONLY and not tf.is_distributed:
         reason = "it is a rational function of s"
     elif form in RATIONAL_ONLY and tf.is_distributed:
         reason = "it is not a rational function of s"

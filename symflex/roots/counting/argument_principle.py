@@ -96,14 +96,14 @@ class CertifiedWinding(Winding):
             total = sum((self.certified_turn(start, end, smallest) for start, end in cell.edges), arb(0))
             return _whole(total / (2 * arb.pi()))
 
-    def count_right(self, low: float, high: float) -> int:
+    def count_right(self, low: float, high: float, angle: float = pi / 2) -> int:
         """Return the number of roots right of the imaginary axis with ``low < ln(abs(s)) < high``: proved.
 
         F is real on the real axis: below it, the argument turns as above. RootOnAxisError where a root lies
         on the imaginary axis, or too close to it; RootOnPathError on the arcs.
         """
         smallest = max(SMALLEST, 1e-9 * max(high - low, pi))
-        above, below = complex(high, pi / 2), complex(low, pi / 2)
+        above, below = complex(high, angle), complex(low, angle)
         try:
             turn = self.certified_turn(above, below, smallest)
         except RootOnPathError as error:

@@ -45,6 +45,7 @@ NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 LINEAR, QUADRATIC = 1, 2
 NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
+NOT_OUTWEIGHED = "no bound on the poles is known, as no term outweighs the others at high frequencies"
 TOO_MANY = "no bound on the poles is known for so many exponentials"
 TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
 ADVANCED = "a delayed term has the highest power of s, so poles right of the axis have no bound"
@@ -83,10 +84,13 @@ def right_tail(
     wavenumbers have no formula.
     """
     with precision(BITS):
-        function = _sum_far_out(bound, polynomials, scales, SECTORS)
+        # Of a function of a root of s, sectors of that.
+        function = _sum_far_out(bound, polynomials, scales, -(-SECTORS // bound.sheets))
         if isinstance(function, str):
             return function
         radius = _least(start, lambda r: function.dominant_terms(r) is not None)
+        if radius is None and bound.sheets > 1:
+            return NOT_OUTWEIGHED
         return radius if radius is not None else function.obstacle(start * LARGEST)
 
 
@@ -267,7 +271,7 @@ def _sum_far_out(
         return TOO_MANY
     kernels = bound.kernel_values()
     values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
-    return _SumFarOut(kernels, values, tuple(scales), table.dispersions, sectors)
+    return _SumFarOut(kernels, values, tuple(scales), table.dispersions, sectors, bound.sheets)
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,6 +283,7 @@ class _SumFarOut:
     scales: tuple[acb, ...]
     laws: tuple[Dispersion, ...]
     sectors: int  # from the real axis on, in which one term has to outweigh the others
+    sheets: int = 1  # q of a function of ``s^(1/q)``, in whose sectors lower powers than that decay
 
     def dominant_terms(self, radius: float) -> tuple[list[_Power], list[_Dominant]] | None:
         """Return the arguments, and per sector the term that outweighs all others from a radius on.
@@ -351,7 +356,7 @@ class _SumFarOut:
             if argument.wavenumber in to_and_fro and length.real > 0:
                 unit, rest = to_and_fro[argument.wavenumber]
                 decays[i] = rest * length
-                arguments.append(_Power(Fraction(1), unit * length, is_delay=True))
+                arguments.append(_Power(Fraction(1), unit * length, is_delay=self.sheets == 1))
                 continue
             if argument.wavenumber:
                 known = named[argument.wavenumber]
@@ -364,7 +369,7 @@ class _SumFarOut:
             linear = _polynomial(self.kernels, argument.rate)
             if linear is not None and len(linear) == LINEAR + 1:
                 value, decays[i] = linear[1], -linear[0] * length
-            is_delay = power == 1 and bool(value.imag == 0) and bool(value.real * length.real > 0)
+            is_delay = power == self.sheets and bool(value.imag == 0) and bool(value.real * length.real > 0)
             arguments.append(_Power(Fraction(power), -value * length, is_delay))
         terms: Terms = {}
         for (each, _), coefficients, scale in zip(

@@ -117,8 +117,10 @@ class Count:
             return Proof(count, count, UNPROVED)
         return Proof(counted + (count_roots(at_zero) if is_disc else 0), count)
 
-    def right(self, high: float) -> int:
+    def right(self, high: float, angle: float = pi / 2) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
+
+        The axis may be at another angle.
 
         RootOnAxisError, RootOnPathError where a root lies on the path, which follows the imaginary axis, or
         too close to it; SF505, SF506.
@@ -127,7 +129,7 @@ class Count:
         low = min(winding.smallest(pi, self.holes), high - 1.0)
         if winding.count_within(low, pi) != self.order:
             raise RootOnPathError
-        counted, rest = divmod(winding.count_right(low, high), winding.function.power)
+        counted, rest = divmod(winding.count_right(low, high, angle), winding.function.power)
         if rest:
             raise RootOnPathError
         return counted

@@ -53,6 +53,8 @@ if TYPE_CHECKING:
 
 ACCUMULATION_DIGITS = 20
 """Of points that are only avoided."""
+WIDER_ANGLE = 1 + 1e-12
+"""A double next to a part of pi may be less than that."""
 FEW = 40
 """Roots that are sooner searched all than a part of them."""
 MORE_DIGITS = 30
@@ -360,8 +362,13 @@ class Side:
         return Count(self._winding, self._order, self.holes, self._left, self._lossless)
 
     def count_right(self, high: float) -> int:
-        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved."""
-        return self._count.right(high)
+        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
+
+        Of a function of a root ``r = s^(1/q)``, how many lie in the sector that is right of it in s.
+        """
+        if (sheets := self._bound.sheets) == 1:
+            return self._count.right(high)
+        return self._count.right(high, pi / (2 * sheets) * WIDER_ANGLE)
 
 
 def _without_laplace(value: Factored) -> Factored:

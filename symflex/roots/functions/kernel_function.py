@@ -328,7 +328,7 @@ class KernelFunction:
                         given = [at_centre(evaluator.value(c, values)) for c in law.characteristic]
                         rate = _spectral_size(given)
                 sizes.append(abs(rate * length).mid())
-            return max(float(size) if size.is_finite() else 0.0 for size in sizes)
+            return max((float(size) if size.is_finite() else 0.0 for size in sizes), default=0.0)
 
     def frequency_of(self, waves: float) -> float:
         """Return a frequency at which the largest argument of a kernel has a given size [rad/s]."""

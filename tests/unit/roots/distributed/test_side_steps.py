@@ -384,7 +384,7 @@ class Right(Circle):
     def count(self, cell):
         return self.right
 
-    def count_right(self, low, high):
+    def count_right(self, low, high, angle):
         self.rings.append((low, high))
         return self.right
 
