@@ -215,7 +215,8 @@ class DistributedFactors:
         Where that is proved, they are those ``below`` and what comes at the crossings between. SF802 when a
         pole lies on the path of the count.
         """
-        changes = [c.change for c in crossed if c.change != 0 and not c.frequencies[0] > self._circle]
+        end = self.bound.from_root(self._circle)
+        changes = [c.change for c in crossed if c.change != 0 and not c.frequencies[0] > end]
         known = [change for change in changes if change is not None]
         is_proved = self._circle > 0 and not self.reasons[not self.radius[1] :]
         if below is not None and is_proved and len(known) == len(changes):

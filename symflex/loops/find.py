@@ -299,7 +299,9 @@ class _GainSearch:
         boundaries, intervals = [], []
         is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
         start: arb | None = ends[0]
-        counted = self.along.radius[0] * 1.01 if self.along is not None and is_open else inf
+        counted = inf
+        if self.along is not None and is_open:
+            counted = self.along.bound.from_root(self.along.radius[0] * 1.01)
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
             # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
             # that cross it above the highest frequency counted only seem to. Where the order is lower, or

@@ -28,6 +28,8 @@ def test_a_half_infinite_bar_has_the_ultimate_gain_exp_pi():
     found = stable("K*exp(-sqrt(s))", "K = 3", "K", 20_000)
     assert found.certified
     assert [float(b.gain) for b in found.boundaries] == pytest.approx([exp(pi), exp(3 * pi)], rel=1e-12)
+    assert [b.entering for b in found.boundaries] == [2, 2]
+    assert [tuple(map(float, ends)) for ends in found.stable] == [(0, pytest.approx(exp(pi), rel=1e-12))]
     assert [b.frequencies_hz[0] for b in found.boundaries] == pytest.approx([pi, 9 * pi], rel=1e-12)
 
 
@@ -48,6 +50,7 @@ def test_a_fractional_controller_has_the_gains_at_which_a_polynomial_s_roots_ent
         found = stable("(k_p + k_i/s^0.5)/(T*s + 1)^3", 'k_p = 2, k_i = 1.5, T = "0.5 s"', gain, 30)
         assert found.certified
         assert [float(b.gain) for b in found.boundaries] == pytest.approx([low], rel=1e-12)
+        assert [b.entering for b in found.boundaries] == [2]
 
 
 def test_a_dead_time_beside_a_root_of_s_counts_at_its_own_rate():
@@ -55,6 +58,7 @@ def test_a_dead_time_beside_a_root_of_s_counts_at_its_own_rate():
     root = (-1 + np.sqrt(1 + 4 * pi * 2 * 0.5)) / (2 * 2 * 0.5)  # u = sqrt(w/2): 2 T u^2 + u = pi
     found = stable("K*exp(-s*T - sqrt(s))", 'K = 2, T = "0.5 s"', "K", 5)
     assert float(found.boundaries[0].gain) == pytest.approx(exp(root), rel=1e-12)
+    assert [b.entering for b in found.boundaries] == [2] * len(found.boundaries)
 
 
 def test_a_branch_point_elsewhere_leaves_the_verdict_at_the_gain_itself():
