@@ -150,7 +150,8 @@ def late_response(
     unit = 1 / longest if longest > 0 else fastest
     below = KernelFunction(bound, bound.ratio.denominator())
     at_zero = (below.order() or 0) if below.power == 1 else 0  # a zero there may take a pole out
-    for share in EFFORT.lines:
+    # Without a delayed term in the denominator, the poles right of every line are known: one tells all.
+    for share in EFFORT.lines if loop.below else EFFORT.lines[:1]:
         spend()
         rate = (unit * share).mid()
         on_line = _on_line(loop, rate) if rate > 0 else None

@@ -19,7 +19,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
-from symflex.roots.root import Root, count_modes, overlap
+from symflex.roots.root import Root, count_modes, count_roots, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -206,10 +206,21 @@ class RootSearch:
         roots: list[Root] = []
         missing = 0
         for part, count in counted:
-            separated, lost = self._separate(part, count)
+            axial = self._axial(part, count)
+            separated, lost = self._separate(part, count) if axial is None else (axial, 0)
             roots.extend(separated)
             missing += lost
         return Found(tuple(roots), missing, cell)
+
+    def _axial(self, cell: Cell, count: int) -> list[Root] | None:
+        """Return the roots on the axes of a cell that reaches both, where it holds many and no others."""
+        if not (self.is_even and cell.right <= 0 and cell.left >= self.left and count > FEW):
+            return None
+        try:
+            roots = [root for root in self.on_axes(cell.low, cell.high) if _is_in(cell, root)]
+        except RootOnPathError:
+            return None
+        return roots if count_roots(roots) * self.function.power == count else None
 
     def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
         """Return the roots in a cell known to hold ``count`` of them."""
