@@ -57,7 +57,7 @@ def _order(bound: BoundTransferFunction, part: Factored, square: Factored) -> in
             for monomial, (number, _) in amplitude.items():  # without bending all numbers are real
                 unities.setdefault(monomial, [0] * (2 * n))[place] += number
         cyclotomic = fmpz_poly.cyclotomic(2 * n)
-        order += exponent * all(fmpz_poly(numbers) % cyclotomic == 0 for numbers in unities.values())
+        order += exponent * all((fmpz_poly(x) % cyclotomic).degree() < 0 for x in unities.values())
     return order
 
 

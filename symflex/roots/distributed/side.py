@@ -109,6 +109,7 @@ class Side:
                 raise TypeError(message)
         self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
+        self._most: tuple[str, RootSearch | LosslessSearch | None, list[Root]]
         self._most = (self.engine, self._search, self._located)
         self.roots = list(self._located)
         self.missing = 0
