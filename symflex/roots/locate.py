@@ -451,7 +451,9 @@ class _Searched:
                 has_more = has_more or not (side.is_finite or (proof and end is not None))
                 if is_over or (proof and end is None):
                     more = side.all_roots if side.is_finite else side.at_origin if rests else ()
-                    known += [r for r in more if r not in known]
+                    known += [
+                        r for r in more if r not in known and (is_hidden or not _is_gone(r, coincident))
+                    ]
                     sides.append(tuple(known))
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
@@ -518,6 +520,11 @@ class _Searched:
         if zeros.is_finite or zeros.reached >= poles.reached:
             return said
         return said + (f", zeros up to {up_to[1]}" if up_to[1] else ", no zeros yet")
+
+
+def _is_gone(root: Root, coincident: Sequence[HiddenRoot]) -> bool:
+    """Tell whether a root is proved to be taken out."""
+    return any(h.is_exact and overlap(root, h.root) for h in coincident)
 
 
 def _find(sides: Sequence[Side], region: Region) -> list[Root]:

@@ -73,3 +73,18 @@ inputs.F = {{ unit = "N" }}
 outputs.U = "u"
 """)
         assert [h.is_proved for h in found.hidden] == [True, True] * is_hidden, length
+
+
+def test_a_shaped_force_on_a_mass_and_a_spring_hides_their_mode():
+    # exp(-s T) = -1 at s^2 = -k/m; the structure is passive, which alone says nothing of the axis.
+    found = _map("""
+symflex = 1
+parameters = { m = "0.3 kg", k = "100 N/m" }
+definitions.T = "pi*sqrt(m/k)"
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.drive = { type = "force_source", at = "x", f = "(1 + exp(-s*T))/2*F" }
+inputs.F = { unit = "N" }
+outputs.X = "x"
+""")
+    assert found.verdict.headline == "stable, with 2 hidden poles on the imaginary axis"
