@@ -14,7 +14,7 @@ from symflex.api.response import FrequencyResponse, TimeResponse
 from symflex.api.root import Mode, PoleZeroMap, Residue, ResidueTable, Root, RootTable, plain_mode
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import RootsOptions, band_ends, checked_digits
+from symflex.options import RootsOptions, band_ends, checked_digits, duration
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
@@ -42,7 +42,7 @@ class Analyses(Plotted):
         r"""Return the response to a unit step at t = 0, from rest, at increasing times [s] from 0 on.
 
         Without ``times``, there are 201 of them, until the slowest motion has died away or has repeated
-        often enough. In a notebook, ``H.step_response()`` shows a figure.
+        often enough; ``times = "1 s"``, or 1, is the last of 201. In a notebook, the result is a figure.
 
         Every value has a radius. If the result says ``certified``, the true value is proved to lie within
         it, and ``digits`` digits of the largest value are correct. A ``shaper``, from :meth:`input_shaper`,
@@ -137,7 +137,11 @@ class Analyses(Plotted):
         if times is None:
             (response,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
-            response = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
+            if isinstance(times, str | int | float):
+                given = SampleTimes.evenly(duration(str(times), "the last time"), POINTS)
+            else:
+                given = SampleTimes.of(times)
+            response = time_response(self.bound, kind, given, digits, shaper)
         return face_of(TimeResponse, response)
 
     def poles(

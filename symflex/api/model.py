@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -20,7 +21,10 @@ from symflex.api.transfer_function import (
     Number,
     TransferFunction,
 )
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, Source
+from symflex.expressions.format import number_text
+from symflex.files.write import write_atomically
+from symflex.model.spec import read
 from symflex.model.spec.write import write
 from symflex.options import (
     ColocationOptions,
@@ -29,6 +33,7 @@ from symflex.options import (
     StabilityOptions,
     SweepOptions,
     checked_digits,
+    refused,
 )
 
 if TYPE_CHECKING:
@@ -80,6 +85,8 @@ class Model:
     """
 
     resolved: model_room.Model
+    _source: Source = field(compare=False, repr=False)  # its text
+    _values: Mapping[str, Setting] = field(compare=False, repr=False)  # given in place of those of the text
 
     def __init__(
         self,
@@ -104,7 +111,7 @@ class Model:
         given = {key: value for key, value in locals().items() if value and key != "self"}
         above: dict[str, object] = {key: given.pop(key) for key in ("title", "source") if key in given}
         text = write({"symflex": 1, **above, **given})
-        object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
+        self._resolve(Source("<python>", text), {}, ())
 
     if not TYPE_CHECKING:
 
@@ -113,11 +120,50 @@ class Model:
             refuse_attribute(self, name, BoundTransferFunction, 'model.transfer_function("X/F").bind()')
 
     @staticmethod
-    def of(resolved: model_room.Model) -> Model:
-        """Return a model from one that is already resolved."""
+    def of(source: Source, values: Mapping[str, Setting], allow_outside: Iterable[str | Path]) -> Model:
+        """Return the model of a text with values in place of its own; errors as of :func:`loads`."""
         model = object.__new__(Model)
-        object.__setattr__(model, "resolved", resolved)
+        model._resolve(source, values, allow_outside)
         return model
+
+    def _resolve(
+        self, source: Source, values: Mapping[str, Setting], allow_outside: Iterable[str | Path]
+    ) -> None:
+        resolved = pipeline.loads(source.text, source.name, allow_outside, values)
+        for name, value in (("resolved", resolved), ("_source", source), ("_values", dict(values))):
+            object.__setattr__(self, name, value)
+
+    def to_toml(self, path: str | Path | None = None) -> str:
+        """Return the specification of the model, and write it to a file if one is given.
+
+        Raises
+        ------
+        UsageError
+            SF902 for a value given to a parameter of a block's own file; SF903 if the file cannot be written.
+
+        Examples
+        --------
+        >>> Model(parameters={"k": 4}, inputs={"u": {}}, outputs={"y": "k*u"}).to_toml().split()[:6]
+        ['symflex', '=', '1', '[parameters]', 'k', '=']
+        """
+        text = self._source.text
+        if self._values:
+            spec = tomllib.loads(text)
+            declared = spec.get("parameters", {})
+            for p in self.parameters:
+                value, unit = p.as_written()
+                if p.name not in self._values or value is None:
+                    continue
+                if p.name not in declared:
+                    raise refused(f"'{p.name}' is a parameter of another file, which cannot be written here")
+                sign, pi = "-" * (value.rational < 0), f"*pi^{value.pi_power}" if value.pi_power else ""
+                new = f"{sign}{number_text(abs(value.rational))}{pi} {unit}".rstrip()
+                table = declared[p.name] if isinstance(declared[p.name], dict) else {}
+                declared[p.name] = {key: v for key, v in table.items() if key != "unit"} | {"value": new}
+            text = write(spec)
+        if path is not None:
+            write_atomically(Path(path), text.encode())
+        return text
 
     def __repr__(self) -> str:
         return repr(self.resolved)
@@ -675,7 +721,7 @@ def load(
     UsageError
         SF902 an unknown parameter; SF203, SF209 and others that the same value in the file would cause.
     """
-    return Model.of(pipeline.load(path, allow_outside, values))
+    return Model.of(read(Path(path)), values or {}, allow_outside)
 
 
 def loads(
@@ -703,4 +749,4 @@ def loads(
     >>> [complex(p) for p in model.transfer_function("X", "F").bind().poles()]
     [3j, -3j]
     """
-    return Model.of(pipeline.loads(text, name, allow_outside, values))
+    return Model.of(Source(name, text), values or {}, allow_outside)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from symflex.api.model import Model
 from symflex.budget import Silent
 from symflex.options import ReportOptions
 
@@ -37,7 +40,7 @@ class WrittenReport:
 
 
 def write_report(
-    specs: str | Path | Sequence[str | Path],
+    specs: str | Path | Model | Sequence[str | Path | Model],
     folder: str | Path = "report",
     *,
     pdf: bool | None = None,
@@ -48,8 +51,8 @@ def write_report(
 
     Parameters
     ----------
-    specs : str, Path or a sequence of them
-        Specifications; a folder means all in it and below, with its measured responses.
+    specs : str, Path, Model or a sequence of them
+        Specifications, or models; a folder means all in it and below, with its measured responses.
         If no file has the name, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
         Folder to write; files of the same name are replaced, others stay.
@@ -88,13 +91,25 @@ def write_report(
     """
     from symflex.report.published import written
 
-    given = ReportOptions(
-        specs=[specs] if isinstance(specs, str | Path) else specs,
-        output=folder,
-        pdf=pdf,
-        day=None if day is None else day.isoformat(),
-        jobs=jobs if jobs > 1 else 0,
-    )
-    published, report = written(given, Silent(), lambda _: None)
+    with TemporaryDirectory(prefix="symflex-models-") as models:
+        every = [specs] if isinstance(specs, str | Path | Model) else specs
+        given = ReportOptions(
+            specs=[
+                _file_of(x, Path(models, str(i))) if isinstance(x, Model) else x for i, x in enumerate(every)
+            ],
+            output=folder,
+            pdf=pdf,
+            day=None if day is None else day.isoformat(),
+            jobs=jobs if jobs > 1 else 0,
+        )
+        published, report = written(given, Silent(), lambda _: None)
     problems = (published.problem,) if published.problem else ()
     return WrittenReport(published.page, published.pdf, (*report.warnings, *problems), report.code == 0)
+
+
+def _file_of(model: Model, folder: Path) -> Path:
+    """Return a file with the specification of a model, called as its title."""
+    folder.mkdir()
+    file = folder / f"{re.sub(r'[^A-Za-z0-9_]+', '_', model.title).strip('_')[:40] or 'model'}.toml"
+    model.to_toml(file)
+    return file

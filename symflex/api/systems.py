@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from math import isfinite
 from numbers import Integral, Real
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from symflex.api.model import Model, Table
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Quotient = tuple[object, object]
+TUPLES = {2: ("num", "den"), 3: ("zeros", "poles", "gain"), 4: "ABCD"}
+"""What the members of a tuple are by their number, as scipy reads it."""
 SHOWN = 40
 """Characters of a value that a message repeats."""
 
@@ -27,8 +30,9 @@ def from_control(sys: object) -> Model:
 
     Parameters
     ----------
-    sys : control.TransferFunction, control.StateSpace or scipy.signal.lti
+    sys : control.TransferFunction, control.StateSpace, scipy.signal.lti or tuple
         With any number of inputs and outputs. Every double is read as the shortest decimal that prints it.
+        A tuple is (numerator, denominator), (zeros, poles, gain) or (A, B, C, D).
 
     Returns
     -------
@@ -50,6 +54,8 @@ def from_control(sys: object) -> Model:
     x/F = 1/(s^2 + 0.4*s + 4)
     """
     given: Any = sys
+    if isinstance(sys, tuple | list) and len(sys) in TUPLES:
+        given = SimpleNamespace(**dict(zip(TUPLES[len(sys)], sys, strict=True)))
     if getattr(given, "dt", None):
         note = "symflex models continuous time; its own functions are sampled by discretise()"
         raise _refused(f"the system is in discrete time, dt = {given.dt}", note)
@@ -63,7 +69,8 @@ def from_control(sys: object) -> Model:
     elif hasattr(given, "num") and hasattr(given, "den"):
         blocks = _quotients(given)
     else:
-        hint = "read_measurement() takes measured responses" if hasattr(given, "omega") else None
+        hint = "a tuple is (num, den), (zeros, poles, gain) or (A, B, C, D)"
+        hint = "read_measurement() takes measured responses" if hasattr(given, "omega") else hint
         raise _refused(
             f"a '{type(sys).__name__}' is neither a transfer function nor a state-space system", hint
         )
@@ -203,7 +210,7 @@ def _quotients(given: Any) -> list[list[Quotient]]:  # noqa: ANN401 (a system of
 def _with_roots(gain: float, roots: Sequence[complex]) -> str:
     """Return a product over roots; two that are conjugate make a square and a rest, without rounding."""
     factors = [_coefficient(gain)]
-    left = [complex(root) for root in roots]
+    left = [complex(root) for root in _rows("roots", roots)[0]]
     while left:
         root = left.pop()
         real = f"s - {_coefficient(root.real)}"

@@ -37,6 +37,7 @@ CALLED = {
     "is_stable": "stability",
     "root_locus": "locus",
     "export": "export_numpy",
+    "save": "to_toml",
 }
 """Methods by what commands, MATLAB and python-control call them."""
 OF_LOOPS = ("stability", "locus", "colocation", "sweep")

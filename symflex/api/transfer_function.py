@@ -98,11 +98,16 @@ class Form:
         """Closed forms of tapered members, ``Z_11(l)``, ``besseli(0, q)``, then the names in them."""
         return tuple((self._sympy(left), self._sympy(e)) for left, e in self.printed.closed)
 
-    def latex(self) -> str:
-        """Return the equation in LaTeX."""
-        from symflex.print.latex import inline_latex
+    def latex(self, width: float | str | None = None) -> str:
+        """Return the equation in LaTeX: on one line, or as a display for a column of a width.
 
-        return inline_latex(self.source, self.printed)
+        ``width`` is in mm, or ``"ieee"`` or ``"a4"``.
+        """
+        from symflex.print.latex import inline_latex, transfer_function_latex, width_of
+
+        if width is None:
+            return inline_latex(self.source, self.printed)
+        return transfer_function_latex(self.source, self.printed, width_mm=width_of(width))
 
     def __repr__(self) -> str:
         return f"<Form {self.name} of {self.source.name}>"
@@ -217,9 +222,9 @@ class TransferFunction(_Derived):
         """
         return Form(self.exact, print_form(self.exact, name, digits))
 
-    def latex(self, form: str | None = None) -> str:
-        """Return the equation in LaTeX."""
-        return self.form(form).latex()
+    def latex(self, form: str | None = None, *, width: float | str | None = None) -> str:
+        """Return the equation in LaTeX; see :meth:`Form.latex`."""
+        return self.form(form).latex(width)
 
     def to_json_dict(self, form: str | None = None) -> dict[str, object]:
         """Return the transfer function as ``symflex derive --json`` lists it."""
@@ -327,9 +332,9 @@ class NestedTransferFunction(_Derived):
         """Number of operations for a value; shared ones count once."""
         return self.exact.size
 
-    def latex(self) -> str:
-        """Return the equation in LaTeX."""
-        return self._shortest.latex()
+    def latex(self, *, width: float | str | None = None) -> str:
+        """Return the equation in LaTeX; see :meth:`Form.latex`."""
+        return self._shortest.latex(width)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the transfer function as ``symflex derive --json`` lists it."""

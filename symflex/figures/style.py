@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import textwrap
 from io import BytesIO
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -140,6 +141,16 @@ class ShownFigure(Figure):
 
     def _repr_png_(self) -> Raster:
         return raster_of(self)
+
+    def savefig(self, fname: Any, **kwargs: Any) -> None:  # noqa: ANN401 (as matplotlib has it)
+        """Save the figure as matplotlib does; PGF as ``symflex plot`` writes it, which needs no TeX."""
+        from symflex.figures.files import save  # imports this module
+
+        format = kwargs.get("format") or Path(str(fname)).suffix.removeprefix(".")
+        if isinstance(fname, str | Path) and format.lower() == "pgf":
+            save(self, Path(fname), "pgf")
+        else:
+            super().savefig(fname, **kwargs)
 
 
 def raster_of(figure: Figure) -> Raster:

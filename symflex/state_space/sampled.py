@@ -244,8 +244,8 @@ def _stepped(
     """Return the matrices of one step, towards whose end the input changes."""
     a, b, c, d = matrices
     ahead = whole * sampling.sample - delay
-    grown, newer = held(a, b, ball(ahead))
-    before, older = held(a, b, ball(sampling.sample - ahead))
+    grown, newer = _held(a, b, ball(ahead))
+    before, older = _held(a, b, ball(sampling.sample - ahead))
     return _with_past_inputs(grown * before, grown * older, newer, c, d, whole)
 
 
@@ -291,7 +291,7 @@ def _with_past_inputs(
     return _matrix(total, size), _matrix(given, m), _matrix(shown, size), arb_mat(p, m)
 
 
-def held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
+def _held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
     """Return ``exp(A t)``, and the integral of that times B from 0 to t."""
     n, m = a.nrows(), b.ncols()
     size = n + m

@@ -290,3 +290,33 @@ def test_a_notebook_shows_stability_as_tables():
     assert "<pre>" not in shown
     assert shown.count("<table>") == 3
     assert re.search(r"<td[^>]*>6</td>", shown)
+
+
+def test_a_figure_with_other_data_is_saved_as_pgf_without_tex(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    lag = symflex.loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"').transfer_function("y", "u")
+    figure = lag.bind().bode(width="ieee")
+    figure.axes[0].plot([0.1, 0.2], [-3.0, -4.0], ".")
+    figure.savefig(tmp_path / "lag.pgf")
+    assert (tmp_path / "lag.pgf").read_text(encoding="ascii").count("\\begin{pgfpicture}") == 1
+
+
+def test_a_formula_is_set_for_the_width_of_a_column():
+    terms = " + ".join(f"a_{i}*s^{i}" for i in range(12))
+    names = ", ".join(f"a_{i} = {{}}" for i in range(12))
+    text = f'symflex = 1\nparameters = {{ {names} }}\ninputs.u = {{}}\noutputs.y = "u/({terms})"'
+    tf = symflex.loads(text).transfer_function("y", "u")
+    assert "\\begin" not in tf.latex()
+    assert tf.latex(width="a4").startswith("\\begin{equation}")
+    assert "\\begin{align}" in tf.latex(width=80.0)
+
+
+def test_one_time_is_the_last_of_a_response():
+    lag = (
+        symflex.loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"')
+        .transfer_function("y", "u")
+        .bind()
+    )
+    for given in ("200 ms", 0.2):
+        found = lag.step_response(given)
+        assert (found.times.size, found.times[-1]) == (201, 0.2)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import control
 import numpy as np
 import pytest
@@ -49,6 +51,72 @@ def test_a_filter_of_scipy(output):
     expected = scipy.signal.freqs_zpk(*designed, worN=[33.0])[1]
     found = from_control(system).transfer_function("y", "u").bind()(33j)
     np.testing.assert_allclose(found, expected[0], rtol=1e-9 if output == "ss" else 1e-12)
+
+
+def test_tuples_are_read_as_scipy_reads_them():
+    a, b, c, d = [[0, 1], [-475, -2]], [[0], [1 / 60]], [[1, 0]], [[0]]
+    for given, expected in (
+        ((a, b, c, d), 1 / 60 / (S**2 + 2 * S + 475)),
+        (tuple(map(np.array, (a, b, c, 5))), 1 / 60 / (S**2 + 2 * S + 475) + 5),
+        (([1 / 60, 2], [3, 0.4, 4]), (S / 60 + 2) / (3 * S**2 + 0.4 * S + 4)),
+        ((5, [1, 2]), 5 / (S + 2)),
+        (([-1], [-2, -1 + 2j, -1 - 2j], 3), 3 * (S + 1) / ((S + 2) * ((S + 1) ** 2 + 4))),
+        ((np.array([]), -2.0, 1 / 60), 1 / 60 / (S + 2)),
+    ):
+        assert values(from_control(given))[0, 0] == pytest.approx(expected, rel=1e-14), given
+    with pytest.raises(UsageError, match=r"a tuple is \(num, den\)"):
+        from_control((1, 2, 3, 4, 5))
+
+
+def test_a_double_prints_as_its_shortest_decimal():
+    for given, expected in (
+        (([1 / 60], [1, 2, 475]), "0.016666666666666666/(s^2 + 2*s + 475)"),
+        (([0.1], [1 / 3, 2]), "0.1/(0.3333333333333333*s + 2)"),
+        (([1.2345678901234567], [1, 0.7654321098765432]), "1.2345678901234567/(s + 0.7654321098765432)"),
+    ):
+        assert str(from_control(given).transfer_function("y", "u")) == f"y/u = {expected}"
+
+
+def test_a_model_of_python_is_read_back_from_the_file_it_is_written_to(tmp_path):
+    built = symflex.Model(
+        parameters={"k": {"value": "8 kN/m", "latex": "k_x"}, "a": "30 deg", "f": "10 Hz", "z": {}},
+        inputs={"u": {}},
+        outputs={"y": "z*k*sin(a)*u/(1/f*s + 1)"},
+    )
+    read = symflex.loads(built.to_toml(), values={"k": 5, "a": 0.5, "f": "90 rpm", "z": 1 / 3})
+    models = [
+        built,
+        read,
+        from_matrices(M=[[2, 0], [0, 1]], K=[[30, -10], [-10, 10]], inputs={"F": 1}, outputs={"X": 0}),
+        from_control(control.ss([[0, 1], [-3, -1e-5]], [[0], [1 / 60]], [[1, 0]], [[0]])),
+        from_control(([1], [1, 0.4, 4])),
+    ]
+    for model in models:
+        model.to_toml(tmp_path / "model.toml")
+        assert symflex.load(tmp_path / "model.toml") == model, model
+    assert [float(p.value.nearly) for p in read.parameters] == [5.0, 0.5, 1.5, 1 / 3]
+    text = "symflex = 1  # as it stands\ninputs.u = {}\noutputs.y = 'u'"
+    assert symflex.loads(text).to_toml() == text
+
+
+@pytest.mark.slow
+def test_a_report_is_written_of_models_of_python(tmp_path):
+    made = from_matrices(M=[[2]], K=[[8]], inputs={"F": 0}, outputs={"X": 0}, title="One <mass>")
+    written = symflex.write_report([made, made], tmp_path / "report", pdf=False)
+    assert written.is_certified
+    assert {"One_mass.toml", "One_mass_2.toml"} <= {p.name for p in (tmp_path / "report").rglob("*.toml")}
+
+
+def test_many_unknowns_with_numbers_are_printed_at_once():
+    # A chain of masses of 1.1 kg on springs of 4/3 N/m, damped in proportion to them.
+    n, stiffness = 20, 4 / 3
+    k = stiffness * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    k[-1, -1] = stiffness
+    model = from_matrices(M=1.1 * np.eye(n), D=0.01 * k, K=k, inputs={"F": n - 1}, outputs={"X": 0})
+    printed = str(model.transfer_function("X/F"))
+    angles = (2 * np.arange(n) + 1) * np.pi / (4 * n + 2)
+    found = [float(x) for x in re.findall(r"s \+ ([0-9.]+)\)", printed.rpartition("/")[2])]
+    assert found == pytest.approx(4 * stiffness / 1.1 * np.sin(angles) ** 2, rel=1e-5)
 
 
 def test_what_is_no_continuous_system_is_refused():

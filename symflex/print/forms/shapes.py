@@ -65,6 +65,10 @@ DIGITS: Final = 7
 """Significant digits of a decimal that reads better than a shorter whole number elsewhere."""
 MOST: Final = 15
 """The same where whole numbers have as many."""
+FEW_DOUBLES: Final = 2
+"""Numbers of more digits in a model that are printed with all of them, such as 1/60 as a double."""
+TOO_LONG: Final = 10**30
+"""A whole number in which nobody looks for numbers as they were typed."""
 LARGE: Final = 10**5
 """A whole number from which a polynomial in s reads better with s^n alone in front."""
 MORE: Final = 1.3
@@ -522,7 +526,8 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     typed = {_texts(n.terms) for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum)}
     numbers = [n.value.numerator for e in (num, den) for n in nodes(e) if isinstance(n, Number)]
     longest = max((len(str(n).strip("-0")) for n in numbers), default=0)
-    digits = min(max(DIGITS, longest + 1), MOST)
+    doubles = [n for n in map(_digits_of, {*written}) if n > MOST]
+    digits = min(max(DIGITS, longest + 1), max(doubles) if 0 < len(doubles) <= FEW_DOUBLES else MOST)
 
     def led_by_s(part: Expression) -> Expression:
         if not isinstance(part, Sum):
@@ -570,20 +575,24 @@ def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) 
     is_monic = powers_of(total.terms[0])[1].keys() == {S}
     are_whole = all(f.denominator == 1 for f in fronts)
     holds_sums = any(isinstance(base, Sum) for t in total.terms for base in powers_of(t)[1])
-    tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
+    # Nobody types numbers as long as those of large matrices become, nor looks for theirs in them.
+    few = wanted if max(fronts) < TOO_LONG else {Fraction(1)}
+    tried = dict.fromkeys([Fraction(1), fronts[0], *(f / w for f in fronts for w in few if w)])
+    has_symbols = {*names(total)} != {S}
 
     def rank(divisor: Fraction) -> tuple[bool | int, ...]:
         divided = [f / divisor for f in fronts]
         is_whole, is_wanted = [x.denominator == 1 for x in divided], [x in wanted for x in divided]
         is_typed = all(is_wanted)
-        has_symbols = {*names(total)} != {S}
         # Whole numbers stay in a sum of longer parts, and where its first would be as odd as 2.5*m.
         is_odd = not (is_whole[0] or is_wanted[0]) or (fronts[0] == 1 and (holds_sums or not is_typed))
         is_large = not has_symbols and (fronts[0] == 1 or max(fronts) >= LARGE)
-        is_large &= not any("/" in number_text(x) for x in divided)
+        is_large = is_large and not any("/" in number_text(x) for x in divided)
         as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
         return (
-            _texts(product_of([number(f / divisor), of_powers(Fraction(1), p)]) for f, p in parts) in typed,
+            is_typed
+            and _texts(product_of([number(f / divisor), of_powers(Fraction(1), p)]) for f, p in parts)
+            in typed,
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
             has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5
@@ -613,8 +622,11 @@ def _scaled(total: Sum, divisor: Fraction, digits: int) -> Expression | None:
 
 def _number_in(value: Fraction, digits: int) -> Expression | None:
     """Return a number that is a whole one or a short decimal, None otherwise."""
-    text = number_text(abs(value))
-    is_short = value.denominator == 1 or (
-        "/" not in text and len(text.strip("0.").replace(".", "")) <= digits
-    )
+    is_short = value.denominator == 1 or 0 < _digits_of(value) <= digits
     return number(value) if is_short else None
+
+
+def _digits_of(value: Fraction) -> int:
+    """Return how many significant digits the decimal of a number has; 0 for a quotient."""
+    text = number_text(abs(value))
+    return 0 if "/" in text else len(text.strip("0.").replace(".", ""))
