@@ -216,7 +216,8 @@ def _matrix(
         shape_found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
         shape_found = f"{len(entries)} entries" if is_flat else shape_found
         sizes = "square" if name == "A" else f"{wanted[0]} x {wanted[1]}"
-        hint = "a block has one input and one output; symflex.from_control takes systems with more"
+        hint = "a block has one input and one output; in Python "
+        hint += "from_control((A, B, C, D)).to_toml() writes a system with more as [equations]"
         hint_here = None if name == "A" or is_flat else hint
         reader.note("SF206", f"{where} must be {sizes}, found {shape_found}", value.span, hint_here)
         return None

@@ -35,9 +35,9 @@ def most_zeros(cramer: CramerEquations) -> int | None:
     from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
     entries = cramer.entries
-    rows = [i for i, row in enumerate(entries) for _ in row]
-    columns = [j for row in entries for j in row]
-    pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(entries), len(entries)))
+    places = [(i, j) for i, row in enumerate(entries) for j in row]
+    indices = np.array(places, np.int32).reshape(-1, 2).T  # scipy 1.14 matches no others
+    pattern = csr_array((np.ones(len(places)), tuple(indices)), shape=(len(entries), len(entries)))
     matched = maximum_bipartite_matching(pattern, perm_type="column")
     if (matched < 0).any():
         return None
