@@ -27,21 +27,29 @@ about how fast H falls off.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured, parted_at
+from symflex.analysis.explanation.coordinates import (
+    PAIR,
+    acting,
+    driven_source,
+    in_one_way,
+    measured,
+    parted_at,
+)
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
 from symflex.analysis.time_response.sampled import Refused
 from symflex.balls import ball, precision
-from symflex.expressions import Attribute, Expression, Name, Negative, Sum
+from symflex.expressions import Attribute, Expression, Name, Negative, Number, Sum, substitute
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
-from symflex.model.signs import is_passive
+from symflex.model.signs import is_passive, line_of, value_along
 from symflex.roots.passive import observed
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
@@ -127,7 +135,7 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
         return Refused("the output is not a derivative of a displacement")
     if integrations - order not in (STEP, RAMP):
         return Refused("energy bounds only step responses of displacements, and smoother ones")
-    size, ends = abs(ball(factor.unit)), [here]
+    size, ends = abs(ball(factor.unit)) * _input_gain(model, bound), [here]
     if here != there.coordinates:
         ends.append(there.coordinates)
     if None in (force_on(model, coordinates[0][0]) for coordinates in ends):
@@ -141,6 +149,18 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
             "the two ends are not reciprocal: a force at one does not move the other as much as the reverse"
         )
     return PassiveBound(function, order, size, sizes), integrations
+
+
+def _input_gain(model: Model, bound: BoundTransferFunction) -> arb:
+    """Return how large a force a unit input is; not a number where that has no value."""
+    source = bound.source.input
+    use = driven_source(model, source)
+    if use is None:
+        return arb(1)
+    ((_, value),) = use.values
+    unit = substitute(value, {source.name: Number(Fraction(1))})
+    gain = value_along(unit, arb("nan"), line_of(model, bound.all_values))
+    return arb("nan") if gain is None else abs(gain)
 
 
 def _colocated(

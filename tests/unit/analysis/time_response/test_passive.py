@@ -499,3 +499,18 @@ def test_the_ends_of_matched_rods_whose_wavenumbers_hold_numbers_are_bounded():
     model = pipeline.loads(text)
     (bound,) = pipeline.derive_for_roots(model, model.transfer_functions, is_explained=True)
     assert not isinstance(passive_bound(bound, 1), Refused)
+
+
+def test_a_source_that_multiplies_its_input_multiplies_the_bound():
+    # Between two places: what lies beyond a circle is a thousand times what a unit force leaves there.
+    beams = f'one = {{ type = "beam", between = ["ground", "p"], {UNIT}, {WHOLE} }}\n' + (
+        f'two = {{ type = "beam", between = ["p", "x"], {UNIT}, {WHOLE} }}\n'
+        'd = { type = "damper", between = ["x", "ground"], b = "1 N*s/m" }\n'
+    )
+    rests = []
+    for drive in ['inputs.F = { force = "x" }', 'inputs.F = {}\nparameters.g = "1000 N"']:
+        source = 'f = { type = "force_source", at = "x", f = "g*F" }' if "g =" in drive else ""
+        model = loads(f'symflex = 1\n{drive}\noutputs.X = "p"\n[elements]\n{beams}{source}')
+        found = passive_bound(model.transfer_function("X", "F").bind().bound, 1)
+        rests.append(found[0].rest(3.0, 1, SampleTimes.of(TIMES)).always)
+    assert float(rests[1] / rests[0]) == pytest.approx(1000, rel=1e-9)
