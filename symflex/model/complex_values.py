@@ -38,7 +38,7 @@ from symflex.expressions import (
 )
 from symflex.expressions.nodes import nodes
 from symflex.library.blocks import BLOCKS
-from symflex.model.linearity import integer_exponent
+from symflex.model.linearity import EXPONENT_LIMIT, integer_exponent
 from symflex.model.model import IMAGINARY
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ if TYPE_CHECKING:
     from symflex.model.network import Draft
 
 UNIT, ONE = Name(IMAGINARY), Fraction(1)
+MOST_NODES = 2000
+"""Of an expression with its definitions put in: larger ones are left as they are written."""
 
 
 def with_real_values(draft: Draft) -> Draft:
@@ -118,10 +120,6 @@ class _ComplexNames:
 
     def _parts(self, node: Expression) -> Expression | None:
         match node:
-            case Name(name):
-                inner = self.values.get(name)
-                found = inner and self.real(inner)
-                return found if found and not self.has_unit(found) else None
             case Sum(terms) | Product(terms):
                 join = sum_of if isinstance(node, Sum) else product_of
                 parts = [self.real(x) for x in terms]
@@ -147,6 +145,8 @@ class _ComplexNames:
         above, below = (b, d) if c.is_zero() else (a, c)
         shared = above.gcd(below)
         above, below = above / shared, below / shared
+        if max(int(e) for x in (above, below) for e in x.degrees()) > EXPONENT_LIMIT:
+            return None
         scale = Fraction(int(below.leading_coefficient()))
         return quotient(leaves.expression(above, scale), leaves.expression(below, scale))
 
@@ -180,6 +180,8 @@ class _ComplexNames:
         """Return an expression with its definitions put in, and ``exp(a + j*b)`` in cosine and sine."""
         for _ in self.values:
             node = substitute(node, self.values)
+            if len(nodes(node)) > MOST_NODES:
+                raise TypeError
         for call in [n for n in nodes(node) if isinstance(n, Call) and self.has_unit(n.argument)]:
             (a, b), (c, d), leaves = self._polynomials(call.argument)
             if call.name != "exp" or not d.is_zero():

@@ -75,6 +75,17 @@ def test_motions_without_strain_that_input_or_output_do_not_see_are_hidden():
         assert hidden(bound(*given), place) == expected, given
 
 
+def test_an_elbow_on_a_foundation_hides_two_of_its_three_motions_as_a_rigid_body():
+    # A force along x at the elbow moves it along x alone: motion along y and the turn about it are hidden.
+    member = 'type = "frame", EI = 4, EA = 50, rhoA = 2, l = 1, k_f = 18'
+    model = pipeline.loads(
+        f'symflex = 1\n[elements]\na = {{ {member}, between = ["p", "q"] }}\n'
+        f'b = {{ {member}, between = ["q", "r"], angle = "pi/2" }}\n'
+        '[inputs]\nF = { force = "q.x" }\n[outputs]\nX = "q.x"\n'
+    )
+    assert hidden(pipeline.derive_bound(model, model.transfer_functions)[0], 3j) == 2
+
+
 def test_sections_that_turn_alike_at_the_cut_off_frequency_are_hidden_from_a_force():
     # Pinned ends: w = 0, phi = 1 at kappa G A = -rho I s^2 does no work with a force across.
     more = 'theory = "timoshenko", rhoI = 2, kappaGA = 18'
