@@ -199,5 +199,5 @@ X = "25*x/((s + 3 - 4*j)*(s + 3 + 4*j))"
 def test_definitions_in_a_circle_and_ones_that_double_at_every_step_are_left_as_they_are():
     with pytest.raises(SymflexError, match="circle"):
         model("v*a", {"a": "j*b + 1", "b": "a*a"})
-    doubled = {f"d{i}": f"d{i + 1}*d{i + 1}*a{i}" for i in range(12)} | {"d12": "1 + j"}
+    doubled = {f"d{i}": f"d{i + 1}*d{i + 1}*a{i}" for i in range(12)} | {"d12": "1 + 2*j"}
     assert model("v*d0", doubled, parameters={f"a{i}": "1" for i in range(12)}).imaginary is not None
