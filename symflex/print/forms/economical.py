@@ -9,14 +9,13 @@ that is cut at a node has kernels of ``a`` and ``l - a``. With those of the whol
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import partial
 from itertools import combinations, product
-from math import isqrt, prod
+from math import prod
 from operator import add
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, Kernel, KernelTable, Ring, composed
+from symflex.algebra import LAPLACE, Factored, Kernel, KernelTable, Ring, composed
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.arrange import with_squares
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
@@ -143,16 +142,21 @@ class _Sum:
 def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
     """Return a function with ``s/c`` for a wavenumber that is no root, except in arguments."""
     images, ring = {}, tf.ratio.ring
+    s = Factored.generator(ring, LAPLACE)
     for law in tf.kernels.dispersions:
         if law.kind == "wave":
             square = NormalForm(ring, tf.kernels).power_of(law).map_factors(ring, partial(with_squares, ring))
-            above, below = isqrt(abs(square.unit.numerator)), isqrt(square.unit.denominator)
-            if square.unit == Fraction(above, below) ** 2 and not any(e % 2 for _, e in square.factors):
-                factors = tuple((f, e // 2) for f, e in square.factors)
-                images[law.wavenumbers[0]] = Factored(square.ring, Fraction(above, below), factors)
+            order, odd = divmod(square.exponent_of(ring.generator(LAPLACE)), 2)
+            rest = square / s ** (2 * order)
+            # That of a root is a product with one that is there: s*Z/T for Z = sqrt(T*mu).
+            root = None if odd else tf.radicals.root(rest) if tf.radicals else tf.radicals.either_root(rest)
+            if root is not None:
+                images[law.wavenumbers[0]] = root * s**order
     if not any(tf.ratio.depends_on(wave) for wave in images):
         return tf
     plain = composed(tf.ratio, images).map_factors(ring, partial(with_squares, ring))
+    if tf.radicals:
+        plain = tf.radicals.in_lowest_terms(plain)[0]
     return replace(tf, reduced=plain, parts=None)
 
 

@@ -235,6 +235,13 @@ class _Signs:
     def _sum(self, terms: Sequence[Expression]) -> Expression:
         """Return a sum as it is written in the model, or turned if it is negative."""
         turned = [negative(t) for t in terms]
+        first = terms[0]
+        if (
+            isinstance(first, Call)
+            and first.name == "cosh"
+            and (*terms[1:],) == (replace(first, name="sinh"),)
+        ):
+            return replace(first, name="exp")
         if (as_written := self.written.get(_texts(terms))) is not None:
             return as_written
         if (as_written := self.written.get(_texts(turned))) is not None:
@@ -427,9 +434,34 @@ def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression
                 if n and n == under.get(cofactor, 0):
                     above[replace(call, name=ratio)] = n
                     del above[call], under[cofactor]
+        for above, under in (sides, sides[::-1]):
+            for call in [c for c, n in above.items() if isinstance(c, Call) and (c.name, n) == (other, 1)]:
+                sums = [b for b in under if isinstance(b, Sum) and call in nodes(b)]
+                made = _over(sums[0], call, one, ratio) if len(sums) == 1 and under[sums[0]] == 1 else None
+                if made is not None:
+                    del above[call], under[sums[0]]
+                    under[made[1]] = 1
+                    front, below = (front, below * made[0]) if under is sides[1] else (front * made[0], below)
+    for call in [c for c in sides[1] if isinstance(c, Call) and c.name == "exp"]:
+        if isinstance(call.argument, Name):  # exp(q), which stood as cosh(q) + sinh(q)
+            sides[0][Call("exp", negative(call.argument))] = sides[1].pop(call)
     if not front or sides == [powers, divisors]:
         return num, den
-    return of_powers(front, sides[0]), of_powers(below, sides[1])
+    front /= below
+    return of_powers(Fraction(front.numerator), sides[0]), of_powers(Fraction(front.denominator), sides[1])
+
+
+def _over(total: Sum, call: Call, one: str, ratio: str) -> tuple[int, Expression] | None:
+    """Return n and ``a + b*tanh(q)`` for ``n*(a*cosh(q) + b*sinh(q))``, None for other sums."""
+    terms = [powers_of(t) for t in total.terms]
+    whole = gcd(*(x.numerator for x, _ in terms)) if all(x.denominator == 1 for x, _ in terms) else 1
+    other = replace(call, name=one)
+    for _, powers in terms:
+        degrees = powers.pop(call, 0), powers.pop(other, 0)
+        if sum(degrees) != 1 or 1 not in degrees or any(n in (call, other) for b in powers for n in nodes(b)):
+            return None
+        powers.update({replace(call, name=ratio): 1} if degrees[1] else {})
+    return whole, sum_of([of_powers(x / whole, p) for x, p in terms])
 
 
 def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:

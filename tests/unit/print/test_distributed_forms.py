@@ -671,3 +671,72 @@ outputs.Y = "b"
     assert den == f"8*EI*mu_1^3*({below})"
     first, second = (f"(cosh({q}) + cos({q}) {sign} 2)" for q, sign in (("q_1", "-"), ("q_2", "+")))
     assert num == f"{first}*(sinh(q_2) - sin(q_2)) + {second}*(sinh(q_1) - sin(q_1))"
+
+
+PLATE = """symflex = 1
+parameters = { C_0 = {}, k_t = {}, c = {}, rho = {}, A = {}, t = {} }
+definitions = { h = "k_t*sqrt(c*A/(t*C_0))/A" }
+inputs.q = { unit = "C" }
+outputs.V = "q/C_0 - A*h*(u(t) - u(0))"
+[fields.u]
+domain = ["0", "t"]
+equation = "c*u'' = rho*s^2*u"
+conditions = ["c*u'(0) = h*q", "c*u'(t) = h*q"]
+"""
+STRING = """symflex = 1
+parameters = { T = {}, mu = {}, L = {} }
+definitions = { Z = "sqrt(T*mu)" }
+inputs.F = { force = "x" }
+outputs.v = "s*far"
+elements.wire = { type = "string", between = ["x", "far"], N = "T", rhoA = "mu", l = "L" }
+elements.rest = { type = "damper", between = ["far", "ground"], b = "Z" }
+"""
+CABLE = """symflex = 1
+parameters = { L_1 = {}, C_1 = {}, l = {} }
+definitions = { Z_0 = "sqrt(L_1/C_1)" }
+inputs.v_s = { unit = "V" }
+outputs.v_l = "v(l)"
+[fields.line]
+domain = ["0", "l"]
+unknowns = ["v", "i"]
+equations = ["v' = -L_1*s*i", "i' = -C_1*s*v"]
+conditions = ["v(0) = v_s - Z_0*i(0)", "v(l) = Z_0*i(l)"]
+"""
+OPEN = (
+    CABLE.replace("- Z_0*i", "- R*i")
+    .replace("v(l) = Z_0*i(l)", "i(l) = 0")
+    .replace("l = {}", "l = {}, R = {}")
+)
+BRANCH = """symflex = 1
+parameters = { rho = {}, c = {}, S = {}, S_b = {}, l_1 = {}, l_2 = {}, l_b = {} }
+definitions = { Z = "rho*c/S" }
+inputs.q_in = { unit = "m^3/s" }
+outputs.p_out = "p2(l_2)"
+elements.j = { type = "flow_source", at = "junction", q = "q1(l_1) - q2(0) - q3(0)" }
+[fields]
+"""
+for n, area, ends in [
+    (1, "S", ["q1(0) = q_in", "p1(l_1) = junction"]),
+    (2, "S", ["p2(0) = junction", "p2(l_2) = Z*q2(l_2)"]),
+    (3, "S_b", ["p3(0) = junction", "q3(l_b) = 0"]),
+]:
+    rows = [f"p{n}' = -rho*s/{area}*q{n}", f"q{n}' = -{area}*s/(rho*c^2)*p{n}"]
+    length = ("l_1", "l_2", "l_b")[n - 1]
+    BRANCH += f'f{n} = {{ domain = ["0", "{length}"], unknowns = ["p{n}", "q{n}"], '
+    BRANCH += f"equations = {rows}, conditions = {ends} }}\n"
+
+
+def test_waves_print_as_in_books():
+    # A plate (Auld, Acoustic Fields and Waves, 1990): (1 - k_t^2*tanh(X)/X)/C_0. What is ended by its own
+    # impedance has no echo. An open line behind a source of R (Pozar, Microwave Engineering, 2012, 2.3), and
+    # a closed branch (Munjal, Acoustics of Ducts and Mufflers, 2014), by hand.
+    for text, expected in [
+        (PLATE, "(q_1 - k_t^2*tanh(q_1))/(C_0*q_1)"),
+        (STRING, "exp(-q)/Z"),
+        (CABLE, "exp(-q)/2"),
+        (OPEN, "Z_0/(R*sinh(q) + Z_0*cosh(q))"),
+        (BRANCH, "rho*c*exp(-q_2)/(S*exp(q_1) + S_b*cosh(q_1)*tanh(q_3))"),
+    ]:
+        (tf,) = pipeline.derive_all(pipeline.loads(text))
+        form = print_form(tf)
+        assert format_expression(quotient(form.num, form.den)) == expected
