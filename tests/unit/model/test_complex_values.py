@@ -59,6 +59,14 @@ def test_conjugate_pairs_are_real_filters_however_they_are_written():
     for given, num, den in [
         ({"definitions": SEISMOMETER, "blocks": {"H": table}}, [1, 15.15, 0, 0], seismic),
         ({"definitions": PAIR, "blocks": {"H": "25/((s - p)*(s - q))"}}, [25], QUADRATIC),
+        (
+            {
+                "definitions": {"p_1": "-0.888 + 0.888*j", "p_2": "-0.888 - 0.888*j"},
+                "blocks": {"H": "s^2/((s - p_1)*(s - p_2))"},
+            },
+            [1, 0, 0],
+            [1, 1.776, 1.577088],
+        ),
         ({"definitions": PAIR, "blocks": {"H": {"num": "25", "den": "(s - p)*(s - q)"}}}, [25], QUADRATIC),
         (
             {"definitions": PAIR, "blocks": {"H": {"num": ["25"], "den": ["1", "-(p + q)", "p*q"]}}},
