@@ -65,8 +65,7 @@ def locate_on_sheet(
 ) -> PoleZeroMap:
     """Find the poles and zeros on the principal sheet; ``locate`` finds those of functions without roots."""
     bound = _with_factors(bound)
-    model = replace(bound.source.model, blocks=())  # nothing is known of it in r
-    plain = replace(bound, source=replace(bound.source, model=model), is_of_model=False)
+    plain = replace(bound, is_of_model=False, is_of_s=False)  # nothing is known of its model in r
     whole = _part(plain, lambda f: _is_whole(bound, f), bound.sheets)
     mixed = _part(plain, lambda f: not _is_whole(bound, f), 1)
     count = region.count if isinstance(region, Modes) else getattr(region, "number", 0)

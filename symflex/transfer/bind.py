@@ -168,6 +168,7 @@ class BoundTransferFunction:
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
+    is_of_s: bool = True  # a root of s that stands in place of s is one; else it is the variable itself
     fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()  # constants that waves without inertia came down to
     # The function with all parameters, where numbers stood for some of them from the start.
     symbolic: TransferFunction | None = None
@@ -281,7 +282,8 @@ class BoundTransferFunction:
     @property
     def sheets(self) -> int:
         """Q where a root ``(s + c)^(1/q)`` stands in place of s; 1 where s does."""
-        return 1 if self.source.model.root is None else self.source.model.root.order
+        root = self.source.model.root
+        return root.order if root is not None and self.is_of_s else 1
 
     def in_root(self, size: float) -> float:
         """Return the largest ``abs(r)`` of a root of s up to an ``abs(s)`` [rad/s]; that without one."""
@@ -302,7 +304,7 @@ class BoundTransferFunction:
     def root(self) -> BoundRoot | None:
         """The root of s that stands in place of s, at the current precision."""
         root = self.source.model.root
-        if root is None:
+        if root is None or not self.is_of_s:
             return None
         values = {name: enclosure(value) for name, value in self.all_values}
         return BoundRoot(later(root.slope, values)(), later(root.shift, values)(), root.order)

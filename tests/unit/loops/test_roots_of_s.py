@@ -69,3 +69,9 @@ def test_a_branch_point_elsewhere_leaves_the_verdict_at_the_gain_itself():
 def test_what_is_inside_a_root_of_s_is_no_gain():
     with pytest.raises(ModelError, match="cannot be a gain"):
         stable("1/(s*(1 + (s*K)^0.8))", "K = 3", "K", 10)
+
+
+def test_a_loop_around_a_diffusive_line_that_no_gain_destabilises_has_no_boundary():
+    # tanh(sqrt(s))/sqrt(s) is passive: its phase stays above -90 degrees.
+    found = stable("K*tanh(5*sqrt(s))/sqrt(s)", "K = 1", "K", 60)
+    assert (found.boundaries, found.verdict.word) == ((), "stable")
