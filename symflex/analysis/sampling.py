@@ -143,10 +143,6 @@ class _Continuous:
     def order(self) -> int:
         return int(self.denominator.degree())
 
-    def __call__(self, s: acb) -> acb:
-        """Return the value at s of the only term, without its dead time."""
-        return self.terms[0].numerator(s) / self.denominator(s)
-
 
 def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
     r"""Return a transfer function as it is seen, or is to be computed, at samples.
@@ -315,10 +311,9 @@ def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling
         gain = gain / (k - root.enclosure()) ** root.multiplicity
     surplus = len(poles) - sum(root.multiplicity for root in given.zeros)
     zeros, z = (*zeros, *(acb(-1) for _ in range(surplus))), TRIED_AT
-    value = (
-        gain * prod((z - zero for zero in zeros), start=acb(1)) / prod((z - p for p in poles), start=acb(1))
-    )
-    _check(bound, value - given(k * (z - 1) / (z + 1)), value)
+    value = gain * prod((z - r for r in zeros), start=acb(1)) / prod((z - p for p in poles), start=acb(1))
+    s = k * (z - 1) / (z + 1)
+    _check(bound, value - given.terms[0].numerator(s) / given.denominator(s), value)
     return _product(gain, zeros, poles, late)
 
 
