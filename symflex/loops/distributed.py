@@ -231,11 +231,11 @@ class DistributedFactors:
         if not all(root.certified for root in seen):
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
         if side.is_finite:
-            known, _ = on_sheet(side.roots, self.bound)
-            if any(root.re.contains(0) and not root.is_zero for root in known):
+            roots, _ = on_sheet(side.roots, self.bound)
+            if self.bound.sheets > 1 and any(r.re.contains(0) and not r.is_zero for r in roots):
                 message = "it could not be decided on which side of the imaginary axis a pole lies"
                 raise UncertifiedError(Diagnostic("SF802", message))
-            return PoleCount(count_right(known), zeros)
+            return PoleCount(count_right(roots), zeros)
         if self.passive is not None and self.passive.rests:
             return PoleCount(0, zeros)
         for circle in [self._circle] if self._circle else self._circles:
