@@ -155,10 +155,10 @@ SHARES = (1, 0.7, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class LoopAtOrigin:
-    """A and B near 0: ``s^order`` times a power series each, of which no other root lies near."""
+    """The parts near 0: ``s^order`` times a power series each, of which no other root lies near."""
 
-    orders: tuple[int, int]  # of the roots of A and B at 0, exact
-    series: tuple[LocalSeries, LocalSeries]  # of A and B
+    orders: tuple[int, ...]  # of the roots of the parts at 0, exact
+    series: tuple[LocalSeries, ...]  # of the parts, A and B
     ratio: Fraction | None = None  # A/B at 0 where that is known to be a number, neither zero nor infinite
     turn: acb | None = None  # the direction of the axis where that is not j's
 
@@ -213,6 +213,18 @@ class LoopAtOrigin:
         other = other.conjugate()
         return (one * b + a * other + omega * one * other).imag
 
+    def beside(self, omega: arb) -> list[acb]:
+        """Return real parts, and imaginary ones over omega, of the parts over a power of s they share."""
+        least, beside = min(self.orders), []
+        for i, order in enumerate(self.orders):
+            (u, v), power = self._parts(i, omega), order - least
+            turn = (-1) ** (power // 2)
+            if power % 2:
+                beside.append(turn * acb(-(omega ** (power + 1)) * v, omega ** (power - 1) * u))
+            else:
+                beside.append(turn * omega**power * acb(u, v))
+        return beside
+
     def leaves_one(self, gain: Fraction, radius: arb) -> bool:
         """Tell whether the loop gain is exactly one at 0, and nowhere else on the axis within a radius.
 
@@ -264,7 +276,7 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
     """
     ring = function.bound.ratio.ring
     orders, parts = [], []
-    for polynomial in (function.a, function.b):
+    for polynomial in function.parts:
         whole = Factored.polynomial(ring, polynomial)
         try:
             part = KernelFunction(function.bound, whole)
@@ -296,7 +308,7 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             scaled = tuple(scale * coefficient for coefficient in each.coefficients)
             series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
         turn = function.turn if function.bound.sheets > 1 else None
-    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function), turn)
+    return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(function), turn)
 
 
 def _ratio_at_zero(function: LoopFunction) -> Fraction | None:

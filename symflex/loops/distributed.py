@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
-from math import exp, log
+from math import exp, log, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -21,9 +21,11 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
+from symflex.loops.axis import ORIGIN_BITS, AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
+from symflex.loops.gain_functions import GainFunctions
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
+from symflex.loops.two_unknowns import GainTree, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, right_tail
 from symflex.roots.distributed.side import Side
@@ -33,10 +35,14 @@ from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import count_roots
 from symflex.roots.sheets import on_sheet
+from symflex.transfer.enclose import first_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from flint import arb_series
+
+    from symflex.loops.loop import Loop
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128
@@ -45,6 +51,8 @@ OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
 """What is said where delayed terms leave poles without a bound."""
 HALVINGS = 12
 """Halvings of a range: its end is then known to a few hundredths of the gain's own value."""
+SLIVER = 40
+"""Halvings of a range: what is left may be missing at an end of it."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
 WITHOUT_WAVES = 1e-6
@@ -79,6 +87,7 @@ class DistributedFactors:
     reasons: list[str] = field(default_factory=list)
     method: str = "argument principle"
     is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
+    loop: Loop | None = None  # whose factors they are
 
     @property
     def where_no_delay_leads(self) -> DistributedFactors:
@@ -102,24 +111,49 @@ class DistributedFactors:
 
     @cached_property
     def with_gain(self) -> tuple[LoopFunction, ...]:
-        """A and B of every factor that depends on the gain."""
-        return tuple(
-            LoopFunction.of(self.bound, f.coefficients[0], f.coefficients[1])
-            for f in self.factors
-            if f.degree == 1
-        )
+        """A and B of every factor that depends on the gain, or all parts of another."""
+        return tuple(self._parts(factor) for factor in self.factors if factor.degree)
+
+    def _parts(self, factor: GainPolynomial) -> LoopFunction:
+        if factor.degree > 1:
+            return LoopFunction.of(self.bound, *(c for _, c in factor.parts))
+        zero = Factored.number(self.bound.ratio.ring, 0)
+        return LoopFunction.of(self.bound, *[*factor.coefficients, zero][:2])
 
     @cached_property
     def _tails(self) -> list[float | str]:
-        low, high = (ball(x) for x in self.limits)
         tails = []
         for factor in self.factors:
             if factor.multiplicity > 0:
-                b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
-                function = LoopFunction.of(self.bound, factor.coefficients[0], b)
-                weights = (acb(1), acb(low.union(high)))
-                tails.append(right_tail(self.bound, (function.a, function.b), weights, self.scale))
+                zero = Factored.number(self.bound.ratio.ring, 0)
+                whole = (
+                    self._parts(factor)
+                    if factor.degree
+                    else LoopFunction.of(self.bound, factor.coefficients[0], zero)
+                )
+                weights = (
+                    [acb(w) for w in self._tree(factor).values[0]] if factor.degree else [acb(1), acb(0)]
+                )
+                tails.append(right_tail(self.bound, whole.parts, weights, self.scale))
         return tails
+
+    def _tree(self, factor: GainPolynomial) -> GainTree:
+        """Return the range of the gain with what the parts of a factor are multiplied by."""
+        functions = self.loop.functions if self.loop is not None and factor.exponents else None
+        functions = functions or GainFunctions(self.gain, {}, {}, None)
+        keys = [key for key, _ in factor.parts] if factor.degree > 1 else [(0,), (1,)]
+
+        def weights(gain: arb) -> list[arb_series]:
+            values, one = functions.at(gain), first_order(arb(1))
+            return [prod((values[i] ** e for i, e in enumerate(key) if e), start=one) for key in keys]
+
+        # Next to an end functions may have no bound, as logarithms have none at zero.
+        ends = [ball(x) for x in self.limits]
+        sliver = (ends[1] - ends[0]) / 2**SLIVER
+        for i, step in enumerate((sliver, -sliver)):
+            if not all(w[0].is_finite() for w in weights(ends[i].union(ends[i] + step))):
+                ends[i] = ends[i] + step
+        return GainTree(weights, ends[0].union(ends[1]))
 
     @cached_property
     def radius(self) -> tuple[float, bool]:
@@ -146,7 +180,8 @@ class DistributedFactors:
     def passive(self) -> PassiveLoop | None:
         """How the loop is closed, where it is proved to be passive for every gain in the range."""
         source = self.bound.source
-        if self.limits[0] < 0 or self.bound.sheets > 1:
+        is_straight = all(factor.degree <= 1 for factor in self.factors)
+        if self.limits[0] < 0 or self.bound.sheets > 1 or not is_straight:
             return None
         return passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
 
@@ -170,28 +205,30 @@ class DistributedFactors:
     def _without_end(self) -> float:
         return self._function(self.limits[1]).frequency_of(WAVES) if self.up_to is None else self.up_to
 
-    def _product(self, gain: Fraction, *, hidden: bool = True) -> Factored:
-        total = Factored.number(self.bound.ratio.ring, 1)
+    def _product(self, gain: Fraction, *, hidden: bool = True) -> tuple[BoundTransferFunction, Factored]:
+        loop = self.loop if any(factor.exponents for factor in self.factors) else None
+        bound = self.bound if loop is None else loop.bound_at(gain)
+        total = Factored.number(bound.ratio.ring, 1)
         for factor in self.factors:
             if hidden or not factor.is_hidden:
-                total = total * factor.at(gain) ** factor.multiplicity
-        return total
+                total = total * factor.value_in(bound, gain, loop) ** factor.multiplicity
+        return bound, total
 
     def _function(self, gain: Fraction) -> KernelFunction:
-        whole = self._product(gain)
+        bound, whole = self._product(gain)
         s = whole.ring.context.gen(0)
-        return KernelFunction(*without_squares(self.bound, whole.filter(lambda f: f != s)))
+        return KernelFunction(*without_squares(bound, whole.filter(lambda f: f != s)))
 
     def is_mirrored(self, function: LoopFunction) -> bool:
         """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""
         if self.bound.sheets > 1:
             return False  # what mirrors a pole lies on another sheet
         ring = self.bound.ratio.ring
-        parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in (function.a, function.b)]
+        parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in function.parts]
         if not all(part.is_even for part in parts):
             return False
-        powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
-        return powers[0] == powers[1]
+        powers = [{int(m[0]) % 2 for m in f.monoms()} for f in function.parts]
+        return all(each == powers[0] for each in powers)
 
     def last_crossover(self, function: LoopFunction, gain: arb) -> float:
         """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
@@ -216,16 +253,18 @@ class DistributedFactors:
         pole lies on the path of the count.
         """
         end = self.bound.from_root(self._circle)
-        changes = [c.change for c in crossed if c.change != 0 and not c.frequencies[0] > end]
+        changes = [
+            c.change for c in crossed if c.change != 0 and not (c.frequencies and c.frequencies[0] > end)
+        ]
         known = [change for change in changes if change is not None]
         is_proved = self._circle > 0 and not self.reasons[not self.radius[1] :]
         if below is not None and is_proved and len(known) == len(changes):
             return PoleCount(below.right + sum(known), below.axis)
-        side = Side(self.bound, self._product(gain), COUNT_DIGITS)
+        side = Side(*self._product(gain), COUNT_DIGITS)
         # Where wavenumbers vanish, what cancelled may have a root at 0 that is no pole.
         origin = side
         if any(factor.is_hidden for factor in self.factors):
-            origin = Side(self.bound, self._product(gain, hidden=False), COUNT_DIGITS)
+            origin = Side(*self._product(gain, hidden=False), COUNT_DIGITS)
         seen = [root for root in origin.roots if root.on_imaginary_axis or not origin.is_finite]
         zeros = count_roots(seen)
         if not all(root.certified for root in seen):
@@ -266,6 +305,8 @@ class DistributedFactors:
 
         if self.radius[1]:
             return self._circles[0]
+        if any(factor.degree > 1 for factor in self.factors):
+            return 0.0
         for circle in self._circles:
             with suppress(UndecidedError):
                 for function in self.with_gain:
@@ -275,7 +316,57 @@ class DistributedFactors:
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
-        return [c for function in self.with_gain for c in self._crossings(function, digits)]
+        crossings: list[Crossing] = []
+        for factor in self.factors:
+            if factor.degree == 1:
+                crossings += self._crossings(self._parts(factor), digits)
+            elif factor.degree:
+                crossings += self._in_two_unknowns(factor, digits)
+        return crossings
+
+    def _in_two_unknowns(self, factor: GainPolynomial, digits: int) -> list[Crossing]:
+        """Return the same of a factor that is no straight line in the gain."""
+        function, tree, crossings = self._parts(factor), self._tree(factor), list[Crossing]()
+        ends = [ball(x) for x in self.limits]
+        slivers = [ends[0].union(tree.gain.lower()), ends[1].union(tree.gain.upper())]
+        crossings += [
+            Crossing(gain, (), change=None)
+            for gain in slivers
+            if gain.rad() > tree.gain.rad() / 2 ** (SLIVER + 1)
+        ]
+        origin, first = loop_at_origin(function), None
+        with precision(ORIGIN_BITS):
+            radius = arb(0) if origin is None else origin.series[0].reach / 4
+            for _ in range(SHRINKINGS if origin is not None else 0):
+                if origin is not None and left([tree], origin.beside(arb(0).union(radius))) == []:
+                    first = float(radius.lower())
+                    break
+                radius = radius / 2
+        if origin is None or first is None:
+            self.reasons.append("the motion of poles next to s = 0 is not proved")
+            first = self.scale * NEXT_TO_ZERO
+        if origin is not None:
+            start = origin.beside(arb(0))
+
+            def at_zero(gain: arb) -> arb_series:
+                terms = (w * c.real for c, w in zip(start, tree.weights(gain), strict=True))
+                return sum(terms, first_order(arb(0)))
+
+            zeros, slivers = GainFunctions(self.gain, {}, {}, None).zeros(at_zero, self.limits, digits)
+            crossings += [Crossing(gain, (arb(0),), change=None) for gain in zeros]
+            crossings += [Crossing(gain, (arb(0),), is_open=True, change=None) for gain in slivers]
+        points = find_axis_points(function, tree, (first, self.axis_end * 1.01), digits)
+        if points is None:
+            self.reasons.append("the search for crossings of the imaginary axis takes too long")
+            return crossings
+        for omega, gain in points.undecided:
+            if not any(gain.overlaps(ball(end)) for end in self.limits):
+                place = float((omega.mid() / (2 * arb.pi())).mid())
+                self.reasons.append(
+                    f"it could not be decided whether poles cross the axis near {place:.6g} Hz"
+                )
+        crossings += [Crossing(gain, (omega,), is_open=True, change=None) for omega, gain in points.undecided]
+        return crossings + [Crossing(gain, (omega,), change=None) for omega, gain in points.proved]
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
         crossings: list[Crossing] = []

@@ -190,13 +190,13 @@ def _factors(
     lumped = [LumpedFactor.of(loop.bound, factor, loop, (low, high)) for factor in plain if factor.degree]
     if not mixed:
         return lumped, None, (low, high)
-    if any(factor.degree > 1 for factor in mixed):
-        message = f"a loop with beams, rods or delays must be linear in '{loop.gain.name}'"
-        hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
-        raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)
-    along = DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to)
+    if loop.bound.sheets > 1 and any(factor.degree > 1 for factor in mixed):
+        message = f"a loop with roots of s must be linear in '{loop.gain.name}'"
+        hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
+        raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
+    along = DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to, loop=loop)
     if limits is None:
         along = along.where_no_delay_leads
     return lumped, along, along.limits

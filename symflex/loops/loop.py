@@ -68,12 +68,16 @@ class GainPolynomial:
         """Return the factor for one value of the gain, a function of s."""
         return sum((c * gain**i for i, c in enumerate(self.coefficients[1:], 1)), self.coefficients[0])
 
-    def bound_at(self, loop: Loop, gain: Fraction) -> tuple[BoundTransferFunction, Factored]:
-        """Return the same with what carries its ring, where functions of the gain have the values there."""
-        if not self.exponents or self.symbolic is None:
-            return loop.bound, self.at(gain)
-        bound = loop.bound_at(gain)
-        return bound, bind_polynomials(loop.source, bound, [self.symbolic])[0]
+    @property
+    def parts(self) -> list[tuple[tuple[int, ...], Factored]]:
+        """The terms that are not zero."""
+        return [(exponents, c) for exponents, c in self.terms if not c.is_zero]
+
+    def value_in(self, bound: BoundTransferFunction, gain: Fraction, loop: Loop | None) -> Factored:
+        """Return the factor for one gain; where a loop is given, over the ring of what is bound for it."""
+        if loop is None or self.symbolic is None:
+            return self.at(gain)
+        return bind_polynomials(loop.source, bound, [self.symbolic])[0]
 
 
 @dataclass(frozen=True)
@@ -228,25 +232,32 @@ class LoopValue:
 
 @dataclass(frozen=True, eq=False)
 class LoopFunction:
-    """A and B of one factor ``A + K B`` of a characteristic function."""
+    """A and B of one factor ``A + K B`` of a characteristic function, or more parts of another factor."""
 
     bound: BoundTransferFunction  # whose ring and kernels they have
-    # a and b: polynomials over that ring, without common denominator.
+    # Polynomials over that ring, without common denominator.
     a: fmpz_mpoly
     b: fmpz_mpoly
+    others: tuple[fmpz_mpoly, ...] = ()
 
     @classmethod
-    def of(cls, bound: BoundTransferFunction, a: Factored, b: Factored) -> LoopFunction:
-        """Return two functions with the same quotient that are polynomials over the ring."""
+    def of(cls, bound: BoundTransferFunction, *values: Factored) -> LoopFunction:
+        """Return functions with the same quotients that are polynomials over the ring."""
         ring = bound.ratio.ring
         below = Factored.number(ring, 1)
-        for value in (a, b):
+        for value in values:
             for factor, exponent in value.factors:
                 missing = -exponent - below.exponent_of(factor)
                 if missing > 0:
                     below = below * Factored(ring, Fraction(1), ((factor, missing),))
-        scale = lcm(a.unit.denominator, b.unit.denominator)
-        return cls(bound, (a * below * scale).expand(), (b * below * scale).expand())
+        scale = lcm(*(value.unit.denominator for value in values))
+        a, b, *others = ((value * below * scale).expand() for value in values)
+        return cls(bound, a, b, tuple(others))
+
+    @property
+    def parts(self) -> tuple[fmpz_mpoly, ...]:
+        """All of them."""
+        return self.a, self.b, *self.others
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:
@@ -254,13 +265,14 @@ class LoopFunction:
         return arguments_of(self.bound.kernels) or ()
 
     @cached_property
-    def sums(self) -> tuple[ExponentialSum, ExponentialSum] | None:
-        """A and B as sums of exponentials, ``None`` where wavenumbers have no formula."""
+    def sums(self) -> tuple[ExponentialSum, ...] | None:
+        """The parts as sums of exponentials, ``None`` where wavenumbers have no formula."""
         if arguments_of(self.bound.kernels) is None:
             return None
         ring, kernels = self.bound.ratio.ring, self.bound.kernels
-        a, b = (exponential_sum(ring, kernels, self.arguments, f) for f in (self.a, self.b))
-        return None if a is None or b is None else (a, b)
+        sums = [exponential_sum(ring, kernels, self.arguments, f) for f in self.parts]
+        known = tuple(each for each in sums if each is not None)
+        return known if len(known) == len(sums) else None
 
     @cached_property
     def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
@@ -272,7 +284,7 @@ class LoopFunction:
             with precision(bits):
                 kernels = self.bound.kernel_values()
             self._evaluators[bits] = (
-                KernelFactors(kernels, (self.a, self.b))
+                KernelFactors(kernels, self.parts)
                 if self.sums is None
                 else ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
             )
@@ -284,7 +296,7 @@ class LoopFunction:
         return acb(0, arb.pi() / (2 * self.bound.sheets)).exp()
 
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle.
+        """Return A and B on a ball of frequencies, and in its middle, as :meth:`parts_around`.
 
         Of functions of a root of s, slopes are those of a variable whose axis is that of j.
         """
@@ -298,24 +310,25 @@ class LoopFunction:
             return around, middle
 
     def around(self, s: acb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball, and those in its middle.
+        """Return A and B on a ball and in its middle, as :meth:`parts_around`."""
+        (a, b), (a_mid, b_mid) = self.parts_around(s, bits)
+        return LoopValue(*a, *b), LoopValue(*a_mid, *b_mid)
 
-        The first are enclosures by the mean value theorem where these are narrower.
+    def parts_around(self, s: acb, bits: int) -> tuple[Sequence[tuple[acb, acb]], Sequence[tuple[acb, acb]]]:
+        """Return values and slopes in s on a ball, and those in its middle.
+
+        The first values are enclosures by the mean value theorem where these are narrower.
         """
         with precision(bits):
             middle = s.mid()
             sums = self.evaluator(bits)
             around = sums.at(expansion(s))
             centre = sums.at(expansion(middle), around)
-            less = sums.largest((0, 1), centre)
-            values = [[sums.value(i, place, less) for i in (0, 1)] for place in (around, centre)]
-            (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
-            off = s - middle
-            narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
-            return (
-                LoopValue(narrow[0], a[1], narrow[1], b[1]),
-                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1]),
-            )
+            which = range(len(self.parts))
+            less = sums.largest(which, centre)
+            values = [[_derivatives(sums.value(i, place, less)) for i in which] for place in (around, centre)]
+            off, pairs = s - middle, zip(*values, strict=True)
+            return [(_narrower(x[0], mid[0] + x[1] * off), x[1]) for x, mid in pairs], values[1]
 
     def is_blurred(self, omega: arb, bits: int = 96) -> bool:
         """Tell whether next to nothing is known of A or B on a hundredth of a frequency."""

@@ -269,10 +269,9 @@ class LumpedFactor:
 
         SF802 when a root cannot be told from one on the axis.
         """
-        bound, whole = (
-            (self.bound, self.factor.at(gain)) if self.loop is None else self.factor.bound_at(self.loop, gain)
-        )
-        factors = [(f, e) for f, e in whole.factors if e > 0]
+        loop = self.loop if self.factor.exponents else None
+        bound = self.bound if loop is None else loop.bound_at(gain)
+        factors = [(f, e) for f, e in self.factor.value_in(bound, gain, loop).factors if e > 0]
         roots = find_polynomial_roots(problem_of(bound, factors), COUNT_DIGITS)
         if any(root.re.contains(0) and not root.on_imaginary_axis for root in roots):
             message = "it could not be decided on which side of the imaginary axis a pole lies"

@@ -154,3 +154,45 @@ def test_a_gain_whose_own_value_lowers_the_order_is_no_obstacle(value):
     found = model.stability("K")
     assert found.stable == ((-inf, 1),)
     assert found.proved.nominal == Fraction(value)
+
+
+CHANNELS = """
+symflex = 1
+[parameters]
+K = "0.8 1/s"
+w = "0.5 1/s"
+T = "1 s"
+[equations]
+unknowns = ["x", "y"]
+equations = ["s*x = K*exp(-s*T)*(r - x) + w*y", "s*y = -K*exp(-s*T)*y - w*x"]
+[inputs]
+r = {}
+[outputs]
+X = "x"
+"""
+
+
+def test_one_gain_of_two_channels_with_a_dead_time_has_two_boundaries_at_one_frequency():
+    # s + K exp(-s T) = -+ j w: at omega T = pi/2 poles cross for K = pi/2 - w and for K = pi/2 + w.
+    found = symflex.loads(CHANNELS).stability("K", (0, 4))
+    assert found.certified
+    gains = [float(boundary.gain) for boundary in found.boundaries]
+    assert gains == [pytest.approx(np.pi / 2 + w, rel=1e-14) for w in (-0.5, 0.5)]
+    assert [b.entering for b in found.boundaries] == [2, 2]
+
+
+@pytest.mark.parametrize(
+    ("function", "highest"),
+    [("K^2", np.sqrt(np.pi)), ("sqrt(K)", np.pi**2), ("exp(K) - 1", np.log(1 + np.pi))],
+)
+def test_with_a_dead_time_an_integrator_is_stable_up_to_pi_over_twice_the_time(function, highest):
+    # s + f(K) exp(-s T) with T = 0.5 s: f < pi.
+    model = symflex.Model(
+        parameters={"K": {"value": 1}, "T": "0.5 s", "tau": "1 s"},
+        signals={"y": f"({function})*exp(-s*T)*(r - y)/(tau*s)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    found = model.stability("K", (0, 1.2 * highest))
+    assert found.certified
+    assert float(found.stable[0][1]) == pytest.approx(highest, rel=1e-12)
