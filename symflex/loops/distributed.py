@@ -256,10 +256,10 @@ class DistributedFactors:
         changes = [
             c.change for c in crossed if c.change != 0 and not (c.frequencies and c.frequencies[0] > end)
         ]
-        known = [change for change in changes if change is not None]
+        moved = [change for change in changes if change is not None]
         is_proved = self._circle > 0 and not self.reasons[not self.radius[1] :]
-        if below is not None and is_proved and len(known) == len(changes):
-            return PoleCount(below.right + sum(known), below.axis)
+        if below is not None and is_proved and len(moved) == len(changes):
+            return PoleCount(below.right + sum(moved), below.axis)
         side = Side(*self._product(gain), COUNT_DIGITS)
         # Where wavenumbers vanish, what cancelled may have a root at 0 that is no pole.
         origin = side
