@@ -117,7 +117,7 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
         message = f"the characteristic function is not linear in '{name}'"
         hint = (
             f"use the parameter as the gain of one loop, or follow the poles by value: 'symflex sweep FILE "
-            f"--over {name}=FROM:TO:lin:20 -o RUN.csv', then 'symflex plot sweep'"
+            f"--over {name}=FROM:TO:lin:20 -o RUN.npz', then 'symflex plot sweep RUN.npz'"
         )
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
     for factor in loop.factors:
