@@ -442,6 +442,22 @@ class AuditOptions:
     as_json: bool = option(False, "--json", **JSON)
 
 
+SEGMENTS: Final = {
+    "least": 1,
+    "metavar": "N",
+    "help": "Records in time: average so many segments by Welch's method.  [default: as the input asks]",
+}
+ESTIMATOR: Final = {
+    "choices": ("h1", "h2"),
+    **SHOWN,
+    "help": "Records in time: h1 for noise at the output, h2 for noise at the input.",
+}
+WINDOW_OF_DATA: Final = {
+    "choices": ("hann", "none"),
+    "help": "Time window of the estimate, if the file does not give it; of a record in time the one to use.",
+}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FitOptions:
     """Options of ``symflex fit``. Python gives data in place of their paths, too."""
@@ -489,7 +505,7 @@ class FitOptions:
         "--columns",
         metavar="WORDS",
         help="Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
-        "or s21.",
+        "s21; of records in time t,u,y.",
     )
     averages: float | None = option(
         None,
@@ -498,12 +514,9 @@ class FitOptions:
         least=1,
         help="Number of independent averages, if the file does not give it.",
     )
-    window: str | None = option(
-        None,
-        "--window",
-        choices=("hann", "none"),
-        help="Time window of the estimate, if the file does not give it.",
-    )
+    window: str | None = option(None, "--window", **WINDOW_OF_DATA)
+    segments: int | None = option(None, "--segments", **SEGMENTS)
+    estimator: str = option("h1", "--estimator", **ESTIMATOR)
     driving: str | None = option(
         None,
         "--driving",
@@ -559,6 +572,10 @@ class MeasureOptions:
         help="Corner of the accelerometer [Hz]; 0 for none.",
     )
     seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
+    columns: str = option("", "--columns", metavar="WORDS", help="Columns of a record in time: t,u,y.")
+    window: str | None = option(None, "--window", **WINDOW_OF_DATA)
+    segments: int | None = option(None, "--segments", **SEGMENTS)
+    estimator: str = option("h1", "--estimator", **ESTIMATOR)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from symflex.api.model import Model, loads
-from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
+from symflex.data.measurement import Estimate, MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
 
 if TYPE_CHECKING:
@@ -150,6 +150,8 @@ def fit(
     delay: bool = False,
     slope: int | None = None,
     allow_outside: Sequence[str | Path] = (),
+    estimator: str = "h1",
+    segments: int | None = None,
 ) -> Fit:
     """Fit resonances to measured frequency responses.
 
@@ -186,6 +188,10 @@ def fit(
         Without a base: the power of s; by default the best.
     allow_outside : sequence of str or Path
         Folders that ``model`` blocks of the base may read besides its own.
+    estimator : str
+        Records in time: ``h1`` for noise at the output, ``h2`` for noise at the input.
+    segments : int, optional
+        Records in time: average so many segments by Welch's method; by default as the input asks.
 
     Raises
     ------
@@ -218,8 +224,12 @@ def fit(
 
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
+    estimate = Estimate(estimator, segments, window or "hann")
     for one in given:
-        responses += [one] if isinstance(one, MeasuredResponse) else read_measurement(one, columns)
+        if isinstance(one, MeasuredResponse):
+            responses.append(one)
+        else:
+            responses += read_measurement(one, columns, estimate)
     asked = FitOptions(
         base=base,
         tfs=[tf] if isinstance(tf, str) else list(tf),

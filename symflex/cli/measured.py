@@ -15,7 +15,7 @@ from symflex.options import FitOptions, MeasureOptions
 
 if TYPE_CHECKING:
     from symflex.data.fitting import ResonanceFit
-    from symflex.data.measurement import MeasuredResponse
+    from symflex.data.measurement import Estimate, MeasuredResponse
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
@@ -114,13 +114,20 @@ def _draw(resonances: ResonanceFit, given: FitOptions) -> None:
         note(f"wrote {given.order_figure}")
 
 
+def _estimate(given: FitOptions | MeasureOptions) -> Estimate:
+    """Return how responses of records in time are estimated."""
+    from symflex.data.measurement import Estimate
+
+    return Estimate(given.estimator, given.segments, given.window or "hann")
+
+
 def _read(given: FitOptions) -> list[MeasuredResponse]:
     """Return the responses of all files, and print what was guessed of each."""
     from symflex.data.measurement import read_measurement
 
     read: list[MeasuredResponse] = []
     for path in given.data:
-        responses = read_measurement(str(path), given.columns)
+        responses = read_measurement(str(path), given.columns, _estimate(given))
         for guess in dict.fromkeys(guess for one in responses for guess in one.guesses):
             note(f"{path}: {guess}")
         read += responses
@@ -129,20 +136,45 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
 
 @command_of("measure", MeasureOptions)
 def measure(spec: Specification, given: MeasureOptions) -> int:
-    """Write a synthetic measurement of a transfer function of SPEC.
+    """Write the frequency response of a record in time, or a synthetic measurement of a model.
 
-    Band-limited noise drives the model, and a sensor adds noise to the response. Overlapping records with a
-    Hann window are averaged to an H1 estimate and its coherence. The file says that its data are synthetic.
-    The same seed gives the same file.
+    A record in time has a column of time and one for each channel, as for 'symflex fit'. Its response is
+    estimated as its input asks: from a step, an impact, whole periods, or by Welch's method. --tf OUT/IN
+    chooses one of several.
+
+    If SPEC is a specification, band-limited noise drives the model, and a sensor adds noise to the response.
+    Overlapping records with a Hann window are averaged to an H1 estimate and its coherence. The file says
+    that its data are synthetic. The same seed gives the same file.
     """
     from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes
     from symflex.files.write import write_atomically
 
     check_place(given.output, WRITERS)
+    if not spec.path.endswith(".toml") and (record := _record(spec.path, given)) is not None:
+        write_atomically(Path(given.output), measurement_bytes(record, given.output))
+        note(f"wrote {given.output}: {record.values.size} lines of {record.name}")
+        return 0
     model = spec.load()
     tf = "/".join(first_pair(model, given.tf, "measuring"))
     measured = measured_of(model, replace(given, tf=tf, rolloff=given.rolloff or None))
     write_atomically(Path(given.output), measurement_bytes(measured, given.output))
     note(f"wrote {given.output}: {measured.values.size} lines of SYNTHETIC data")
     return 0
+
+
+def _record(path: str, given: MeasureOptions) -> MeasuredResponse | None:
+    """Return the response of a record in time that ``--tf`` names, ``None`` if the file is none."""
+    from symflex.data.measurement import prepared, responses_in_time
+
+    every = responses_in_time(path, given.columns, _estimate(given))
+    if every is None:
+        return None
+    for guess in dict.fromkeys(guess for one in every for guess in one.guesses):
+        note(f"{path}: {guess}")
+    chosen = [one for one in every if given.tf in (None, one.name)]
+    if len(chosen) != 1:
+        names = ", ".join(one.name for one in every)
+        raise UsageError(Diagnostic("SF902", f"choose a response with --tf: {names}"))
+    (response,) = prepared(chosen, given.band)
+    return response

@@ -1,5 +1,13 @@
 """Measured frequency responses: reading, writing, and making synthetic ones."""
 
-from symflex.data.measurement.files import READERS, WRITERS, measurement_bytes, prepared, read_measurement
+from symflex.data.measurement.estimate import Estimate
+from symflex.data.measurement.files import (
+    READERS,
+    WRITERS,
+    measurement_bytes,
+    prepared,
+    read_measurement,
+    responses_in_time,
+)
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.data.measurement.synthesise import MeasurementPlan, synthesise

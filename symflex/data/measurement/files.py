@@ -18,7 +18,9 @@ import numpy as np
 
 from symflex.data.measurement.arrays import format_of, read_arrays
 from symflex.data.measurement.comma_separated import read_columns
+from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
+from symflex.data.measurement.record import read_record
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
     COHERENCE,
@@ -54,8 +56,10 @@ SAVE_AS: Final = {
 """What to do with files that are not read."""
 
 
-def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read the frequency responses of a data file.
+def read_measurement(
+    path: str | Path, columns: str = "", estimate: Estimate | None = None
+) -> tuple[MeasuredResponse, ...]:
+    """Read the frequency responses of a data file, or estimate those of a record in time.
 
     Parameters
     ----------
@@ -65,7 +69,9 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
     columns : str
         What the columns are, if the file does not say or is wrong: words such as ``f,re,im`` or
         ``f_khz,-,mag_db,phase_deg`` for text and matrices, ``f=NAME,h=NAME`` for named arrays, ``s21`` or
-        ``z11`` for Touchstone files.
+        ``z11`` for Touchstone files; ``t,u,y`` for records in time.
+    estimate : Estimate, optional
+        How responses of a record in time are estimated.
 
     Returns
     -------
@@ -99,6 +105,10 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
     suffix = format_of(name, data)
     if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
         suffix = ".uff"  # whatever the file is called, no table begins so
+    if READERS.get(suffix, read_columns) in (read_columns, read_arrays):
+        record = read_record(name, data, Path(name).stem, columns)
+        if record is not None:
+            return responses_of(record, estimate or Estimate())
     if suffix in READERS:
         return READERS[suffix](name, data, Path(name).stem, columns)
     try:
@@ -108,6 +118,49 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
             raise
         message = f"'{name}' is not a text table; other data files end in {', '.join(READERS)}"
         raise DataError(Diagnostic("SF606", message)) from None
+
+
+def responses_in_time(
+    path: str | Path, columns: str = "", estimate: Estimate | None = None
+) -> tuple[MeasuredResponse, ...] | None:
+    """Return the responses of a record in time, ``None`` if the columns of a file do not say time."""
+    data = read_file(os.fspath(path), MAX_BYTES)
+    record = read_record(os.fspath(path), data, Path(path).stem, columns)
+    return None if record is None else responses_of(record, estimate or Estimate())
+
+
+def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
+    """Return responses with those of several records of the same length averaged, each as it is sure.
+
+    Lines are weighted by one over their variance, so that the variance of the mean is one over the sum.
+    """
+    groups: dict[tuple[str, bytes], list[MeasuredResponse]] = {}
+    for i, one in enumerate(responses):
+        key = (one.name, one.frequency_hz.tobytes()) if one.is_record else (str(i), b"")
+        groups.setdefault(key, []).append(one)
+    averaged = []
+    for same in groups.values():
+        deviations = [one.relative_deviation() for one in same]
+        known = [d * np.abs(one.values) for d, one in zip(deviations, same, strict=True) if d is not None]
+        if len(same) == 1 or len(known) < len(same):
+            averaged += same
+            continue
+        weights = np.array([1 / np.maximum(d, 1e-300) ** 2 for d in known])
+        values = np.sum(weights * np.array([one.values for one in same]), axis=0) / weights.sum(axis=0)
+        count = sum(one.averages for one in same if one.averages) or 1.0
+        share = 2 * count / (weights.sum(axis=0) * np.abs(values) ** 2)
+        said = f"{len(same)} records are averaged"
+        averaged.append(
+            replace(
+                same[0],
+                values=values,
+                coherence=1 / (1 + share),
+                averages=count if same[0].averages else None,
+                notes=(*same[0].notes, said),
+                guesses=(*same[0].guesses, said),
+            )
+        )
+    return averaged
 
 
 def prepared(
@@ -136,11 +189,11 @@ def prepared(
     if band is not None and not 0 <= band[0] < band[1]:
         raise UsageError(Diagnostic("SF902", "give a band as two frequencies in Hz, the lower one first"))
     prepared_ones = []
-    for response in responses:
+    for response in _averaged(responses):
         known = response
-        if averages is not None:
+        if averages is not None and not known.is_record:
             known = replace(known, averages=averages)
-        if window is not None:
+        if window is not None and not known.is_record:
             known = replace(known, window=window.replace("none", ""))
         if band is not None:
             known = known.between(*band)

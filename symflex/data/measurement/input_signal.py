@@ -41,7 +41,7 @@ _UNITS: Final = {
 }
 SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in words.split()}
 _UNIT: Final = "|".join(SECONDS)
-_TIME = re.compile(
+TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
     r"(?:t|tout|time|times|timestamp|zeit|temps|tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
     rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT})[\])]?)?|x_value|"
@@ -107,7 +107,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
     lines = [i for i in written if i >= first]
     if len(lines) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    names, at, unit, start = _named_time(table, first)
+    names, at, unit, start = named_time(table, first)
     at = BESIDE if is_beside else at
     if not names and written[0] < first:
         above = table.line(written[written.index(first) - 1])
@@ -162,7 +162,7 @@ def _is_beside(table: TextTable, index: int) -> bool:
     return len(cells) == BESIDE + 2 and not cells[BESIDE - 1] and _decimal(cells[BESIDE]) is not None
 
 
-def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, Fraction]:
+def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, Fraction]:
     """Return the names of columns above the first row, which is the time, its unit and what to add [s]."""
     if counted := _COUNTED.search(table.source.text):
         start, step = (_decimal(text) for text in counted.groups())
@@ -175,7 +175,7 @@ def _named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction,
         for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
             for i, name in enumerate(names[:-1]):
-                match = _TIME.fullmatch(name.strip("\"' "))
+                match = TIME.fullmatch(name.strip("\"' "))
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):
                     said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
                     return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1)), Fraction(0)
@@ -195,7 +195,7 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
         factor = Fraction(1)
     else:
         plain = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.size > 1}
-        named = ((k, m) for k in plain if (m := _TIME.fullmatch(k.rpartition(".")[2])))
+        named = ((k, m) for k in plain if (m := TIME.fullmatch(k.rpartition(".")[2])))
         key, match = next(named, ("", None))
         fitting = [k for k, a in plain.items() if k != key and key and a.size == plain[key].size]
         if match is None or len(fitting) != 1:

@@ -44,6 +44,8 @@ class MeasuredResponse:
         What the file says about itself.
     guesses : tuple of str
         What was assumed when the file was read, because it does not say so.
+    is_record : bool
+        True when it was estimated from a record in time.
 
     Notes
     -----
@@ -66,6 +68,7 @@ class MeasuredResponse:
     is_synthetic: bool = False
     notes: tuple[str, ...] = field(default=(), repr=False)
     guesses: tuple[str, ...] = field(default=(), repr=False)
+    is_record: bool = field(default=False, repr=False)
 
     def __repr__(self) -> str:
         ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"

@@ -101,7 +101,7 @@ ODD = F * 1.0123456789
 AMBIGUOUS = {
     "parts.csv": (rows(F, RE, IM).encode(), "a.csv:1:1".replace("a", "parts"), H),
     "level.txt": (rows(F, DB, DEG, sep="\t").encode(), "level.txt:1:1", H),
-    "words.csv": (("Time [s],A [V],B [V]\n" + rows(F, RE, IM)).encode(), "words.csv:2:1", H),
+    "words.csv": (("Setting,A [V],B [V]\n" + rows(F, RE, IM)).encode(), "words.csv:2:1", H),
     "positive.csv": (
         ("Hz,Magnitude,Phase\n" + rows(F, DB + 74, DEG)).encode(),
         "fit dB as well",

@@ -1,0 +1,326 @@
+"""Frequency responses of records in time, by scipy's spectral estimates.
+
+Input: a :class:`~symflex.data.measurement.record.TimeRecord`.
+Output: a :class:`~symflex.data.measurement.MeasuredResponse` per output; its guesses say how it was made.
+
+    kind        known by                                    response
+    step        the input has two levels                    spectrum of y' over that of u'
+    impact      the input is zero but for a pulse           Y U*/abs(U)^2 of the whole record
+    transient   the output begins and ends at rest          the same
+    periodic    the input repeats two times or more         the mean over whole periods, at excited lines
+    noise       anything else                               Welch (1967), H1 or H2
+    decay       there is no input                           spectrum of y, for its poles alone
+
+The spectrum of a record that ends while the response decays has the poles of the response, and no others: at
+lines ``omega_k = 2 pi k/T`` a mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. So no window is
+put over an impact or a decay: it would add damping that had to be taken out again. The error of an estimate
+is in its coherence: of Welch's method and of periods from their scatter, else from the noise of the output
+where its spectrum is lowest (Bendat & Piersol, Random Data, 4th ed. 2010, sections 5.3 and 9.1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from symflex.data.measurement.measured_response import MeasuredResponse
+from symflex.errors import DataError, Diagnostic
+
+if TYPE_CHECKING:
+    from symflex.data.measurement.record import TimeRecord
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+ESTIMATORS: Final = ("h1", "h2")
+SEGMENTS: Final = 8
+"""Segments into which a record is cut by default, without overlap; with half an overlap there are 15."""
+LONGEST_SEGMENT: Final = 16_384
+"""Samples of a segment: a fit of more lines takes longer than it tells."""
+LEVELS: Final = 0.02
+"""Share of a step or pulse by which a level may be off."""
+PULSE: Final = 0.1
+"""Share of a record in which a pulse ends."""
+AT_REST: Final = 0.02
+"""Share of the largest amplitude below which the end of a record is at rest, noise aside."""
+EXCITED: Final = 1e-3
+"""Share of the largest amplitude of the input's spectrum below which a line is not excited."""
+SAME_PERIOD: Final = 0.99
+"""Correlation of an input with itself from which it repeats."""
+BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
+"""Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+ENDS: Final = 0.05
+"""Share of a record by whose samples its ends are judged."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How responses are estimated."""
+
+    estimator: str = "h1"
+    segments: int | None = None  # by default as the input asks
+    window: str = "hann"  # or none
+
+
+@dataclass(frozen=True, eq=False)
+class _Channel:
+    """An input and one output."""
+
+    u: Real
+    y: Real
+    step_s: float
+
+    @property
+    def frequency_hz(self) -> Real:
+        return np.asarray(np.fft.rfftfreq(self.u.size, self.step_s), np.float64)
+
+    @cached_property
+    def level(self) -> tuple[int, float] | None:
+        """Where the input jumps from one level to another, and by how much; ``None`` if it does not."""
+        u, size = self.u, float(np.ptp(self.u))
+        low = np.abs(u - u[0]) <= LEVELS * size
+        high = np.abs(u - u[-1]) <= LEVELS * size
+        if abs(u[-1] - u[0]) < (1 - LEVELS) * size or not np.all(low | high):
+            return None
+        jump = int(np.argmax(high))
+        return (jump, float(u[-1] - u[0])) if np.all(high[jump:]) and np.all(low[:jump]) else None
+
+    @property
+    def is_pulse(self) -> bool:
+        """Tell whether the input is zero but for a short pulse."""
+        rest = np.median(self.u)
+        acting = np.flatnonzero(np.abs(self.u - rest) > LEVELS * np.max(np.abs(self.u - rest)))
+        return bool(acting[-1] - acting[0] < PULSE * self.u.size and acting[0] < self.u.size / 2)
+
+    @property
+    def is_transient(self) -> bool:
+        """Tell whether the output begins and ends at rest, but for noise."""
+        n = max(int(ENDS * self.y.size), 4)
+        begin, end = self.y[: min(n, 4)], self.y[-n:]
+        noise = _noise_of(self.y)
+        limit = AT_REST * float(np.max(np.abs(self.y - begin[0]))) + 4 * noise
+        return float(abs(begin[0] - np.median(end))) <= limit and float(np.ptp(end)) <= 2 * limit
+
+    @cached_property
+    def period(self) -> int | None:
+        """Samples after which the input repeats, twice or more in the record; ``None`` if it does not."""
+        u = self.u - self.u.mean()
+        n = u.size
+        spectrum = np.fft.rfft(u, 2 * n)
+        same = np.fft.irfft(np.abs(spectrum) ** 2)[: n // 2 + 1]
+        energy = np.concatenate([[0.0], np.cumsum(u**2)])
+        ahead, behind = energy[n - np.arange(same.size)], energy[n] - energy[: same.size]
+        share = same / np.maximum(np.sqrt(ahead * behind), 1e-300)
+        below = np.flatnonzero(share < SAME_PERIOD)
+        if not below.size:
+            return None
+        again = np.flatnonzero(share[below[0] :] >= SAME_PERIOD)
+        if not again.size:
+            return None
+        start = below[0] + int(again[0])
+        end = start + int(np.argmax(np.append(share[start:] < SAME_PERIOD, True)))
+        return int(start + np.argmax(share[start:end]))
+
+
+def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, ...]:
+    """Return the estimated response of every output of a record.
+
+    SF605 when no line is left.
+    """
+    made = []
+    for name, values in record.outputs:
+        averages: float | None = None
+        window = ""
+        if record.input is None:
+            frequency, response, coherence, said = _decay(values, record.step_s)
+            called = name if len(record.outputs) > 1 else record.name
+        else:
+            source, u = record.input
+            channel = _Channel(u, values, record.step_s)
+            frequency, response, coherence, averages, window, said = _estimated(channel, how)
+            called = f"{name}/{source}"
+        is_finite = np.isfinite(response) & (response != 0) & (frequency > 0)
+        if is_finite.sum() < 3:  # noqa: PLR2004 (as every response)
+            message = f"the record of '{name[:40]}' makes no response: its input is nearly zero"
+            raise DataError(Diagnostic("SF605", message))
+        shares = None if coherence is None else np.clip(np.asarray(coherence)[is_finite], 1e-6, 1.0)
+        made.append(
+            MeasuredResponse(
+                called, frequency[is_finite], response[is_finite], shares, averages, window,
+                notes=(said,), guesses=(*record.guesses, said), is_record=True,
+            )
+        )  # fmt: skip
+    return tuple(made)
+
+
+_Estimated = tuple[npt.NDArray[Any], Complex, Real | None, float | None, str, str]
+
+
+def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
+    """Return frequencies, response, coherence, number of averages, window, and what was done."""
+    if how.segments is None and channel.level is not None:
+        return _of_step(channel)
+    if how.segments is None and channel.is_pulse:
+        return _of_pulse(channel)
+    if how.segments is None and (period := channel.period) is not None:
+        return _of_periods(channel, period)
+    if how.segments is None and channel.is_transient:
+        frequency, response, coherence, reach = _ratio(channel)
+        said = (
+            f"the output begins and ends at rest: its spectrum over that of the input, up to {reach:.4g} Hz"
+        )
+        return frequency, response, coherence, None, "", said
+    return _by_segments(channel, how)
+
+
+def _of_step(channel: _Channel) -> _Estimated:
+    """Return the response from a step: the spectrum of the output's increments over the jump.
+
+    An input that is held between samples gives ``G(s) (1 - exp(-s h))/(s h)`` and what samples fold back.
+    """
+    assert channel.level is not None
+    jump, size = channel.level
+    start = max(jump - 1, 0)
+    before = float(np.mean(channel.y[: start + 1])) if jump else 0.0
+    increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
+    n = increments.size
+    frequency = np.fft.rfftfreq(n, channel.step_s)
+    s = 2j * np.pi * frequency * channel.step_s
+    with np.errstate(all="ignore"):
+        hold = np.where(s == 0, 1, (1 - np.exp(-s)) / s)
+    response = np.fft.rfft(increments) / size / hold
+    noise = _noise_of(channel.y[jump:])
+    end = channel.y[-max(n // 20, 4) :]
+    rests = float(np.ptp(end)) <= 2 * AT_REST * float(np.ptp(channel.y)) + 6 * noise
+    said = "a step: spectrum of the output's increments over the jump"
+    said += "" if rests else "; the output does not rest at the end, which changes gains, not poles"
+    kept = frequency <= BELOW_NYQUIST["step"] / channel.step_s
+    deviation = noise * np.abs(1 - np.exp(-s)) * np.sqrt(n) / abs(size) / np.maximum(np.abs(hold), 1e-3)
+    return frequency[kept], response[kept], _coherence(response, deviation)[kept], None, "", said
+
+
+def _of_pulse(channel: _Channel) -> _Estimated:
+    frequency, response, coherence, _ = _ratio(channel)
+    kept = frequency <= BELOW_NYQUIST["impact"] / channel.step_s
+    end = channel.y[-max(int(ENDS * channel.y.size), 4) :]
+    left = float(np.sqrt(np.mean((end - np.median(channel.y)) ** 2)) / np.max(np.abs(channel.y)))
+    said = (
+        "an impact: spectrum of the output over that of the input, without a window, which would add damping"
+    )
+    if left > AT_REST:
+        said += f"; {left:.0%} of the output is left at the end, which changes gains, not poles"
+    return frequency[kept], response[kept], coherence[kept], None, "", said
+
+
+def _ratio(channel: _Channel) -> tuple[Real, Complex, Real, float]:
+    """Return the ratio of the spectra of a whole record where the input excites, and up to where that is."""
+    begin = channel.u[:4]
+    offset = float(begin[0]) if np.ptp(begin) <= LEVELS * np.ptp(channel.u) else 0.0
+    u, y = np.fft.rfft(channel.u - offset), np.fft.rfft(channel.y - np.median(channel.y[:4]))
+    size = np.abs(u)
+    kept = size > EXCITED * size.max()
+    frequency = channel.frequency_hz
+    with np.errstate(all="ignore"):
+        response = y / u
+        deviation = _noise_of(channel.y) * np.sqrt(channel.y.size) / size
+    coherence = _coherence(response, deviation)
+    return frequency[kept], response[kept], coherence[kept], float(frequency[kept][-1])
+
+
+def _of_periods(channel: _Channel, period: int) -> _Estimated:
+    """Return the mean over whole periods, those left out in which the output has not settled."""
+    count = channel.u.size // period
+    u, y = (x[channel.u.size - count * period :].reshape(count, period) for x in (channel.u, channel.y))
+    apart = np.std(y - y[-1], axis=1)
+    skipped = int(np.argmax(apart <= 2 * apart[-2])) if count > 2 else 0  # noqa: PLR2004
+    u, y = u[skipped:], y[skipped:]
+    above, below = np.fft.rfft(y, axis=1), np.fft.rfft(u, axis=1).mean(axis=0)
+    kept = np.abs(below) > EXCITED * np.abs(below).max()
+    n = y.shape[0]
+    with np.errstate(all="ignore"):
+        response = above.mean(axis=0) / below
+        spread = np.sqrt(np.mean(np.abs(above - above.mean(axis=0)) ** 2, axis=0) / max(n - 1, 1))
+        deviation = spread / np.abs(below)
+    deviation = deviation if n > 1 else np.zeros_like(deviation)
+    frequency = np.fft.rfftfreq(period, channel.step_s)
+    said = f"a periodic input: the mean over {n} periods of {period * channel.step_s:.6g} s"
+    said += f", after {skipped} in which the output settles" if skipped else ""
+    smooth = np.sqrt(_smoothed(deviation**2)) if n > 1 else deviation
+    coherence = _coherence(response, smooth)[kept] if n > 1 else None
+    return frequency[kept], response[kept], coherence, None, "", said
+
+
+def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
+    """Return Welch's estimate."""
+    from scipy import signal  # takes a third of a second, and other files need none of it
+
+    n = channel.u.size
+    wanted = how.segments or max(SEGMENTS, -(-n // LONGEST_SEGMENT))
+    length = max(n // wanted, 16)
+    given: dict[str, Any] = {
+        "fs": 1 / channel.step_s,
+        "window": "hann" if how.window == "hann" else "boxcar",
+        "nperseg": length,
+        "noverlap": length // 2 if how.window == "hann" else 0,
+        "detrend": "constant",
+    }
+    frequency, cross = signal.csd(channel.u, channel.y, **given)
+    _, of_input = signal.welch(channel.u, **given)
+    _, of_output = signal.welch(channel.y, **given)
+    with np.errstate(all="ignore"):
+        coherence = np.abs(cross) ** 2 / (of_input * of_output)
+        response = cross / of_input if how.estimator == "h1" else of_output / np.conj(cross)
+    kept = (of_input > EXCITED**2 * of_input.max()) & (frequency > 0) & (frequency < 0.45 / channel.step_s)
+    count = 1 + (n - length) // (length - given["noverlap"])
+    # Segments of a Hann window that overlap by half are as good as so many independent ones (Welch 1967).
+    averages = count / (1 + (count > 1) * 2 * (count - 1) / count / 36) if how.window == "hann" else count
+    name = "Hann window, half an overlap" if how.window == "hann" else "no window"
+    long = f"{length * channel.step_s:.6g} s"
+    said = f"Welch's method, {how.estimator.upper()}: {count} segments of {long}, {name}"
+    window = "hann" if how.window == "hann" else ""
+    return frequency[kept], response[kept], coherence[kept], float(averages), window, said
+
+
+def _decay(values: Real, step_s: float) -> tuple[npt.NDArray[Any], Complex, Real | None, str]:
+    """Return the spectrum of a free response from its largest amplitude on."""
+    centred = values - np.median(values[-max(values.size // 10, 8) :])
+    start = int(np.argmax(np.abs(centred))) if np.argmax(np.abs(centred)) < values.size / 2 else 0
+    kept = centred[start:].copy()
+    kept[0] /= 2  # the trapezoidal rule at a jump
+    frequency = np.fft.rfftfreq(kept.size, step_s)
+    spectrum = np.fft.rfft(kept) * step_s
+    used = (frequency > 0) & (frequency <= BELOW_NYQUIST["decay"] / step_s)
+    said = (
+        f"no input: the output from {start * step_s:.6g} s on is taken as a free decay; its poles are those "
+        "of the system, its gain and zeros those of this record alone"
+    )
+    deviation = np.full(spectrum.size, _noise_of(kept) * np.sqrt(kept.size) * step_s)
+    return frequency[used], spectrum[used], _coherence(spectrum, deviation)[used], said
+
+
+def _noise_of(values: Real) -> float:
+    """Return the standard deviation of white noise on samples: of their spectrum where that is lowest."""
+    size = np.abs(np.fft.rfft(np.diff(values))) ** 2
+    turn = 4 * np.sin(np.pi * np.arange(size.size) / (2 * max(size.size - 1, 1))) ** 2
+    with np.errstate(all="ignore"):
+        power = size[1:] / turn[1:]
+    parts = [float(np.median(part)) for part in np.array_split(power, min(20, max(power.size // 8, 1)))]
+    return float(np.sqrt(min(parts) / np.log(2) / values.size))
+
+
+def _smoothed(power: Real) -> Real:
+    """Return a power averaged over neighbouring lines, as the scatter of few periods is itself uncertain."""
+    width = min(9, power.size | 1)
+    padded = np.pad(power, width // 2, mode="reflect")
+    return np.asarray(np.convolve(padded, np.ones(width) / width, "valid")[: power.size], np.float64)
+
+
+def _coherence(response: Complex, deviation: Real) -> Real:
+    """Return the coherence that stands for a standard deviation of a complex value, of one average."""
+    with np.errstate(all="ignore"):
+        share = (deviation / np.abs(response)) ** 2
+    return np.asarray(1 / (1 + np.where(np.isfinite(share), share, 1e12)), np.float64)

@@ -1,0 +1,218 @@
+"""Records in time: which column is what, and frequency responses estimated from them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import signal
+
+import symflex
+from symflex.cli import run
+from symflex.data.measurement import Estimate, prepared, read_measurement
+from symflex.data.measurement.record import read_record
+from symflex.errors import DataError, UsageError
+
+STEP = 0.002
+MODES = ((12.0, 0.03, 1.0), (31.0, 0.02, 0.5))
+"""Natural frequency [Hz], damping ratio and static compliance of a system of two modes."""
+
+
+def true(frequency):
+    s = 2j * np.pi * np.asarray(frequency)
+    w = [(2 * np.pi * f, z, a) for f, z, a in MODES]
+    return sum(a * o**2 / (s**2 + 2 * z * o * s + o**2) for o, z, a in w)
+
+
+def simulated(u, oversampled=4):
+    """Return every fourth sample of the output, by exact exponentials between finer ones."""
+    t = np.arange(u.size) * STEP / oversampled
+    parts = []
+    for f, z, a in MODES:
+        w = 2 * np.pi * f
+        system = signal.TransferFunction([a * w**2], [1, 2 * z * w, w**2])
+        parts.append(signal.lsim(system, u, t, interp=np.unique(u).size > 2)[1])
+    return u[::oversampled], sum(parts)[::oversampled]
+
+
+def inputs(kind, n=4096, over=4):
+    t = np.arange(n * over) * STEP / over
+    noise = np.random.default_rng(5)
+    if kind == "step":
+        return (np.arange(n * over) >= 100 * over).astype(float)
+    if kind == "impact":
+        return np.where((t > 0.02) & (t < 0.032), np.sin(np.pi * (t - 0.02) / 0.012) ** 2, 0.0)
+    if kind == "chirp":
+        return signal.chirp(t, 2, t[-1] * 0.8, 80) * (t < 0.75 * t[-1])
+    if kind == "periodic":
+        spectrum = np.zeros(n * over // 16 + 1, complex)
+        k = np.arange(1, 80)
+        spectrum[k] = np.exp(2j * np.pi * noise.random(k.size))
+        return np.tile(np.fft.irfft(spectrum), 8) * 1000
+    return signal.lfilter(*signal.butter(6, 0.3 / over), noise.normal(size=n * over))
+
+
+def written(folder, u, y, head="time,u,y", name="record.csv", times=None, sep=","):
+    t = np.arange(len(y)) * STEP if times is None else times
+    columns = [t, y] if u is None else [t, u, y]
+    rows = (sep.join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True))
+    (folder / name).write_text(head + "\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    return folder / name
+
+
+KINDS = {
+    "step": ("a step", 0.002),
+    "impact": ("an impact", 0.002),
+    "chirp": ("begins and ends at rest", 0.01),
+    "periodic": ("a periodic input: the mean over", 0.002),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_response_is_the_true_one_where_the_record_is_without_noise(tmp_path, kind):
+    said, error = KINDS[kind]
+    (response,) = read_measurement(written(tmp_path, *simulated(inputs(kind))))
+    assert response.name == "y/u"
+    assert any(said in guess for guess in response.guesses)
+    low = response.between(4.0, 40.0)
+    assert low.values.size > 30
+    away = np.abs(low.frequency_hz - 12.0) > 1.5
+    assert np.max(np.abs(low.values / true(low.frequency_hz) - 1)[away]) < 5 * error
+
+
+def test_noise_is_averaged_by_welch_with_a_coherence_that_explains_the_error(tmp_path):
+    u, y = simulated(inputs("noise", 16384))
+    y = y + 0.05 * np.std(y) * np.random.default_rng(1).normal(size=y.size)
+    path = written(tmp_path, u, y)
+    (whole,) = read_measurement(path, estimate=Estimate(segments=16))
+    response = whole.between(3, 9)  # no peak is smeared there
+    assert "31 segments" in response.guesses[-1] and response.window == "hann"
+    error = (
+        np.abs(response.values / true(response.frequency_hz) - 1) / response.relative_deviation() / np.sqrt(2)
+    )
+    assert 0.5 < np.sqrt(np.mean(error**2)) < 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [*KINDS, "noise", "decay"])
+def test_poles_are_within_their_standard_errors(tmp_path, kind):
+    u, y = simulated(inputs("impact" if kind == "decay" else kind, 3072))
+    y = y + 0.01 * np.std(y) * np.random.default_rng(2).normal(size=y.size)
+    fit = symflex.fit(
+        written(tmp_path, None if kind == "decay" else u, y, "t,y" if kind == "decay" else "t,u,y"),
+        band=(3, 60),
+    )
+    errors = fit.standard_errors
+    for f, z, _ in MODES:
+        i = int(np.argmin(np.abs(fit.resonances.omega_p - 2 * np.pi * f)))
+        assert (
+            abs(fit.resonances.omega_p[i] / (2 * np.pi) - f) < 4 * errors.omega_p[i] / (2 * np.pi) + 1e-4 * f
+        )
+        assert abs(fit.resonances.zeta_p[i] - z) < 4 * errors.zeta_p[i] + 0.005 * z
+        assert errors.zeta_p[i] < 0.2 * z
+
+
+@pytest.mark.parametrize(
+    ("head", "source", "outputs"),
+    [
+        ("time,u,y", "u", ["y"]),
+        ("t;Kraft [N];Beschl. [m/s^2]", "Kraft", ["Beschl."]),
+        ("TIME\tCH1\tCH2", "CH1", ["CH2"]),
+        ("Zeit [ms];Weg;Force", "Force", ["Weg"]),
+        ("#time,accel_x,accel_y", None, ["accel_x", "accel_y"]),
+        ("Time (s),Hammer (N),Accel (g)", "Hammer", ["Accel"]),
+    ],
+)
+def test_headers_say_which_column_is_what(head, source, outputs):
+    sep = ";" if ";" in head else "\t" if "\t" in head else ","
+    rng = np.random.default_rng(1)
+    rows = [sep.join(f"{x:.6g}" for x in (i * 1.0, *rng.normal(size=2))) for i in range(64)]
+    record = read_record("a.csv", f"{head}\n{chr(10).join(rows)}\n".encode(), "a")
+    assert (record.input and record.input[0]) == source
+    assert [name for name, _ in record.outputs] == outputs
+    assert record.step_s == pytest.approx(1e-3 if "ms" in head else 1.0)
+
+
+def test_a_rate_above_the_columns_is_the_sampling_time():
+    rows = "\n".join(f"{np.sin(i):.5f},{np.cos(i):.5f}" for i in range(64))
+    for line, step in (("Sampling rate: 2 kHz", 5e-4), ("Sample interval = 0.5 ms", 5e-4), ("dt,0.01", 0.01)):
+        record = read_record("a.csv", f"{line}\nforce,y\n{rows}\n".encode(), "a")
+        assert record.step_s == pytest.approx(step), line
+        assert record.input[0] == "force"
+
+
+def test_columns_asked_overrule_names(tmp_path):
+    u, y = simulated(inputs("step"))
+    path = written(tmp_path, y, u, "time,a,b")
+    (response,) = read_measurement(path, "t,y,u")
+    assert response.name == "a/b"
+    with pytest.raises(UsageError, match="one t, at most one u"):
+        read_measurement(path, "t,u,u")
+
+
+def test_jitter_gaps_and_saturation_are_said(tmp_path):
+    u, y = simulated(inputs("chirp", 1024))
+    times = np.arange(1024) * STEP
+    shaken = times + np.random.default_rng(1).uniform(-0.2, 0.2, 1024) * STEP
+    kept = np.delete(np.arange(1024), np.arange(500, 520))
+    clipped = np.clip(y, -0.5 * y.max(), 0.5 * y.max())
+    cases = {
+        "not even": (u, y, shaken),
+        "samples are missing from 0.998 to 1.04 s": (u[kept], y[kept], times[kept]),
+        "is it saturated?": (u, clipped, times),
+    }
+    for said, (a, b, t) in cases.items():
+        (response,) = read_measurement(written(tmp_path, a, b, times=t))
+        assert any(said in guess for guess in response.guesses), said
+        assert len(response.guesses) == 2, said
+
+
+def test_records_of_one_length_are_averaged_as_sure_as_they_are(tmp_path):
+    u, y = simulated(inputs("impact"))
+    rng = np.random.default_rng(4)
+    noise = 0.02 * np.std(y)
+    read = []
+    for i in range(4):
+        path = written(tmp_path, u, y + noise * rng.normal(size=y.size), name=f"{i}.csv")
+        read += read_measurement(path)
+    (mean,) = prepared(read, (5.0, 50.0))
+    assert "4 records are averaged" in mean.guesses
+    ratio = prepared(read[:1], (5.0, 50.0))[0].relative_deviation() / mean.relative_deviation()
+    assert np.median(ratio) == pytest.approx(2.0, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("time,u,y\n0,0,1\n1,0,2\n2,1,3\n", "SF605"),
+        ("time,u,y\n" + "\n".join(f"{i % 40},0,{i}" for i in range(80)), "SF604"),
+        ("time,u,y\n" + "\n".join(f"{i},0,{i if i % 3 else 'x'}" for i in range(80)), "SF603"),
+        ("time,u,y\n" + "\n".join(f"{i},0,5" for i in range(80)), "SF602"),
+    ],
+)
+def test_what_is_no_record_is_refused_with_its_reason(tmp_path, text, code):
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(DataError) as caught:
+        read_measurement(path)
+    assert caught.value.diagnostics[0].code == code
+
+
+def test_the_command_line_writes_the_response_of_a_record(tmp_path, capsys):
+    u, y = simulated(inputs("chirp", 2048))
+    path, made = written(tmp_path, u, y, "time,F,X"), tmp_path / "frf.csv"
+    assert run(["measure", str(path), "-o", str(made)]) == 0
+    assert "begins and ends at rest" in capsys.readouterr().err
+    (response,) = read_measurement(made)
+    low = response.between(3, 40)
+    away = np.abs(low.frequency_hz - 12) > 2
+    assert response.name == "X/F"
+    assert np.max(np.abs(low.values / true(low.frequency_hz) - 1)[away]) < 0.1
+    assert run(["measure", str(path), "--tf", "Q/F", "-o", str(made)]) == 2
+    assert "choose a response with --tf: X/F" in capsys.readouterr().err
+
+
+def test_a_table_with_frequencies_beside_a_time_is_no_record():
+    text = "Time,Frequency (Hz),Magnitude (dB),Phase (deg)\n" + "\n".join(
+        f"{i},{i + 1},3,4" for i in range(60)
+    )
+    assert read_record("a.csv", text.encode(), "a") is None
