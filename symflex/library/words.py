@@ -141,6 +141,10 @@ KEYS: dict[str, tuple[str, ...]] = {
     "value": ("f", "tau", "v", "i"),
 }
 """Keys of an element or a block as others call them, and as they are called here."""
+FORMULAS = {("T_i", "k_i"): 'k_i = "k_p/T_i"', ("T_n", "k_i"): 'k_i = "k_p/T_n"'} | {
+    (word, "k_d"): f'k_d = "k_p*{word}"' for word in ("T_d", "T_v")
+}
+"""What to write for a word, where a key is known that follows from what the word means."""
 
 
 def key_meant(word: str, known: Iterable[str]) -> str | None:

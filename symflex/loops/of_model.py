@@ -14,6 +14,7 @@ from symflex.loops.networks import network_loop
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
+from symflex.model.settings import check_names
 from symflex.options import (
     ColocationOptions,
     StabilityOptions,
@@ -41,6 +42,12 @@ if TYPE_CHECKING:
     from symflex.transfer import Given, TransferFunction
 
 
+def _gain_of(model: Model, name: str) -> ModelParameter:
+    if any(each.name == name for each in (*model.definitions, *model.blocks)):
+        check_names(model, {name: ""})
+    return pick_gain(model.parameters, name)
+
+
 def characteristic_loop(
     model: Model,
     gain: str,
@@ -53,7 +60,7 @@ def characteristic_loop(
     when it is too large written out, SF803 where the gain stands in more than one row of a large network.
     """
     check_causal(model, what)
-    parameter = pick_gain(model.parameters, gain)
+    parameter = _gain_of(model, gain)
     given = dict(values or {})
     for name in given:
         pick_gain(model.parameters, name)
@@ -110,7 +117,7 @@ def stability(
 
     SF902 when there is no such parameter, SF801 when no pole depends on it.
     """
-    limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
+    limits = gain_ends(given.limits, _gain_of(model, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     loop = characteristic_loop(model, given.gain, values, "stability of a loop")
     return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, radians)

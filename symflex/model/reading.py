@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
-from symflex.library.words import key_meant
+from symflex.library.words import FORMULAS, key_meant
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, name_hint, parse_quantity
 
@@ -123,6 +123,8 @@ class Reader:
                 hint = hint or "; ".join(filter(None, ("known keys: " + ", ".join(known), example)))
                 if entry.key in LOSS_WORDS and "eta_s" in known:
                     hint = "a loss factor is 'eta_s'"
+                elif formulas := [FORMULAS[entry.key, k] for k in known if (entry.key, k) in FORMULAS]:
+                    hint = f"write {formulas[0]}"
                 elif entry.key == "matrices":
                     hint = "Python's symflex.from_matrices(M=..., D=..., K=...) makes a model of matrices"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)

@@ -329,7 +329,10 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
         if block is not None and block.kernel_time:
             what = f"{block.kernel_time} of {block.type_name} '{placed.name}'"
             time = dict(placed.values)[block.kernel_time]
-            yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead", is_extent=True)
+            reason = "a delay cannot look ahead"
+            if placed.span == time.span:  # written as an exponential
+                reason += "; the z of a sampled controller is 1/exp(-s*T)"
+            yield RangedValue(what, time, "nonnegative", reason, is_extent=True)
         elif block is ROOT:
             values = dict(placed.values)
             reason = "the branch point must not lie right of the imaginary axis"

@@ -100,11 +100,14 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
 
 
 def _in_radians(part: Expression, counted: Collection[Expression]) -> Expression:
-    """Return a product with what is in Hz beside its 2 pi: ``2*zeta*(2*pi*f)*s``, ``(2*pi*f)^2``."""
+    """Return a product with what is in Hz beside its 2 pi: ``2*zeta*(2*pi*f)*s``, ``(2*pi*f)^2``.
+
+    What divides it was a product of its own.
+    """
     front, powers = powers_of(part) if isinstance(part, Product) else (Fraction(1), {})
     n = powers.pop(PI, 0)
-    found = next((b for b in powers if b in counted and powers[b] == n), None)
-    front /= 2**n
+    found = next((b for b in powers if b in counted and powers[b] == n > 0), None)
+    front /= Fraction(2) ** n
     if found is None or front.denominator != 1 or (n, abs(front)) == (1, 1):
         return part
     turns = Product((number(2), PI, found))

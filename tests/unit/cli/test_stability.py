@@ -66,6 +66,13 @@ def test_what_is_not_certified_has_exit_code_4(files):
     assert "NOT CERTIFIED" in done.out
 
 
+def test_a_gain_that_follows_from_parameters_is_said_to_be_a_definition(files, tmp_path):
+    loop = 'parameters = { k = 2, K = "k/3" }\nsignals.y = "K*(r - y)/s"\ninputs.r = {}\noutputs.Y = "y"\n'
+    (tmp_path / "defined.toml").write_text(f"symflex = 1\n{loop}")
+    said = "'K' is a definition, and follows from parameters: there is no parameter 'K'"
+    assert said in files("stability", str(tmp_path / "defined.toml"), "--gain", "K").err
+
+
 def test_without_a_gain_the_parameters_are_listed(files):
     assert files("stability", "loop.toml").err.endswith("hint: parameters: K, T\n")
 

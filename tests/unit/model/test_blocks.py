@@ -178,6 +178,8 @@ outputs.Y = "y"
         ('{ type = "delay", tau = 1 }', "write T"),
         ('{ type = "pid", Kp = 1 }', "write k_p"),
         ('{ type = "low_pass", f = "5 Hz", zeta = 1 }', "write omega"),
+        ('{ type = "pid", k_p = 1, T_i = 2 }', 'write k_i = "k_p/T_i"'),
+        ('{ type = "pid", k_p = 1, T_v = 2 }', 'write k_d = "k_p*T_v"'),
     ],
 )
 def test_a_key_that_is_called_otherwise_elsewhere_is_one_problem(block, said):

@@ -59,7 +59,7 @@ def test_a_dead_time_is_written_in_an_output():
 @pytest.mark.parametrize(
     ("signal", "said"),
     [
-        ("exp(s*T)*r", "a delay cannot look ahead"),
+        ("exp(s*T)*r", r"a delay cannot look ahead; the z of a sampled controller is 1/exp\(-s\*T\)"),
         ("exp(-s^2*T)*r", "exp of an expression in s is not available yet"),
         ("exp(-s*K)*r", None),
         ("exp(-s*y)*r", "'y' is the signal 'y'"),
@@ -73,6 +73,14 @@ def test_what_is_no_dead_time_is_refused_at_its_place(signal, said):
     with pytest.raises(SpecError, match=said) as caught:
         value(signal)
     assert caught.value.diagnostics[0].span.line == 5
+
+
+def test_a_power_of_e_is_said_to_be_an_exponential_function():
+    with pytest.raises(SpecError) as caught:
+        value("e^(-s*T)*r")
+    assert ("SF225", "an exponential function is exp(...), as in exp(-s*T)") in {
+        (d.code, d.hint) for d in caught.value.diagnostics
+    }
 
 
 def test_definitions_that_would_double_without_end_are_not_written_out():

@@ -621,6 +621,12 @@ def test_normalised_forms_are_normalised_where_decimals_are_typed():
     assert printed(tf_of(text, "y", "u"), "monic") == ("1.6e8", "s^2 + 14000*s + 1e8")
 
 
+def test_a_corner_in_hertz_divides_the_coefficients_of_the_constant_form():
+    text = 'symflex = 1\nparameters.f = "1 MHz"\ninputs.u = {}\noutputs.y = "u/(1 + s/(2*pi*f))^3"\n'
+    cube = "1/(2*pi*f)^3*s^3 + 3/(2*pi*f)^2*s^2 + 3/(2*pi*f)*s + 1"
+    assert printed(tf_of(text, "y", "u"), "constant") == ("1", cube)
+
+
 def test_a_damping_ratio_of_a_half_does_not_halve_what_is_printed():
     # By hand, with w = 2*pi*f: X = K*G*(r - X)/Z, Z = m*s^2 + b*s + k, G = w^2/(s^2 + w*s + w^2).
     text = """symflex = 1
