@@ -328,11 +328,11 @@ class DistributedFactors:
         """Return the same of a factor that is no straight line in the gain."""
         function, tree, crossings = self._parts(factor), self._tree(factor), list[Crossing]()
         ends = [ball(x) for x in self.limits]
-        slivers = [ends[0].union(tree.gain.lower()), ends[1].union(tree.gain.upper())]
+        edges = (tree.gain.lower(), tree.gain.upper())
         crossings += [
-            Crossing(gain, (), change=None)
-            for gain in slivers
-            if gain.rad() > tree.gain.rad() / 2 ** (SLIVER + 1)
+            Crossing(end.union(edge), (), change=None)
+            for end, edge in zip(ends, edges, strict=True)
+            if not tree.gain.contains(end)
         ]
         origin, first = loop_at_origin(function), None
         with precision(ORIGIN_BITS):
@@ -357,8 +357,11 @@ class DistributedFactors:
             crossings += [Crossing(gain, (arb(0),), is_open=True, change=None) for gain in slivers]
         points = find_axis_points(function, tree, (first, self.axis_end * 1.01), digits)
         if points is None:
-            self.reasons.append("the search for crossings of the imaginary axis takes too long")
-            return crossings
+            # Counts at a few gains say nothing of those between.
+            message = (
+                "the search for crossings of the imaginary axis takes too long in this range of the gain"
+            )
+            raise UncertifiedError(Diagnostic("SF802", message, None, "give a narrower --range"))
         for omega, gain in points.undecided:
             if not any(gain.overlaps(ball(end)) for end in self.limits):
                 place = float((omega.mid() / (2 * arb.pi())).mid())

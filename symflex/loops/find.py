@@ -88,10 +88,10 @@ def find_stable_gains(
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
-    if along is not None:
-        crossings += along.crossings(digits + GUARD_DIGITS)
     search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
     try:
+        if along is not None:
+            crossings += along.crossings(digits + GUARD_DIGITS)
         boundaries, intervals = search.between(crossings)
     except UncertifiedError as error:
         if along is None or loop.nominal is None:

@@ -179,3 +179,28 @@ outputs.V = "v"
     found = stability(model, StabilityOptions("K"))
     assert found.method == "polynomials"
     assert [(i.low, i.high) for i in found.stable] == [(0, None)]
+
+
+def test_the_range_of_one_gain_in_two_channels_begins_at_its_end():
+    # Wood & Berry 1973, a distillation column; scipy's fsolve of 1 + ... = 0 in K and omega: 1.26032, 0.5125.
+    column = """symflex = 1
+parameters.K = 0.1
+inputs = { r_1 = {}, r_2 = {} }
+outputs.Y = "y_1"
+[signals]
+y_1 = "12.8*exp(-s)/(16.7*s + 1)*u_1 - 18.9*exp(-3*s)/(21*s + 1)*u_2"
+y_2 = "6.6*exp(-7*s)/(10.9*s + 1)*u_1 - 19.4*exp(-3*s)/(14.4*s + 1)*u_2"
+u_1 = "K*(r_1 - y_1)"
+u_2 = "-0.2*K*(r_2 - y_2)"
+"""
+    (stable,) = stability(pipeline.loads(column), StabilityOptions("K", ("0", "1.5"))).stable
+    assert stable.low == 0
+    assert float(stable.high) == pytest.approx(1.26032, abs=5e-6)
+
+
+@pytest.mark.slow
+def test_a_search_in_two_unknowns_that_takes_too_long_tells_of_the_gain_itself_alone():
+    # exp(-0.1*s)/(s + 1) is stable up to a gain of 16.35, and K*(K + 1) is 6.
+    text = 'symflex = 1\nparameters.K = 2\nsignals.y = "K*(1 + K)*exp(-0.1*s)/(s + 1)*(r - y)"\n'
+    found = stability(pipeline.loads(text + 'inputs.r = {}\noutputs.Y = "y"\n'), StabilityOptions("K"))
+    assert (found.intervals, found.at_nominal.word, found.certified) == ((), "stable", False)
