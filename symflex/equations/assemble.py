@@ -346,12 +346,19 @@ class _Assembly:
         )
 
     def _cleared(self) -> Factored:
-        """Return the product of the denominators in rows of line elements and conditions."""
+        """Return the product of the denominators in rows of line elements and conditions.
+
+        Other rows may read a point between the ends: there, those that hold a wavenumber are no dynamics.
+        """
         transmissions = {} if self.distributed is None else self.distributed.transmissions
+        waves = set() if self.distributed is None else {*self.distributed.propagation.table.wavenumbers}
         product = Factored.number(self.ring, 1)
         for row in self.rows:
-            if row.role == "condition" or (row.about.kind == "through" and row.about.owner in transmissions):
-                product = product * common_denominator(self.ring, row.form.coefficients)
+            below = common_denominator(self.ring, row.form.coefficients)
+            is_law = row.about.kind == "through" and row.about.owner in transmissions
+            if not (is_law or row.role == "condition"):
+                below = below.filter(lambda f: not waves.isdisjoint(self.ring.used_in([f])))
+            product = product * below
         return product
 
     def _solutions(self) -> Iterable[FieldSolution]:

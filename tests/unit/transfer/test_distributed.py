@@ -112,6 +112,31 @@ def test_the_static_limit_is_that_of_the_tables():
         assert abs(pipeline.bind(tf).limit_at_zero() / float(wanted) - 1) < 1e-13, wanted
 
 
+def test_what_a_loop_reads_between_the_ends_adds_no_hidden_power_of_s():
+    """A force on the free ends by what u does between them leaves the bar's translation: s^2 = 0, twice.
+
+    One that the middle of a free beam gives on an end leaves the turn about it: I s^2 theta = l/2 (F - K y)
+    with m s^2 y = F - K y, so F/(F - K y) has the factor s^2 of y, and theta has no pole at 0.
+    """
+    for text in (
+        """parameters = { c = 2 }
+signals = { D = "F + (u(1) - u(0))/3" }
+inputs = { F = {} }
+outputs = { X = "D" }
+fields.u = { domain = ["0", "1"], equation = "c*u'' = s^2*u", conditions = ["c*u'(0) = D", "c*u'(1) = D"] }
+""",
+        """parameters = { K = "3 N/m" }
+inputs = { F = { unit = "N" } }
+outputs = { X = "b" }
+[elements]
+arm = { type = "beam", between = ["a", "b"], EI = 2, rhoA = 3, l = 1 }
+drive = { type = "force_source", at = "b", f = "F - K*arm.y(0.5 m)" }
+""",
+    ):
+        (tf,) = pipeline.derive_all(pipeline.loads("symflex = 1\n" + text))
+        assert [h.multiplicity for h in tf.hidden if str(h.polynomial) == "s"] == [2], text
+
+
 def test_a_uniform_load_bends_a_clamped_beam_by_q_l4_over_384_ei():
     tf = field(
         "E*I*w'''' + rho*A*s^2*w = F", ["w(0) = 0", "w'(0) = 0", "w(l) = 0", "w'(l) = 0"], 'X = "w(l/2)"'
