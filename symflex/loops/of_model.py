@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 def _gain_of(model: Model, name: str) -> ModelParameter:
-    if any(each.name == name for each in (*model.definitions, *model.blocks)):
+    if name in {*(d.name for d in model.definitions), *(b.name for b in model.blocks)}:
         check_names(model, {name: ""})
     return pick_gain(model.parameters, name)
 

@@ -178,7 +178,7 @@ def figure(value: arb, digits: int, *, trimmed: bool = False) -> str:
 
     Examples
     --------
-    >>> figure(arb(2) / 3, 6), figure(arb("0.123456", 1e-4), 6), figure(arb(1.75, 0.6), 6)
+    >>> figure(arb(2) / 3, 6), figure(arb("0.12345", 1e-5), 6), figure(arb(1.75, 0.6), 6)
     ('0.666667', '0.123', '1.75 +- 0.61')
     >>> figure(arb(0, 1e-16), 6), figure(arb(1) / 2, 6), figure(arb(1) / 2, 6, trimmed=True)
     ('0 +- 1.1e-16', '0.500000', '0.5')

@@ -133,6 +133,7 @@ def in_roots(expression: Expression, root: RootOfS) -> Expression:
 
     Examples
     --------
+    >>> from symflex.expressions import number
     >>> from symflex.model.model import RootOfS
     >>> cubed = product_of([power(S, 3), Call("exp", S)])
     >>> format_expression(in_roots(cubed, RootOfS(number(1), number(0), 2)))

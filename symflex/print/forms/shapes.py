@@ -108,7 +108,7 @@ def _in_radians(part: Expression, counted: Collection[Expression]) -> Expression
     n = powers.pop(PI, 0)
     found = next((b for b in powers if b in counted and powers[b] == n > 0), None)
     front /= Fraction(2) ** n
-    if found is None or front.denominator != 1 or (n, abs(front)) == (1, 1):
+    if found is None or front.denominator != 1 or n == abs(front) == 1:
         return part
     turns = Product((number(2), PI, found))
     factors = [
