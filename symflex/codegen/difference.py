@@ -57,7 +57,7 @@ MEASURE_BITS = 600
 LARGE = 1e-9
 """Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
 SMALLEST = float_info.min / float_info.epsilon
-"""Of the largest coefficient: what is too small for a double beside it is less than its rounding."""
+"""Share of the largest coefficient below which another one is less than its rounding."""
 SHOWN_POLES = 8
 PAIR = 2
 

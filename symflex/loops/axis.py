@@ -150,7 +150,7 @@ def _joined(intervals: list[arb]) -> tuple[arb, ...]:
 
 ORIGIN_BITS = 320
 SHARES = (1, 0.7, 0.5)
-"""Of a radius, that to which functions are expanded about 0: the first for which they are bounded."""
+"""Shares of a radius: functions are expanded about 0 up to the first for which they are bounded."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -391,7 +391,7 @@ class DistributedFactors:
                     self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
                     continue
                 gain = around.gain()
-                # Of a simple pole s: ds/dK = -B/(A' + K B'); its mirror image moves alike.
+                # A simple pole s moves by ds/dK = -B/(A' + K B'); its mirror image moves alike.
                 slope = -(around.b / (around.a_slope + gain * around.b_slope)).real
                 change = 2 if is_simple and slope > 0 else -2 if is_simple and slope < 0 else None
             if self._may_be_in_range(gain):

@@ -44,7 +44,7 @@ SHORT = 10**6
 """Denominator of an end of the domain that is a short number."""
 EDGE_BITS = 128
 EDGE_DIGITS = 30
-"""Of an end of the domain."""
+"""Precision of an end of the domain."""
 BEYOND = 1 + 1e-9
 """How far a search goes beyond its end, which is a double."""
 
@@ -158,7 +158,7 @@ class GainFunctions:
 
     @property
     def sign(self) -> int:
-        """Of the gain's own value."""
+        """Sign of the gain's own value."""
         return -1 if self.nominal is not None and self.nominal < 0 else 1
 
     def domain(self, limits: Limits, *, is_endless: bool) -> Limits:

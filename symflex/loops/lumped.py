@@ -54,7 +54,7 @@ class LumpedFactor:
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
     loop: Loop | None = None  # whose factor it is
-    # Of a factor with functions of the gain: these, which follow it in the ring unless all are powers of one
+    # Functions of the gain in the factor, which follow it in the ring unless all are powers of one
     # root of the gain, whose place that root takes; and the range examined.
     functions: GainFunctions | None = None
     limits: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 DEEPEST = 50
 """Halvings of the range of gains."""
 MOST_BOXES = 128
-"""Of gains at one interval of frequencies."""
+"""Boxes of gains at one interval of frequencies."""
 MOST_INTERVALS = 8_000
-"""Of frequencies, in one search."""
+"""Intervals of frequencies in one search."""
 INFLATED = 1.3
 """So that a root on an edge lies inside."""
 

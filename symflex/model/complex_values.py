@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 UNIT, ONE = Name(IMAGINARY), Fraction(1)
 MOST_NODES = 2000
-"""Of an expression with its definitions put in: larger ones are left as they are written."""
+"""Nodes of an expression with its definitions put in; larger ones stay as they are written."""
 
 
 def with_real_values(draft: Draft) -> Draft:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
 SHORT_DIGITS: Final = 6
-"""Of frequencies and damping ratios in a terminal."""
+"""Digits of frequencies and damping ratios in a terminal."""
 _FREQUENCY_BITS: Final = 256
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
 POINT_DIGITS = 50
-"""Of degenerate points: more than roots of the equations are told from them by."""
+"""Digits of degenerate points: more than those that tell roots of the equations from them."""
 
 
 def degenerate_points(bound: BoundTransferFunction) -> list[Root]:

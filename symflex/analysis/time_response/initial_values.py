@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction
 
 BITS = 256
-"""Of sums: rounding adds nothing to the balls of what is summed."""
+"""Precision of sums: rounding adds nothing to the balls of their terms."""
 _QUANTITY = re.compile(r"(?P<s>s(\^(?P<order>\d))?\*)?(?P<quantity>\w+(\.\w+)?)")
 
 

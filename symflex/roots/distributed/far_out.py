@@ -84,7 +84,7 @@ def right_tail(
     wavenumbers have no formula.
     """
     with precision(BITS):
-        # Of a function of a root of s, sectors of that.
+        # Sectors of a root of s, if the function is one of that.
         function = _sum_far_out(bound, polynomials, scales, -(-SECTORS // bound.sheets))
         if isinstance(function, str):
             return function
