@@ -192,7 +192,6 @@ def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):
     assert places(found.poles) == places(fresh.poles)
 
 
-@pytest.mark.slow
 def test_a_side_branch_before_an_end_without_reflections_hides_nothing_and_has_its_zeros_on_the_axis():
     """A closed branch of length 0.6 and section 0.4 on a duct of sound speed 2: cosh(0.3 s) = 0 takes all.
 
