@@ -254,12 +254,12 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
     return factors
 
 
-def without_reflections(bound: BoundTransferFunction, part: Factored, *, is_hidden: bool = False) -> Factored:
+def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factored:
     """Return a product whose roots are the same, with powers of s for what has one exponential left.
 
     A wave that meets a damper as large as its own impedance is not reflected: ``E A gamma cosh(gamma l) +
     b s sinh(gamma l)`` is a multiple of ``s exp(gamma l)`` for ``b = A sqrt(E rho)``, and has no root but 0.
-    What may be otherwise stays as it is. Of what is hidden such a 0 comes of clearing the wavenumber.
+    What may be otherwise stays as it is, all of it.
     """
     table, result = bound.kernels, Factored.number(part.ring, part.unit)
     if not table.kernels or any(law.kind != "wave" or not law.shift.is_zero for law in table.dispersions):
@@ -269,10 +269,10 @@ def without_reflections(bound: BoundTransferFunction, part: Factored, *, is_hidd
         kernels = [k for k in table.kernels if value.depends_on(k.generator)]
         names = {name for law in table.dispersions for name in law.wavenumbers if value.depends_on(name)}
         names |= {k.wavenumber for k in kernels}
-        image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None
-        if image is not None and kernels and is_hidden:
-            image = image.filter(lambda f: f != part.ring.context.gen(0))
-        result = result * (value if image is None else image) ** exponent
+        image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None if names else value
+        if image is None:
+            return part
+        result = result * image**exponent
     return result
 
 

@@ -190,35 +190,3 @@ def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):
     assert found.verdict.found == 2
     assert places(found.unstable) == places(fresh.unstable) != []
     assert places(found.poles) == places(fresh.poles)
-
-
-def test_a_side_branch_before_an_end_without_reflections_hides_nothing_and_has_its_zeros_on_the_axis():
-    """A closed branch of length 0.6 and section 0.4 on a duct of sound speed 2: cosh(0.3 s) = 0 takes all.
-
-    The poles are those of ``cosh(q) exp(p) + 0.4 sinh(p) sinh(q)``, 1 at s = 0, with p = s/2 and q = 0.3 s.
-    """
-    model = """symflex = 1
-inputs = { p_0 = {} }
-outputs = { p_R = "b(1)" }
-"""
-    for name, unknowns, length, section, ends in [
-        ("front", "a", 1, 1, '"a(0) = p_0", "va(1) = vb(0) + vc(0)"'),
-        ("back", "b", 1, 1, '"b(0) = a(1)", "b(1) = 2*vb(1)"'),
-        ("branch", "c", "0.6", "0.4", '"c(0) = a(1)", "vc(0.6) = 0"'),
-    ]:
-        p, v = unknowns, f"v{unknowns}"
-        model += f"""[fields.{name}]
-unknowns = ["{p}", "{v}"]
-domain = ["0", "{length}"]
-equations = ["{section}*{p}' + s*{v} = 0", "4*{v}' + {section}*s*{p} = 0"]
-conditions = [{ends}]
-"""
-    found = locate(bound(model), Modes(2), 12)
-    assert found.certificate.certified
-    assert [h for h in found.hidden if h.root.is_zero] == []
-    assert [r.on_imaginary_axis for r in found.zeros] == [True] * 4
-    for root in found.poles:
-        s = complex(root.re.mid(), root.im.mid())
-        p, q = s / 2, 0.3 * s
-        value = cmath.cosh(q) * cmath.exp(p) + 0.4 * cmath.sinh(p) * cmath.sinh(q)
-        assert abs(value) < 1e-8, s
