@@ -143,7 +143,8 @@ def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTran
     bound = loop.bound
     if den.is_zero:
         message = f"the equations have no unique solution for {loop.gain.name} = {float(gain):.6g}"
-        raise ModelError(Diagnostic("SF231", message, loop.gain.span))
+        hint = f"give '{loop.gain.name}' another value, or leave this one out of --range"
+        raise ModelError(Diagnostic("SF231", message, loop.gain.span, hint))
     parts = (num, den) if bound.kernels else None
     own = (loop.gain.name, ExactValue(gain))
     values = tuple(own if name == loop.gain.name else (name, value) for name, value in bound.values)

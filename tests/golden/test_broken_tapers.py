@@ -80,7 +80,7 @@ BROKEN = {
     "singular_by_its_value": (stiffened("(1 - 4*c*x/l)"), "SF250", "not analytic near x = 0.5 m"),
     "system_singular_inside": (
         f'{HEAD}[fields.f]\nunknowns = ["w", "v"]\ndomain = ["0", "l"]\n'
-        'equations = ["«w\' = x/l*v»", "(1 - 2*x/l)*v\' = -a^2*s^2*w/(1 + x/l)"]\n'
+        'equations = ["«w\' = x/l*v»", "(1 - 2*x/l)*v\' = -c*a^2*s^2*w/(1 + x/l)"]\n'
         f'conditions = ["w(0) = 0", "v(l) = F/N_0"]\n{FORCE}[outputs]\ny = "w(l)"\n',
         "SF250",
         "a coefficient of 'f' is not analytic near x = 0.5 m",

@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from symflex import Model, pipeline
+import symflex
+from symflex import pipeline
 from symflex.drawing import drawing_of, render_drawing
 from symflex.drawing.symbols import SYMBOLS
 from symflex.library.elements import ELEMENTS
@@ -175,7 +176,7 @@ def test_texts_of_an_svg_are_texts_and_parts_bear_their_names():
 
 @pytest.mark.slow
 def test_a_notebook_shows_the_drawing_of_a_model():
-    shown = Model.of(pipeline.loads(LOOP))._repr_html_()
+    shown = symflex.loads(LOOP)._repr_html_()
     assert "<title>element car</title>" in shown
     assert "<style" not in shown
 
