@@ -20,6 +20,7 @@ from symflex.expressions import (
     Quotient,
     is_number,
     names,
+    names_among,
     negative,
     nodes,
     replace_values,
@@ -28,6 +29,7 @@ from symflex.expressions import (
 from symflex.library.blocks import BLOCKS
 from symflex.model.branches import per
 from symflex.model.model import PlacedBlock
+from symflex.model.scope import COORDINATE
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -43,7 +45,9 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
     places = draft.expressions()
     ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     places += ratios.values()
-    times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) is not None}
+    constants = {p.name for p in (*draft.declared, *draft.inherited)}
+    along = {COORDINATE} - constants  # what depends on x is no dead time
+    times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) and not names_among(t, along)}
     if not times:
         return draft
     used = {n.name for e in places for n in names(e)}
