@@ -175,7 +175,7 @@ class _Degrees:
             hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
             if names_among(power.base, (LAPLACE,)):
                 hint = "of s, write one number over at most 12, as s^0.5; all roots are of one a*s + b"
-            elif names_among(exponent, (LAPLACE,)):
+            elif isinstance(power.base, Name | Number) and names_among(exponent, (LAPLACE,)):
                 hint = "an exponential function is exp(...), as in exp(-s*T)"
             self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
             return base
