@@ -45,8 +45,8 @@ def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
     places = draft.expressions()
     ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     places += ratios.values()
-    constants = {p.name for p in (*draft.declared, *draft.inherited)}
-    along = {COORDINATE} - constants  # what depends on x is no dead time
+    # What depends on x is no dead time, unless x is a parameter.
+    along = {COORDINATE} - {p.name for p in draft.declared} - {p.name for p in draft.inherited}
     times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) and not names_among(t, along)}
     if not times:
         return draft
