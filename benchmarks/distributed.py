@@ -40,7 +40,7 @@ HAS_WIDE_VECTORS = "X86_V4" in FOUND or "AVX512_SKX" in FOUND
 FASTER_IN_REAL_ARITHMETIC = 2.0 if HAS_WIDE_VECTORS else 1.3
 SLOWER_THAN_BY_HAND = 1.2
 FASTER_THAN_LAMBDIFY_CSE = 1.8
-FASTER_THAN_LAMBDIFY = 8.0 if HAS_WIDE_VECTORS else 5.0
+FASTER_THAN_LAMBDIFY = 6.5 if HAS_WIDE_VECTORS else 5.0
 AGREEMENT = 1e-13
 """Median of the relative differences between the ways, or they would not do the same."""
 
