@@ -298,7 +298,7 @@ class LoopFunction:
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
         """Return A and B on a ball of frequencies, and in its middle, as :meth:`parts_around`.
 
-        Of functions of a root of s, slopes are those of a variable whose axis is that of j.
+        If there is a root of s, slopes are in a variable whose imaginary axis is that of s.
         """
         if self.bound.sheets == 1:
             return self.around(acb(0, omega), bits)

@@ -53,7 +53,7 @@ EITHER_SHEET = "a root lies so close to the branch cut that its sheet is not dec
 SINGULAR = "at its branch point s = 0 the function is infinite"
 SQUARE = 2
 WIDER = 1 + 1e-9
-"""By which a radius exceeds that of the last root."""
+"""Factor by which a radius exceeds that of the last root."""
 MORE = 3
 """How many times as many modes are searched on all sheets as are wanted on one."""
 UNJUDGED = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))

@@ -365,7 +365,7 @@ class Side:
     def count_right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
 
-        Of a function of a root ``r = s^(1/q)``, how many lie in the sector that is right of it in s.
+        If it is one of a root ``r = s^(1/q)``, count those in the sector of r that is right of it in s.
         """
         if (sheets := self._bound.sheets) == 1:
             return self._count.right(high)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symflex.roots.networks.cramer import CramerEquations
 
 NARROW = 128
-"""Binary digits of abs(s) to which roots about a point are told from it: 38 decimal ones."""
+"""Binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones."""
 WIDER = 100
 """Doublings of the radius of the disc in which the determinants are bounded."""
 SPARE = 8
