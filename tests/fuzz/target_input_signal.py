@@ -36,6 +36,10 @@ def run(data):
         return
     times = signal.times
     falls = any(a > b for a, b in pairwise(times))
-    if falls or len(times) != len(signal.values) or any(a == b for a, b in zip(times, times[2:], strict=False)):
+    if (
+        falls
+        or len(times) != len(signal.values)
+        or any(a == b for a, b in zip(times, times[2:], strict=False))
+    ):
         message = f"read as {signal!r}"
         raise AssertionError(message)
