@@ -91,7 +91,7 @@ _ELSEWHERE = {
     "SymflexError": "symflex.errors",
     "read_measurement": "symflex.data.measurement",
 }
-"""Where public names are found that are not in ``symflex.api``."""
+"""Modules of the public names that are not in ``symflex.api``."""
 
 
 def __dir__() -> list[str]:

@@ -33,14 +33,14 @@ MOST_EXPONENTIALS = 1500
 Gaussian = tuple[int, int]
 """An integer a + j b."""
 Part = TypeVar("Part", int, Fraction)
-"""Of complex numbers whose parts are rational."""
+"""The type of a complex number's rational parts."""
 Exponent = tuple[tuple[int, int, int], ...]
 """Positions of arguments, ascending, and what each is multiplied with: a + j b."""
 Monomial = tuple[tuple[int, int], ...]
 """Positions of generators, ascending, and exponents; the first generator is s, or what stands for it."""
 Amplitude = dict[Monomial, Gaussian]
 Multiples = tuple[int, ...]
-"""Of every argument, one integer."""
+"""One integer for each argument."""
 Polynomial = dict[int, dict[Monomial, int]]
 """Per power of the first generator and monomial of the others, counted from 0, a number."""
 Combination = tuple[tuple[int, acb], ...]

@@ -67,7 +67,7 @@ GUARD = 32
 BEYOND = 32
 """Polynomials in u are bounded on a disc so many times larger than what they are used on."""
 FEWEST_BITS = 30
-"""Of orders in u that hardly matter."""
+"""Precision of orders in u that hardly matter."""
 ASIDE = 1 / 16
 """Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
 CUTS = 4

@@ -42,11 +42,11 @@ FIRST_SHARE = 6
 SHORTEST = 1e-5
 """Share of the whole below which the radius of a step means that there is a singularity."""
 ROUNDING = 2.0**-50
-"""Of a place in doubles: that of a singularity at an end is met then, too."""
+"""Rounding of a position in doubles: a singularity at an end is met then, too."""
 MOST_STEPS = 1000
 """Ten times those of a thousand modes, and more than coefficients need that anyone means."""
 HALVINGS = 40
-"""Of an interval in which a singularity lies: it is told to six digits."""
+"""Halvings of an interval in which a singularity lies: it is located to six digits."""
 LAST = 1.2
 """A step may be so much longer than others if it is the last."""
 RADII = tuple(4.0 * 0.8**k for k in range(80))
@@ -56,14 +56,14 @@ BOUNDED = 4
 SAMPLES = 8
 """Points at which the growth along x is sampled where about what it is suffices."""
 MOST_TERMS = 1500
-"""Of the power series about a singular start: three times what the tenth mode of a hanging string takes."""
+"""Terms of the power series about a singular start: three times those of a hanging string's tenth mode."""
 MOST_HALVINGS = 40
-"""Of the first step from a singular start."""
+"""Halvings of the first step from a singular start."""
 BOUND_BITS = 64
-"""Of bounds, which are added up and rounded up."""
+"""Precision of bounds, which are added up and rounded up."""
 BITS_OF_E = 1.4426950408889634
 DIRECTIONS = (-1, 1, 1j)
-"""Of u, in which solutions may grow least: as waves, decaying, and between."""
+"""Directions of u in which solutions may grow least: as waves, decaying, and between."""
 HIGHEST = 1000.0
 """Power of two near the end of doubles."""
 APART = 300.0

@@ -41,11 +41,11 @@ SCHEMA = "symflex.shape/1"
 TOLERANCE = 0.05
 """Residual vibration V that an EI shaper allows: the usual one in its literature."""
 MORE_DIGITS = 24
-"""Of poles, beyond those printed: responses to long inputs lose a few to each other."""
+"""Digits of poles beyond those printed: responses to long inputs lose a few to each other."""
 MORE_MODES = 8
 """Searched beyond those asked for, as some may not oscillate."""
 MOST_IMPULSES = 2187
-"""Of seven modes with three each."""
+"""Most impulses: those of seven modes with three each."""
 TEXT_DIGITS = 10
 LEAST = 1e-300
 """The smallest bound that is printed."""

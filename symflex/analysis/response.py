@@ -100,7 +100,7 @@ def _phase_of(roots: Iterable[Root], omega: npt.NDArray[np.float64]) -> npt.NDAr
 
 LONGEST_STEP = 0.1
 SMALLEST_STEP = 1e-9
-"""In ln(s): where a step along the axis is still not clear, a root lies on it."""
+"""Smallest step in ln(s): if a ball along it still contains zero, a root lies on the axis."""
 DETOUR = 4.0
 """Width of the way around a root, in lengths of the step that meets it."""
 
@@ -453,7 +453,7 @@ DEFAULT_BAND_HZ = (0.1, 10.0)
 WITHOUT_ROOTS = ("SF404", "SF505")
 """Codes of searches that end without roots; where the time is over, that is said instead."""
 FOLLOWING_ERROR = 0.02
-"""Of the square of a value between two others, over their product: a tenth of a decibel, half a degree."""
+"""Largest deviation of a squared value from its neighbours' product: a tenth of a decibel, half a degree."""
 FOLLOWING_ROUNDS = 12
 MOST_POINTS = 20_000
 BEYOND_LAST_POLE = 1.3

@@ -62,11 +62,11 @@ if TYPE_CHECKING:
 
 FIRST_DIGITS, LAST_DIGITS = 60, 4000
 TRIED_AT = acb(1.2345, 0.5432)
-"""Where a function of z is compared: no pole is there but by a rare accident."""
+"""The point at which a function of z is compared: a pole there is a rare accident."""
 GOOD_BITS = 110
-"""Of every coefficient: twice a double and room for what measures rounding to it."""
+"""Precision of every coefficient: twice a double's, and room for what measures rounding to it."""
 NOTHING_BITS = 180
-"""By which a coefficient is smaller than the largest that counts as zero where no sign is told."""
+"""A coefficient this many bits smaller than the largest counts as zero if its sign cannot be decided."""
 
 
 @dataclass(frozen=True, eq=False)

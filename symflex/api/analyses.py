@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from symflex.analysis.rational import RationalApproximation
 
 POINTS = 201
-"""Of a response in time where no times are given."""
+"""Number of points of a response in time if no times are given."""
 
 
 class Analyses(Plotted):

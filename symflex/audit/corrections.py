@@ -56,7 +56,7 @@ MOST_WORK = 20_000
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
-"""Where a formula with another line is tried first, and its digits: there roots have one reading."""
+"""First point at which a formula with another line is tried, and its digits: roots are unambiguous there."""
 LINE_EXPONENTS = tuple(Fraction(n, 4) for n in (2, 1, 4, 8, -2, 12, 16, -1, -4))
 MOST_PAIRS, FEW_SLIPS = 1500, 20
 """Pairs of slips in a line that are tried, and slips in each of two lines."""

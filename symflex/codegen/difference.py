@@ -49,11 +49,11 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyTransferFunction
 
 SAMPLES = 1000
-"""Of a run that measures rounding; the input is +1 or -1 at random, which excites all frequencies."""
+"""Samples of a run that measures rounding; the input is +1 or -1 at random, which excites all frequencies."""
 FREQUENCIES = 200
-"""At which responses are compared, over four decades up to half of the sampling frequency."""
+"""Frequencies at which responses are compared, over four decades up to half of the sampling frequency."""
 MEASURE_BITS = 600
-"""Of the run that counts as exact: differences of poles close to each other cost it a few hundred."""
+"""Precision of the run that counts as exact: differences of close poles cost a few hundred bits."""
 LARGE = 1e-9
 """Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
 SMALLEST = float_info.min / float_info.epsilon

@@ -52,7 +52,7 @@ NAMES = frozenset(
 RESERVED = KEYWORDS | NAMES | {"s"}
 
 WORDS_OF_TITLE = 4
-"""Of those a module is named by."""
+"""Words of the title that name a module."""
 
 
 # ---------------------------------------------------------------------------------- expressions

@@ -38,7 +38,7 @@ MOST_IN_A_FIGURE = 6
 """So many functions a figure holds that the model did not ask for."""
 
 TALLEST_MM = 225.0
-"""Of a figure with what it shows in words, on a page of the document."""
+"""Height of the tallest figure with its words, on a page of the document."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ KEYWORDS = frozenset(
     "otherwise parfor persistent properties return spmd switch try until unwind_protect "
     "unwind_protect_cleanup while".split()
 )
-"""Of both languages."""
+"""Keywords of both languages."""
 
 FUNCTIONS = frozenset(
     "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
@@ -97,10 +97,10 @@ ROOM = WIDTH - 4
 OTHER_FIELDS = frozenset(
     "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
 )
-"""Of the struct that the main function returns."""
+"""Other fields of the struct that the main function returns."""
 
 SYSTEM_ROLES = ("system", "coefficients")
-"""Of the two functions of a rational transfer function."""
+"""The two functions of a rational transfer function."""
 
 
 # ------------------------------------------------------------------------------------------- expressions

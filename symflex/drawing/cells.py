@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from symflex.drawing.scheme import Distance, DrawnPart, End
 
 SPACE: Final = 3.0
-"""Between a symbol and a text, and between texts [points]."""
+"""Space between a symbol and a text, and between texts [points]."""
 WIDEST: Final = 80.0
-"""Of a label at a symbol [points]; beyond it the element's name is written."""
+"""Widest label at a symbol [points]; beyond it the element's name is written."""
 PITCH: Final = {"dc_motor": 19.0}
 """Distance of two ends on one side of a symbol [points]."""
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
@@ -57,7 +57,7 @@ SPACINGS: Final = (
     Spacing(4.0, 18.0, 0.9, 0.9, has_room=False),
     Spacing(2.0, 15.0, 0.76, 0.66, has_room=False),
 )
-"""From the one that is taken where it fits to the last."""
+"""Spacings, from the widest, which is taken if it fits, to the last."""
 
 
 @dataclass

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
     from symflex.drawing.signals import SignalGraph, SignalNode
 
 RADIUS: Final = 4.2
-"""Of a sum."""
+"""Radius of a sum."""
 WIRE: Final = 11.0
 """Length of a wire between two symbols, enough for an arrow."""
 EDGE: Final = 3.5
-"""Between a text and the box around it."""
+"""Space between a text and the box around it."""
 TURN: Final = 10.0
 """Room for a wire that goes back to the left."""
 APART: Final = 6.0
-"""Between rows."""
+"""Space between rows."""
 WIDEST: Final = 66.0
-"""Of a formula in a box; a longer one is not printed."""
+"""Widest formula in a box; a longer one is not printed."""
 WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
-"""Of a formula that is written out below the diagrams, and the space after it [points]."""
+"""Widest formula that is written out below the diagrams, and the space after it [points]."""
 MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one, from a start."""
 NAMED: Final = ("input", "reading", "signal")

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from symflex.model import FieldProblem, Model
 
 LENGTH: Final = 150.0
-"""Of a row of fields [points]."""
+"""Length of a row of fields [points]."""
 SHORTEST: Final = 0.22
 """Share of the row that each takes at least."""
 LEADING: Final = 3.0
@@ -68,7 +68,7 @@ BENDING: Final = 4
 STRING: Final = (0.0,)
 """Depths of a string, a line without any."""
 STIFF_SECTIONS: Final = {unit_of(unit).dimension for unit in ("Pa", "N*m^2")}
-"""Of a modulus, and of what resists bending or torsion."""
+"""Dimensions of a modulus, and of what resists bending or torsion."""
 
 
 @dataclass(frozen=True, slots=True)

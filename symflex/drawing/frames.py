@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from symflex.model import Model
 
 EXTENT: Final = 95.0
-"""Of a frame, and the least length of a member [points]."""
+"""Extent of a frame, and the least length of a member [points]."""
 SHORTEST: Final = 40.0
 LONGEST: Final = 500.0
-"""Of a member beside one of the least length; other frames are drawn in a row."""
+"""Longest member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
 CLAMP: Final = 8.0

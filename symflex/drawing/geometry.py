@@ -197,7 +197,7 @@ class Placed:
 
 
 MOST_CORNERS, LARGE = 6, 36.0
-"""Of what may be a slanted member; what has more is a symbol, or a long member that tapers [points]."""
+"""Largest slanted member; one with more corners is a symbol, or a long member that tapers [points]."""
 _SHORT, _PIECE = 20.0, 3.0
 
 

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from symflex.drawing.geometry import Drawing, Point
 
 CELL: Final = 2.5
-"""Of the grid on which ways are looked for [points]."""
+"""Width of the grid on which wires are routed [points]."""
 CLEAR: Final = 1.6
-"""Between a wire and what it passes."""
+"""Space between a wire and what it passes."""
 BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 """What a corner, a dashed wire that is crossed, and another line that is, cost in cells of length."""
 LONGEST: Final = 300.0

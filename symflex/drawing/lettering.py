@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from symflex.model import Model, ModelParameter
 
 SIZE: Final = 8.0
-"""Of the type [points], as in other figures."""
+"""Size of the type [points], as in other figures."""
 SMALL: Final = 7.0
 LEADING: Final = 2.5
-"""Between lines of a label."""
+"""Space between lines of a label."""
 _FINE: Final = 20
 """Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""
 _PARSER: Final = MathTextParser("path")

@@ -65,7 +65,7 @@ FACE: Final = 9.0
 MARK: Final = 17.0
 """Height of what stands upright at a node."""
 WIDEST_LENGTH: Final = 34.0
-"""Of a length that a dimension shows; a longer one stands in the label of its member [points]."""
+"""Widest length that a dimension shows; a longer one is in the label of its member [points]."""
 
 
 @dataclass(frozen=True, slots=True)

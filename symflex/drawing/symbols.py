@@ -386,7 +386,7 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
         "line .9,0 1,0",
     ),
 }
-"""By the type of an element; a new element is a line."""
+"""Symbols by the type of an element; a new element is a line."""
 
 # Inputs between two nodes are drawn as a distance that is given; as two arrows, to the right into the second
 # end and to the left into the first; and as a motor without a circuit, which turns its ends apart.
@@ -396,7 +396,7 @@ TORQUE_BETWEEN: Final = branch(
     30.0, "bold 0,0 .5-5,0; bold .5+5,0 1,0; disc .5,0 5; turn .5,0 2.8 -30 200; head .5-2.8,-.6 .2 -.97 2.8"
 )
 DOTS: Final = branch(26.0, "line 0,0 .5-8,0; line .5+8,0 1,0; dot .5-4,0 .9; dot .5,0 .9; dot .5+4,0 .9")
-"""For what is left out."""
+"""Three dots for what is left out."""
 TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
     ("rotation", "rotation"): gears,
     ("rotation", "translation"): screw,

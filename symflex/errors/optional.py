@@ -18,7 +18,7 @@ OPTIONAL: Final = {
     "pyarrow": ("SF914", f"Parquet {_LACKING}", "pip install 'symflex[sweep]'"),
     "distributed": ("SF914", f"a cluster {_LACKING}", "pip install 'symflex[sweep]'"),
 }
-"""By package: the error code, the message, and how to install it."""
+"""Error code, message and how to install, by package."""
 
 
 def installed(module: str) -> Any:  # noqa: ANN401 (these libraries have no types)

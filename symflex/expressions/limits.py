@@ -43,7 +43,7 @@ USER_LIMITS = Limits(
     bits=4_000,
     order=64,
 )
-"""For texts people write."""
+"""Limits for texts that people write."""
 
 PROGRAM_LIMITS = Limits(
     characters=10_000_000,
@@ -55,7 +55,7 @@ PROGRAM_LIMITS = Limits(
     bits=1_000_000,
     order=64,
 )
-"""For texts the program itself has written."""
+"""Limits for texts that the program itself has written."""
 
 
 class Size(NamedTuple):

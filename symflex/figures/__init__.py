@@ -36,7 +36,7 @@ _HOME: Final = {
     "style": "DEFAULT_FONT FONTS",
     "sweep": "draw_sweep",
 }
-"""Where names are found when one is first used: a drawing of a model takes a style and no roots."""
+"""Modules of the public names, imported on first use: a drawing of a model takes a style and no roots."""
 
 
 def __getattr__(name: str) -> object:

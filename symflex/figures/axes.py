@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 SHORT_BAND_DECADES: Final = 1.3
 NARROW_BAND_DECADES: Final = 0.6
-"""Between a frequency and four times it there may be one tick of 1, 2 and 5."""
+"""Width of a narrow band: between a frequency and four times it there may be one tick of 1, 2 and 5."""
 FARTHEST: Final = 50.0
 """Times what is shown; numbers beyond a page would overflow in what reads the figure."""
 RIGHT_HALF_PLANE: Final = "#FBEDE4"
@@ -177,7 +177,7 @@ Limits = tuple[float, float]
 LARGEST = 1e30
 """Ends of an axis: far below what single precision holds, in which readers of pages compute."""
 NARROWEST = 1e-6
-"""Of the length of an axis over its ends: its ticks have six digits."""
+"""Least length of an axis over its ends: its ticks have six digits."""
 
 
 @dataclass(frozen=True, slots=True)

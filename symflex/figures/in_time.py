@@ -46,7 +46,7 @@ VISIBLE: Final = 1e-3
 PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 POINTS: Final = 801
 DIGITS: Final = 6
-"""Of values, far more than a line shows."""
+"""Digits of values, far more than a line shows."""
 RESIDUAL_INCHES: Final = 2.3
 SPAN: Final = (0.5, 1.5)
 RATIOS: Final = 401

@@ -23,7 +23,7 @@ Vector = tuple[float, float]
 
 AT_REST: Final = 1e-9
 APART: Final = 0.3
-"""Between members that no node joins, as a share of the length of one."""
+"""Space between members that no node joins, as a share of the length of one."""
 
 
 @dataclass(frozen=True, slots=True)

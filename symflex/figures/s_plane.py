@@ -44,7 +44,7 @@ WIDENINGS: Final = 8
 """Times the view may be widened so that no root is cut by its frame."""
 PLAIN_LIMIT: Final = 1e5
 ROUNDING: Final = 1e-12
-"""Of a root's size: what four operations in doubles may leave, with room."""
+"""Share of a root's size that four operations in doubles may lose, with room."""
 
 
 Kind = Literal["pole", "zero", "nominal", "last"]
@@ -208,7 +208,7 @@ POINTS_PER_INCH: Final = 72.0
 MARK_POINTS: Final = 3.2
 """Half the size of a cross or circle, with its line."""
 PAD_POINTS: Final = 1.5
-"""Between a note and the frame."""
+"""Space between a note and the frame."""
 LISTED: Final = 5
 """Roots that are named at one arrow; of the others their number is told."""
 NOTE_LINE_POINTS: Final = 7.5
@@ -218,11 +218,11 @@ ARROW: Final = 0.13
 SHIFTS: Final = 8
 """How many heights of a note it may be moved from its arrow to where nothing stands."""
 TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
-"""To cover another text, to be shifted, smaller by a step, or far away weighs as much as so many roots."""
+"""Costs of covering a text, being shifted, smaller by a step, or far away, in covered roots."""
 GRID: Final = 3.0
 """Distance of places far from an arrow that are tried where nothing near is free [points]."""
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
-"""Of roots that are named at an arrow; to poles at the last gain of a locus its curves lead."""
+"""Signs of roots that are named at an arrow; the curves of a locus lead to poles at the last gain."""
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top [points]."""

@@ -38,7 +38,7 @@ LINE_INCHES: Final = 0.13
 """Height of a line of a title."""
 TITLE_SPACING: Final = 0.95
 DOTS_SHOWN: Final = 120
-"""Of a page, per inch of a figure in a notebook: a column is then as wide as its lines of text."""
+"""Dots per inch of a figure in a notebook: a column is then as wide as its lines of text."""
 
 # Okabe and Ito (2008), told apart with every kind of colour blindness; their yellow is too pale for a line.
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")

@@ -64,7 +64,7 @@ THREE_DIGITS: Final = 1e3
 PLAIN: Final = 1e5
 """Numbers from here on are written with a power of ten."""
 FEW_DECADES: Final = 300.0
-"""Below this factor, decades are divided."""
+"""Largest range whose decades are divided."""
 OVERDAMPED: Final = 1.5
 """Real roots are shown as far to the left as so many times the highest imaginary part."""
 UNDAMPED: Final = 1e-12

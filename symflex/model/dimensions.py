@@ -75,7 +75,7 @@ if TYPE_CHECKING:
 PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
 EXTREME_EXPONENT = 10**6
-"""Of a unit, larger than any meant in earnest: definitions that square each other reach it after twenty."""
+"""Largest exponent of a unit; twenty definitions that square each other pass it."""
 
 TIMED = PARAMETER = 2
 """What :class:`Measure` calls a number that is a pole or a time, and a parameter with a unit."""

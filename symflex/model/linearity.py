@@ -41,7 +41,7 @@ EXPONENT_LIMIT = 64
 SHOWN_PROBLEMS = 20
 """More of one expression than anybody reads."""
 ORDER_LIMIT = 24
-"""Of a derivative at a point; what is beyond the field's own order follows from its equations."""
+"""Highest derivative at a point; those beyond the field's own order follow from its equations."""
 DELAY_HINT = "write a dead time in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
 FUNCTION_HINT = "of s, roots of one a*s + b are available, and exp, sinh, cosh and tanh of their multiples"
 NONLINEAR = frozenset(

@@ -48,7 +48,7 @@ J: Final = ExactValue(Fraction(1), is_imaginary=True)
 IMAGINARY: Final = "j"
 """The name of the imaginary unit: it means that where the model gives it no other meaning."""
 PAIRS_SHOWN: Final = 6
-"""Of a model's transfer functions, where it is named."""
+"""Number of transfer functions that a message lists."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end", "therma
 PORTS = {name for element in ELEMENTS.values() for p in element.ports for name in (p.name, p.pair)} | {
     *("node", "nodes", "pins", "ends")
 }
-"""Where elements have their nodes, and what else people call it."""
+"""Keys under which elements name their nodes, and what else people call them."""
 EXAMPLE = 'for instance { force = "x_act" }, or {} for a free signal'
 TYPES_HINT = "'symflex elements' lists the types"
 

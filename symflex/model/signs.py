@@ -378,7 +378,7 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
 
 
 PIECES = 64
-"""Of a member; a value that varies along x is tried between any two."""
+"""Number of pieces of a member: a value that varies along x is tried between any two."""
 SHORTEST = 2.0**-10
 """Piece of an interval beyond which no sign is looked for."""
 

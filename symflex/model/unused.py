@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SHOWN = 4
 ALIKE = 0.8
-"""Of ``difflib``: 'grond' and 'groud' are 0.9 like 'ground', 'round_1' is 0.77."""
+"""Least ratio of ``difflib`` for a typing error: 'grond' is 0.9 like 'ground', 'round_1' 0.77."""
 
 
 def unused(model: Model) -> tuple[Diagnostic, ...]:

@@ -165,11 +165,11 @@ _TIMES: Final = RootColumn(
 _TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.told.re)  # beside a radius
 _TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.told.im)
 PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
-"""Of tables on web pages."""
+"""Columns of tables on web pages."""
 PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)
-"""Of LaTeX tables; the multiplicity is a column there where one is not 1."""
+"""Columns of LaTeX tables; the multiplicity is a column there if one is not 1."""
 MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)
-"""Of LaTeX tables of modes."""
+"""Columns of LaTeX tables of modes."""
 TERMINAL_COLUMNS: Final = (
     RootColumn("Re", (), "rad/s", _TOLD_REAL.text),
     RootColumn("Im", (), "rad/s", _TOLD_IMAGINARY.text, is_mirrored=True),
@@ -177,7 +177,7 @@ TERMINAL_COLUMNS: Final = (
     RootColumn("f", (), "Hz", lambda root, printed, digits: _frequency(root, SHORT_DIGITS, trimmed=True)),
     RootColumn("zeta", (), "", lambda root, printed, digits: _damping(root, SHORT_DIGITS, trimmed=True)),
 )
-"""Of tables in a terminal; the first two, the parts of s, stand below each other where lines are short."""
+"""Columns of tables in a terminal; in short lines the first two, the parts of s, are below each other."""
 
 
 def _loss_factor(root: Root, printed: RootDecimals, digits: int) -> str:

@@ -197,7 +197,7 @@ def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
 
 
 _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
-"""Where a text may break, and what opens and closes a group."""
+"""Characters at which a text may break, and those that open and close a group."""
 
 
 class Passage(NamedTuple):

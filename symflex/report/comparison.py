@@ -133,19 +133,19 @@ COLUMNS: dict[str, ComparisonColumn] = {
     "Minimum phase": (phase_cell, "text"),
     "Colocated or not": (both_cell, "text"),
 }
-"""Of the structures, by their heads, in the order of the table."""
+"""Columns of the table of structures, by their heads and in order."""
 DATA_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": (model_cell, "plain"),
     "Off the data by": (data_cell, "text"),
 }
-"""Of models that measured responses are there for."""
+"""Columns of the table of models with measured responses."""
 LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": (model_cell, "plain"),
     "Outputs together up to": (together_cell, "text"),
     "Loop stable for": (loop_cell, "text"),
     "Bandwidth allowed": (bandwidth_cell, "text"),
 }
-"""Of what matters to control: models with loops, or with outputs here and elsewhere."""
+"""Columns of what matters to control: models with loops, or with outputs here and elsewhere."""
 
 
 def comparison_section(models: Sequence[ModelFacts]) -> Section | None:

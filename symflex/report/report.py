@@ -54,7 +54,7 @@ CHAPTERS: Final = 0.8
 WAITING: Final = 0.9
 """Part of the time after which those that do not end are no longer waited for."""
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
-"""Of data files that are looked for in folders."""
+"""Endings of the data files that are looked for in folders."""
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
 TABLES: Final = {"claims": "Every claim with its verdict", "comparison": "All models in a table"}
 """What stands for the tables of a report until a reader opens them, by their anchors."""

@@ -198,7 +198,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
 UNSEEN_WAVES = "a distributed part that input and output do not see may have poles anywhere"
 UNSEEN_ON_AXIS = "a distributed part that input and output do not see may have poles on the imaginary axis"
 DEFAULT_MODES = 5
-"""Where neither the model nor the user says how many."""
+"""Number of modes if neither the model nor the user gives it."""
 MATCHING_ROUNDS = 4
 """Searches that go further because poles and zeros took each other out."""
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 BITS = 128
 MOST_STATES = 6
-"""Of a field, whose displacements and forces are told by trial."""
+"""Most states of a field whose displacements and forces are identified by trial."""
 MOST_TOGETHER = 4
 """Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
 LOSS, INERTIA = 1, 2

@@ -23,7 +23,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
-"""At which a coefficient is compared with zero, one after the other."""
+"""Precisions at which a coefficient is compared with zero, one after the other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ from symflex.balls import opposite, precision
 from symflex.expressions.format import decimal_exponent
 
 GUARD_BITS = 32
-"""Beyond the bits of what is computed with."""
+"""Bits kept beyond those of what is computed with."""
 FLOAT_BITS = 128
-"""Of frequencies and comparisons: more than twice the bits of a double."""
+"""Precision of frequencies and comparisons: more than twice the bits of a double."""
 PLAIN_FROM = -5
 """Decimal exponent from which numbers are written without one."""
 NEARLY_ZERO = "~0"

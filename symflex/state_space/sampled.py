@@ -41,9 +41,9 @@ Balls = Callable[[int], tuple[arb_mat, ...]]
 """A, B, C and D in balls of so many bits."""
 FIRST_BITS, LAST_BITS = 192, 6144
 NOTHING_BITS = 150
-"""By which an entry is smaller than the largest that counts as zero where no sign is told."""
+"""An entry this many bits smaller than the largest counts as zero if its sign cannot be decided."""
 MOST_SAMPLES = 1000
-"""Of a dead time: as many states."""
+"""Largest dead time in samples: it takes as many states."""
 METHODS = ("zoh", "tustin", "matched")
 """Zero-order hold, bilinear transformation, and roots matched, which is of one transfer function."""
 

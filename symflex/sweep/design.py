@@ -186,7 +186,7 @@ CODE_LENGTH = 5
 
 
 Derive = Callable[["Model", Sequence[tuple[str, str]]], tuple["AnyTransferFunction", ...]]
-"""From a model and pairs to transfer functions; one a worker can import by its name."""
+"""A function from a model and pairs to transfer functions; a worker imports it by its name."""
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "response": ((FREQUENCY,), ("re", "im")),
     "margins": ((), (*MARGINS, "stable")),
 }
-"""By what is swept: the axis that arrays have besides those of points, and their names."""
+"""The axes that arrays have besides that of points, and their names, by what is swept."""
 
 
 def archive(arrays: Mapping[str, Array]) -> bytes:
@@ -159,7 +159,7 @@ WRITERS: dict[str, Callable[[Sweep], bytes]] = {
     ".csv": csv_bytes,
     ".parquet": parquet_bytes,
 }
-"""By the ending of a file's name."""
+"""Writers by the ending of a file's name."""
 
 
 def check_writable(path: Path) -> None:

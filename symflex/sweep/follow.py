@@ -32,7 +32,7 @@ from symflex.sweep.design import Axis, Design, number
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Between = Callable[[int, int, int], Sequence[Complexes] | None]
-"""From two points and a number of pieces to the roots where pieces meet; ``None`` if they cannot be found."""
+"""A function from two points and a number of pieces to the roots where pieces meet, or ``None``."""
 Integers = npt.NDArray[np.int64]
 
 CLEAR = 2.0

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 BUCKET = 64
 """Bits are rounded up to a multiple of this, so that few matrices are expanded."""
 FEWEST_BITS = 192
-"""Of an expansion: roots to 30 digits need so many, and with half as many it takes two thirds of the time."""
+"""Least precision of an expansion, which roots to 30 digits need; half of it saves a third of the time."""
 LOW = 8.0
 """Power of e by which waves grow below which no expansion is made for a smaller s alone: some three modes."""
 BESIDE_MODES = 1
@@ -47,7 +47,7 @@ FURTHEST = 3
 HIGHEST_OCTAVE = 400
 """Nobody asks for a frequency [rad/s] beyond this power of two, or below its inverse."""
 PARTS = 4
-"""Of an octave, on which about how far waves grow is the same."""
+"""Parts of an octave on which waves grow about equally far."""
 MORE_ORDERS = 6
 """Powers of s less the middle of a wide ball that are kept beyond those asked for."""
 NOWHERE = acb("nan", "nan")

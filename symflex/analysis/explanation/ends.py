@@ -37,12 +37,12 @@ if TYPE_CHECKING:
 
 
 BENDING = {(True, True): "clamped", (True, False): "pinned", (False, True): "sliding", (False, False): "free"}
-"""By whether deflection and slope are held."""
+"""Names of ends by whether deflection and slope are held."""
 BY_ORDERS: dict[int, dict[tuple[int, ...], str]] = {
     4: {(0, 1): "clamped", (0, 2): "pinned", (1, 3): "sliding", (2, 3): "free"},
     2: {(0,): "held", (1,): "free"},
 }
-"""By the derivatives that vanish at an end, for an equation of that order in x."""
+"""Names of ends by the derivatives that vanish there, for an equation of that order in x."""
 PAIR = 2
 
 

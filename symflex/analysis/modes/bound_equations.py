@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 SEED = 7
 PASSES = 2
-"""Of scaling rows and columns: units make entries differ by many powers of ten."""
+"""Passes of scaling rows and columns: units make entries differ by many powers of ten."""
 
 Column = tuple[acb, ...]
 

@@ -262,7 +262,7 @@ TURNING = ("shaft",)
 TIE = 1 + 1e-9
 """A displacement must be larger by this factor to replace an earlier one as the reference."""
 SECTIONS = 40
-"""Of golden section: the interval shrinks to 4e-9 of itself, finer than a maximum in doubles is sharp."""
+"""Steps of golden section: the interval shrinks to 4e-9 of itself, finer than doubles resolve a maximum."""
 GOLDEN = 0.6180339887498949
 """(sqrt(5) - 1)/2."""
 

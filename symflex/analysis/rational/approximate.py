@@ -129,7 +129,7 @@ def _no_more_than(zeros: Sequence[Root], poles: int) -> tuple[Root, ...]:
 
 DEFAULT_MODES = 5
 DIGITS = 30
-"""Of roots and residues: twice what a double holds."""
+"""Digits of roots and residues: twice what a double holds."""
 SCANNED_DECADES = 3
 """The error is sampled from a thousandth of the lowest natural frequency on."""
 

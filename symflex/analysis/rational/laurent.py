@@ -71,7 +71,7 @@ FIRST_BITS = 192
 LAST_BITS = 12288
 """Precision of the first attempt, and where doubling it ends: six times."""
 DETECTION_BITS = 768
-"""From which a coefficient of a series whose ball holds zero counts as zero where nothing proves it."""
+"""Precision at which a coefficient whose ball holds zero counts as zero if nothing proves it."""
 SLACK = 16
 """Terms that roots of vanishing coefficients may cost."""
 LONGEST = 160
@@ -473,7 +473,7 @@ def _are_conjugate(a: Root, b: Root) -> bool:
 
 
 BRANCHES = 4
-"""Of a wavenumber about a point where it vanishes."""
+"""Branches of a wavenumber about a point where it vanishes."""
 
 
 def local_values(

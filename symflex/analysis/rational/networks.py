@@ -31,7 +31,7 @@ Taylor = Callable[[acb, int], list[acb] | None]
 WIDER = 1.1
 """Than what holds the points asked for, the disc."""
 FEWEST_MODES = 3
-"""In a disc from which only the behaviour at 0 is asked for."""
+"""Modes in a disc of which only the behaviour at 0 is asked for."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,11 +51,11 @@ SCIPY_ZERO = 1e-14
 """Leading coefficients of a numerator that ``scipy.signal.normalize`` takes away."""
 
 DEFAULT_BAND_HZ = (0.1, 1e4)
-"""Where the loss of digits is sampled if the model names no band: from slow servos to piezo drives."""
+"""Band in which the loss of digits is sampled if the model names none: from slow servos to piezo drives."""
 SAMPLES = 200
 """Forty to a decade of that band."""
 DIGITS = 30
-"""Of the roots: twice what a double holds, so that each is rounded to the nearest one."""
+"""Digits of the roots: twice what a double holds, so that each is rounded to the nearest one."""
 BITS = 384
 """Precision of the exact value that rounded coefficients are compared with."""
 

@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 MORE_DIGITS = 10
-"""Of the ramp's response: after many bends large terms cancel each other."""
+"""Digits of the ramp's response beyond those printed: after many bends large terms cancel each other."""
 BITS = 256
-"""Of the sums: rounding adds nothing to the balls of what is summed."""
+"""Precision of the sums: rounding adds nothing to the balls of what is summed."""
 FORCED = "forced"
 """Name of an input that is given by samples."""
 

@@ -275,7 +275,7 @@ class Annulus:
 
 
 Ring = tuple[Annulus, list[ExponentialTerm], arb]
-"""With what all poles within add to a response, and what that lacks at most."""
+"""An annulus, what all poles within it add to a response, and a bound on what that lacks."""
 
 
 def ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:

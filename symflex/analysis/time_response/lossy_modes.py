@@ -43,13 +43,13 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 SLOPE = 0.4999
-"""Of the decay on a ray at 120 degrees, over abs(s): no more than one half."""
+"""Decay on a ray at 120 degrees, over abs(s): no more than one half."""
 FAR = 1e4
-"""Of the least radius, over the one at which a ray at 120 degrees is as good as the axis."""
+"""Largest ratio of least radii at which a ray at 120 degrees is preferred to the axis."""
 VAST = 1e60
 """abs(s) [rad/s] at which the limit of a function is read off, with some 60 digits."""
 INWARD = 1 - 1e-12
-"""By what a radius is multiplied, so that rounding moves it to the inside."""
+"""Factor on a radius, so that rounding moves it to the inside."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,14 +52,14 @@ SEARCHED_TOO_LONG = "SF505"
 BITS = bits_for_digits(2 * EFFORT.pole_digits)
 """Precision of sums."""
 CONTINUATION = (-1, 4, -6, 4)
-"""By what the last four of a smooth sequence are multiplied to give the next."""
+"""Factors on the last four of a smooth sequence that give the next."""
 
 BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused]] = {
     "lossless modes": lossless_modes,
     "lossy modes": lossy_bound,
     "passive modes": passive_bound,
 }
-"""In the order asked, what bounds the modes beyond a radius, for an impulse that is integrated so often."""
+"""Bounds on the modes beyond a radius, for an impulse integrated so often, in the order of trial."""
 
 
 def proved_modes(

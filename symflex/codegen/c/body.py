@@ -214,7 +214,7 @@ KEYWORDS = frozenset(
     xor_eq
     """.split()
 )
-"""Of C up to C23, of C++, whose programs include the header, and of compilers for small machines."""
+"""Keywords of C up to C23, of C++, whose programs include the header, and of compilers for small machines."""
 
 MACROS = frozenset(
     """

@@ -68,7 +68,7 @@ ROUNDS = 3
 """How often roots are sought further away where what they leave is not smooth."""
 
 DIGITS = 36
-"""Of the roots: more than two doubles hold."""
+"""Digits of the roots: more than two doubles hold."""
 
 FIRST_NODES, MOST_NODES = 24, 192
 """Points on the positive half of the band at which what is left is taken; the next try has twice as many."""
@@ -83,7 +83,7 @@ GROUP = 12
 """Zeros, and poles, that are multiplied before their products are divided: a division costs more."""
 
 BITS = 160
-"""With which coefficients are summed: those of two doubles, and as many again for what cancels."""
+"""Precision in which coefficients are summed: that of two doubles, and as much again for what cancels."""
 
 SLACK = 2.0**-40
 """How far beyond the band's end a rounded frequency may be, relatively; further away values are NaN."""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 CONSTANT_BITS = 256
-"""Of powers of pi before they are rounded to a double."""
+"""Precision of powers of pi before they are rounded to a double."""
 
 NUMPY_FUNCTIONS = {
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")

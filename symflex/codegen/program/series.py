@@ -112,7 +112,7 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
 
 
 SYMMETRIC = Ring(("x", "e", "f"))
-"""Of polynomials in x, ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
+"""The ring of polynomials in x, ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
 
 
 def _orbit(a: int, b: int) -> fmpz_mpoly:

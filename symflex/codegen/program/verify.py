@@ -88,7 +88,7 @@ BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
 """Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
 
 BAND_SHARE = 8
-"""Of a band form whose roots are known one in so many of the usual samples shows how smooth the rest is."""
+"""One in so many of the usual samples shows how smooth the rest of a band form with known roots is."""
 
 ASIDE_OF_AXIS = 0.1
 """Distance from the imaginary axis, in bands, at which a band form is measured too."""

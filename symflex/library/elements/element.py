@@ -39,7 +39,7 @@ COMPONENT_UNIT: dict[str, str] = {
     **dict.fromkeys(("f_x", "f_y", "f_u", "f_v"), "N"),
     **dict.fromkeys(("i_1", "i_2", "supplied"), "A"),
 }
-"""Of through variables, by component; what inputs supply is named so that no element's quantity is meant."""
+"""Units of through variables by component; the quantity of an input has a name of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,15 +260,15 @@ class Element(Stateless, ABC):
     """It supplies what its value says, and nothing where that rests."""
     is_inertia: ClassVar[bool] = False
     moves_as_one: ClassVar[bool] = False
-    """Where one of its nodes is, the others are."""
+    """Whether all of its nodes lie where one of them lies."""
     compliance: ClassVar[Literal["", "stretching", "bending"]] = ""
     """How it gives way; torsion is stretching about an axis."""
     carries_x: ClassVar[bool] = False
-    """Where one of its planar nodes moves along x, the others do."""
+    """Whether all of its planar nodes move along x where one of them does."""
     stiffness: ClassVar[str] = ""
-    """Of what gives way without mass, the parameter with which it becomes rigid."""
+    """The parameter with which a massless element becomes rigid."""
     damping: ClassVar[str] = ""
-    """Of a damper, the parameter without which there is none."""
+    """The parameter of a damper without which there is none."""
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the SI unit of a parameter or through quantity, given the ports' domains."""
@@ -288,7 +288,7 @@ class Element(Stateless, ABC):
 
 
 LOSS_FACTOR: Final = ParameterPort("eta_s", "1", "a loss factor, valid on s = j*omega", "0")
-"""Of structural damping: what gives way has its stiffness times ``1 + j*eta_s``."""
+"""Loss factor of structural damping: the stiffness of the element is multiplied by ``1 + j*eta_s``."""
 
 
 def difference(use: ElementUse, port: str, scale: Factored) -> LinearForm:

@@ -61,7 +61,7 @@ Places = Mapping[Factored, Sequence[tuple[int, int, Expression]]]
 ONE: Final = number(1)
 HALF: Final = Fraction(1, 2)
 SIGNS: Final = {"J": (1, -1, 1, 1), "Y": (1, -1, 1, 1), "I": (1, 1, 1, 1), "K": (1, -1, 1, -1)}
-"""Of deflection, slope, moment and force: ``(z^-n J_n)' = -z^-n J_(n+1)``, ``(z^n J_n)' = z^n J_(n-1)``."""
+"""Signs of w, slope, moment and force: ``(z^-n J_n)' = -z^-n J_(n+1)``, ``(z^n J_n)' = z^n J_(n-1)``."""
 
 
 class _NoClosedFormError(Exception):

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 Hidden = tuple[tuple["Expression", int], ...]
 
 MULTIPLES: Final = tuple(Fraction(x) for x in ("1", "2", "1/2", "4", "1/4", "8", "1/8", "3", "1/3"))
-"""Of a length that a form has an argument for: what forms halve, double, and print thirds of."""
+"""Multiples of a length that arguments have: forms halve and double lengths, and print thirds."""
 
 
 def hidden_expressions(tf: AnyTransferFunction) -> Hidden:

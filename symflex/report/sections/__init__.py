@@ -22,4 +22,4 @@ SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
     "files": files.export_section,
     "specification": formulas.specification_section,
 }
-"""In the order of the page."""
+"""Sections in the order of the page."""

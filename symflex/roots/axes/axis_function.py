@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 FLOAT_BITS = 64
-"""Of signs and counts: a few more than doubles have."""
+"""Precision of signs and counts: a few bits more than doubles have."""
 LINEAR, QUADRATIC = 1, 2
 REAL, IMAGINARY = 0, 1
 DECAYED = 2
@@ -40,7 +40,7 @@ DECAYED = 2
 
 Doubles = npt.NDArray[np.float64]
 Rate = tuple[arb, arb]
-"""Of t and of t^2."""
+"""Coefficients of t and of t^2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,7 +313,7 @@ GUESS_BITS = 46
 LEAST_BITS = 16
 """Right bits of a point below which no proof is tried."""
 MARGIN_BITS = 4
-"""By which less is believed than a Newton step says."""
+"""Bits of a Newton step's accuracy that are not relied on."""
 ROUNDS = 40
 """Interval Newton steps; each nearly doubles what is known, so that few are ever taken."""
 BISECTIONS = 100

@@ -31,7 +31,7 @@ BESIDE = 1e-13
 TILT = 0.1
 """Largest deviation [rad] from a real function that rounding may cause."""
 HALVINGS = 3
-"""Of a step whose slopes say that it may hold two roots."""
+"""Halvings of a step whose slopes show that it may hold two roots."""
 MOST = 500.0
 """Difference of two logarithms beyond which the smaller size is nothing; exp(709) is the largest double."""
 AT_ONCE = 4096

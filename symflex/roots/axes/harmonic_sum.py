@@ -57,11 +57,11 @@ BESIDE = 0.3
 OUTWEIGHED = 0.8
 """Most that all other terms may amount to, of the largest; less than 1."""
 FALL = 4.0
-"""By how much, over their number, other terms have to have fallen behind at the edge of a layer."""
+"""Factor by which other terms, divided by their number, must have decayed at the edge of a layer."""
 MARGIN = 1.1
-"""Of the width of a layer, because terms do not fall behind evenly."""
+"""Factor on the width of a layer, because terms do not decay evenly."""
 FIRST_STEP = 0.5
-"""Of the arc that is followed in steps."""
+"""First step along the arc."""
 SHORTEST = 1e-12
 """Share of the arc; a step that would have to be shorter says that a root lies on it."""
 

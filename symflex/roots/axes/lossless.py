@@ -42,15 +42,15 @@ GRID = 0.8
 BATCH = 4096
 """Samples taken at once."""
 MOST_SAMPLES = 2_000_000
-"""Of one search, before it is given up."""
+"""Most samples of one search, before it is given up."""
 NEWTON_STEPS = 6
-"""From a tenth of an oscillation to all digits of a double."""
+"""Newton steps from a tenth of an oscillation to all digits of a double."""
 CLOSER = 1e-12
 """Relative to t: no further Newton step is needed after one as short as this."""
 COUNT_BITS = 64
-"""Of turns, of which only the nearest integer is wanted."""
+"""Precision of turns, of which only the nearest integer is wanted."""
 HALF = 0.5
-"""From one integer, to tell it from all others."""
+"""Distance to one integer that separates it from all others."""
 ROUNDS = 40
 """Tries to aim a circle at a mode by its number; the first or second hits as a rule."""
 SECANTS = 30
@@ -61,9 +61,9 @@ ASIDE = (0.0, 0.6, -0.6, 1.2)
 """Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
 WITHIN, BEYOND = -1, 1
 SHARES = (0.5, 0.4, 0.6)
-"""Where a ring is cut in two."""
+"""Shares at which a ring is cut in two."""
 HALVINGS = 60
-"""Of a ring, by when it is as thin as doubles can tell."""
+"""Halvings of a ring until it is as thin as doubles can resolve."""
 FEW = 8
 """Modes up to which their density says little of where the next ones are."""
 CLOSE = 1e-9

@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
 
 BITS = 64
-"""Of turns, of which only the nearest integer is wanted."""
+"""Precision of turns, of which only the nearest integer is wanted."""
 LAST_BITS = 2048
-"""Where a factor is still lost with so many, a root is on the path."""
+"""Largest precision: if a factor is still lost with it, a root is on the path."""
 FIRST_STEP = 0.2
-"""Of the first step [in z]."""
+"""Length of the first step [in z]."""
 SMALLEST = 1e-12
 """Step [in z] below which a root is said to lie on the path."""
 LOSSY = 0.01

@@ -34,7 +34,7 @@ ARCS = 32
 MOST_ARCS = 1024
 """After halvings of those on which nothing is known."""
 WIDE_BITS = 64
-"""Of bounds on wide balls, which lose all digits anyway."""
+"""Precision of bounds on wide balls, which lose all digits anyway."""
 REACH = 0.04
 """Relative radius of the circle on which a function is bounded to expand it about a point."""
 SERIES_POINTS = 20
@@ -190,7 +190,7 @@ SHARP = 2.0**-20
 BLURRED = 2.0
 """Reported where that is exceeded: more than any step may turn."""
 COVERED = 0.4
-"""Of the radius to which it is bounded, how much of a series serves for steps."""
+"""Share of the radius of a bound in which the series serves for steps."""
 NOTHING = (inf, arb("nan"))
 """Bound and turn where nothing is proved."""
 

@@ -34,7 +34,7 @@ FAR = 60.0
 SAME_ORDER = 0.05
 """Difference of a count from the order at 0, in turns, that rounding may cause."""
 LONGEST_STEP = 0.4
-"""Of a path [in z]."""
+"""Longest step of a path [in z]."""
 PHASE_STEP = 2.0
 """Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
 DISAGREEMENT = 0.3
@@ -42,7 +42,7 @@ DISAGREEMENT = 0.3
 BEND = 2.0
 """Largest change of ln F over a step that a change of slope may cause."""
 SMALLEST_STEP = 1e-13
-"""Of a path [in z]; where it would have to be shorter, it meets a root."""
+"""Smallest step of a path [in z]; a path that needs a shorter one meets a root."""
 NEARLY_WHOLE = 0.05
 """Difference from an integer, in turns, that rounding may cause."""
 WORK_LIMIT = 5_000_000
@@ -242,7 +242,7 @@ GROWTH = 1.5
 SHRINKING = 0.5
 """Least that is tried of a step that was too long."""
 NEARER = 0.5
-"""Of the last step that was too long, what is tried next: deviations grow exponentially."""
+"""Share of a step that was too long to try next: deviations grow exponentially."""
 FORGETTING = 1.1
 """Growth of that bound with every step."""
 WIDENED = 1 + 2.0**-40

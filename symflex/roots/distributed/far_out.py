@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from symflex.transfer.enclose_kernels import KernelValues
 
 BITS = 64
-"""Of bounds, which need few digits."""
+"""Precision of bounds, which need few digits."""
 SECTORS = 48
 """Into which the right angle is cut: less than two degrees each."""
 TILTED = SECTORS * 4 // 3
 """As many from the real axis on make 120 degrees."""
 LARGEST = 1e36
-"""Of a radius, relative to the frequency of about one wave in the longest part."""
+"""Largest radius, relative to the frequency of about one wave in the longest part."""
 NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 LINEAR, QUADRATIC = 1, 2
@@ -58,7 +58,7 @@ PHASES = 128
 """Parts of a turn in which two sums are shown not to vanish together."""
 
 Terms = dict[Exponent, dict[Fraction, acb]]
-"""Of a sum of exponentials, amplitudes as sums of powers of s."""
+"""A sum of exponentials, with amplitudes that are sums of powers of s."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -136,7 +136,7 @@ class Count:
 
 
 NEIGHBOURHOOD = 0.05
-"""Of a point where roots accumulate: relative to its distance from 0."""
+"""Size of a neighbourhood where roots accumulate, relative to its distance from 0."""
 WIDER = 1e-3
 """How far beyond its limits, in ln, a ring is searched."""
 
@@ -267,7 +267,7 @@ def _log(size: float) -> float:
 
 
 SAME = 0.5
-"""By what an order that is read off doubles may differ from a whole number."""
+"""Largest distance from a whole number of an order that is read off doubles."""
 DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 

@@ -52,13 +52,13 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 ACCUMULATION_DIGITS = 20
-"""Of points that are only avoided."""
+"""Digits of points that are only avoided."""
 WIDER_ANGLE = 1 + 1e-12
 """A double next to a part of pi may be less than that."""
 FEW = 40
 """Roots that are sooner searched all than a part of them."""
 MORE_DIGITS = 30
-"""Beyond twice the digits asked for, in which a pole and a zero agree that are said to cancel."""
+"""Digits beyond twice those asked for, in which a pole and a zero that cancel must agree."""
 
 
 class Side:

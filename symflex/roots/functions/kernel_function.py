@@ -40,9 +40,9 @@ if TYPE_CHECKING:
 
 
 FIRST_BITS = 64
-"""Of values; more where these do not suffice."""
+"""First precision of values; more if it does not suffice."""
 LAST_BITS = 4096
-"""Where values are not settled with so many, they are at a root."""
+"""Largest precision: a value that is not settled with it is at a root."""
 SETTLED_BITS = 24
 """Accuracy asked of every factor before its sign, phase or slope is used."""
 ORIGIN = -140.0
@@ -50,7 +50,7 @@ ORIGIN = -140.0
 SERIES_TERMS = (20, 80)
 """Lengths of the series about 0 in which the first term is sought."""
 BRANCH_BITS = 256
-"""Of one value that is compared on all branches."""
+"""Precision of one value that is compared on all branches."""
 ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundNested
 
 SETTLED_BITS = 30
-"""Of a value and its slope: more than a step along a path needs."""
+"""Precision of a value and its slope: more than a step along a path needs."""
 LOW = -200.0
 """ln of a frequency [rad/s] below all roots but those at rest."""
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 SPARE_TERMS = 8
-"""Of a series, beyond those that vanish; each pivot of an order takes as many terms."""
+"""Terms of a series beyond those that vanish; each pivot of an order takes as many."""
 FEWEST = 4
 """Columns with fewest entries that are looked at for a pivot."""
 

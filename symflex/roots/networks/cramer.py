@@ -44,7 +44,7 @@ ZERO, ONE = acb(0), acb(1)
 BALANCING = 40
 """Rounds that make rows and columns alike; each about halves what is left to gain."""
 ROUNDING = 1e-9
-"""Of logarithms in doubles, per row: far above what is lost, far below what matters."""
+"""Error of logarithms in doubles, per row: far above what is lost, far below what matters."""
 
 
 class EssentialSingularityError(Exception):

@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 
 RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)
-"""Of the circle where a bound is taken to that where values are."""
+"""Radius of the circle where a bound is taken over that where values are."""
 MOST_POINTS = 1000
-"""Of a circle, that it may take to tell what is bounded beyond from what is on it."""
+"""Most points of a circle that may separate what is bounded beyond it from what lies on it."""
 SAMPLES = 6
 """Points of a circle that tell how fast a function grows."""
 ROUGH_BITS = 24
-"""Of values that only say how large a function is."""
+"""Precision of values that only say how large a function is."""
 SERIES_BITS = 64
-"""To how many bits a series tells the function where it is least on the circles looked at."""
+"""Bits to which a series gives the function where it is least on the circles looked at."""
 LEAST_CIRCLES = (1.0, 0.5, 0.25, 0.1, 0.03)
 WIDENED = 1.07
 TRIES = 8
@@ -43,12 +43,12 @@ SMALLEST, LARGEST = 1e-6, 1e12
 TOO_WIDE = 0.3
 """Part by which a disc may be larger than it need be."""
 SHORT = 0.2
-"""By which the mean growth may stay below the number of all zeros."""
+"""How far the mean growth may stay below the number of all zeros."""
 UNLIKE = 12
 """Times as many roots as the other has, and so many more, are enough of one function."""
 REFINEMENTS = 40
 NEAR_AXIS = 2.0**-20
-"""Of abs(s): a guess so close to the imaginary axis may lie on it."""
+"""Share of abs(s): a guess this close to the imaginary axis may lie on it."""
 
 
 @dataclass(frozen=True, eq=False)

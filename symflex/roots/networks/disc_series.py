@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8
-"""Of the precision of a series, that telling its roots apart may take."""
+"""Largest factor on the precision of a series to separate its roots."""
 SMALLEST_ARC = 2.0**-11
 """Shortest arc of a circle on which the argument is followed [rad]; below, a root counts as on it."""
 BISECTIONS = 60

@@ -33,7 +33,7 @@ HALF = 0.5
 """What the bound on a piece's energy must stay below; 1 would do, and the rest is for rounding in doubles."""
 MOST_HALVINGS = 60
 SERIES_TERMS = 40
-"""Of exp(abs(A) h), whose norm is at most 1: 1/40! is far below the rounding of doubles."""
+"""Terms of exp(abs(A) h), whose norm is at most 1: 1/40! is far below the rounding of doubles."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 ONE_WAY = "forces and motions are coupled in one direction only, as in a loop"
 LOSES = "something in it loses or supplies energy"
 MASS_BITS = 256
-"""For the proof that inertia is not negative, where numbers are not rational."""
+"""Precision of the proof that inertia is not negative, if numbers are not rational."""
 
 
 class OtherNetworkError(Exception):

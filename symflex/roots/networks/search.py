@@ -36,7 +36,7 @@ MOST_TIMES = 4
 LOWEST = 2.0**-40
 """Lambda [rad^2/s^2] below which no eigenvalue but 0 is expected, 1e-6 rad/s."""
 SHRINKING = 2.0**-30
-"""Of that where one lies below."""
+"""Size of a root's disc relative to the one in which it lies."""
 ROUNDS_AT_REST = 3
 RISE = 2**10
 """Steps up in lambda until there are enough eigenvalues below."""

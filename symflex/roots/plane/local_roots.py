@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 LEAST_BITS = 96
-"""Of a box, whatever the digits wanted."""
+"""Least precision of a box, whatever digits are wanted."""
 BOX_SHARE = 0.4
 """The box is so many of the bits smaller than the root is large."""
 MOST_TIMES = 16
@@ -35,7 +35,7 @@ MOST_TIMES = 16
 CLOSE = BOX_SHARE + 0.02
 """The last Newton step before a box is drawn is by so many of the bits smaller."""
 FIRST_BITS = 64
-"""Of the first Newton steps."""
+"""Precision of the first Newton steps."""
 STEPS = 80
 """Newton steps in all."""
 SMALLER = 4
@@ -218,17 +218,17 @@ MOST_POINTS = 400
 CENTRINGS = 3
 """Least number of times that a disc is moved to the middle of its roots."""
 GUESSED_DIGITS = 14
-"""Of a centre to begin with; like Newton's, every step doubles them."""
+"""Digits of the first centre; every Newton step doubles them."""
 GROWTH = 100
-"""Of a disc without other roots next to it, and of one that was too small."""
+"""Factor on a disc without other roots next to it, and on one that was too small."""
 SHRINKINGS = 5
-"""Of a disc, until no other root is next to it."""
+"""Shrinkings of a disc until no other root is next to it."""
 WIDER = 5
 """Radius of a disc that holds one moved to an axis, in radii of that."""
 DIGITS_A_SHRINKING = 2
 """The logarithm of ``GROWTH``."""
 BRANCH_BITS = 128
-"""Of a look whether wavenumbers have branches."""
+"""Precision of the test whether wavenumbers have branches."""
 
 
 def prove_together(

@@ -28,19 +28,19 @@ if TYPE_CHECKING:
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
 RIGHT_HALF = 1.3
-"""Where the first cut across a half plane is made [rad]: to the right of lightly damped roots."""
+"""Angle of the first cut across a half plane [rad]: to the right of lightly damped roots."""
 SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
-"""Where a cell may be cut: off its middle, where symmetry puts roots."""
+"""Shares at which a cell may be cut: off its middle, where symmetry puts roots."""
 NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
-"""By which a path is moved that meets a root [in z], ever further."""
+"""Shifts of a path that meets a root [in z], ever further."""
 CLOSEST = 1e-11
 """Cells smaller than this are not split further."""
 SEARCH_STEPS = 30
-"""Of Newton's method in doubles."""
+"""Steps of Newton's method in doubles."""
 CONVERGED = 1e-11
 """Step [in z] after which no further one is needed."""
 FIRST_BITS = 128
-"""Of points handed to proofs."""
+"""Precision of points handed to proofs."""
 NEAR = 0.1
 """Size of cells in which a root without a box is enclosed by a circle."""
 NEIGHBOURS = 1e-4
@@ -56,7 +56,7 @@ FADED = 100.0
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
 MODES_LIMIT = 2000
-"""Of one search; further ones are asked for by a band."""
+"""Most modes of one search; ask for further ones by a band."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,7 @@ NEWTON_STEPS = 60
 """Each doubles the digits of a simple root; more only next to others."""
 GROUPING = 2.0**-30
 PELLET_DOUBLINGS = 60
-"""Of a radius, until a term outweighs all others."""
+"""Doublings of a radius until a term outweighs all others."""
 CENTRE_STEPS = 40
 """That move a disc to the middle of its roots."""
 
@@ -228,7 +228,7 @@ def is_symmetric(group: Sequence[Disc]) -> bool:
 
 
 ITERATIONS = 80
-"""For one root; five are enough as a rule."""
+"""Most iterations for one root; five are enough as a rule."""
 CONVERGED = 1e-13
 """Relative step after which none follows."""
 STALLED = 1e-6
@@ -238,9 +238,9 @@ NEARLY_REAL = 1e-8
 RESTART = 1e-3
 """How far beside the last root the next search begins."""
 FRESH_ANGLES = (0.7, 2.5, 1.6)
-"""Of starting points where the first leads nowhere [rad]."""
+"""Angles of further starting points if the first leads nowhere [rad]."""
 LARGEST_LOGARITHM = 600.0
-"""Of a modulus in doubles."""
+"""Largest logarithm of a modulus in doubles."""
 KICK_EVERY = 20
 """Steps after which one is turned aside, to leave a cycle."""
 DOUBLE_BITS = 64

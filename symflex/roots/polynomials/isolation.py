@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 
 GUARD_DIGITS = 2
-"""Beyond those wanted."""
+"""Digits beyond those wanted."""
 EXTRA_BITS = 64
-"""At first, beyond the digits and two bits a degree."""
+"""Bits at first, beyond the digits and two bits a degree."""
 GROWTH_WITH_CONSTANTS = 4
 GROWTH_EXACT = 64
 GROWTH_FLOOR = 2048
