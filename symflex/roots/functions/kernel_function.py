@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
+from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, degree_in
 from symflex.algebra.exponential_sum import REAL, Exponent, combination
 from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import Value, at_centre, expansion, precision, precisions
@@ -100,9 +100,15 @@ class KernelFunction:
     @cached_property
     def is_even(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
-        kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
-        if any(kernel.function == "exp" for kernel in kernels):
-            return False
+        return self.is_mirrored and not any(kernel.function == "exp" for kernel in self._own_kernels)
+
+    @cached_property
+    def is_mirrored(self) -> bool:
+        """Proved: F(-s) is F(s) or -F(s) times an exponential; roots mirror each other as those of even ones.
+
+        ``1 + exp(-2 s)`` is ``2 exp(-s) cosh(s)``.
+        """
+        kernels = self._own_kernels
         # Another part's dispersion relation may be lopsided.
         laws = [
             law
@@ -110,12 +116,23 @@ class KernelFunction:
             if any(kernel.dispersion is law for kernel in kernels)
             or any(self.part.depends_on(name) for name in law.wavenumbers)
         ]
+        decays = [k for k in kernels if k.function == "exp"]
+        odd = [k.dispersion.shift for k in decays if not (k.wavenumber or k.length.depends_on("s"))]
+        shifts = [law.shift for law in laws if not law.shift.is_zero]
         values = [value for law in laws for value in law.coefficients if value is not law.shift]
+        places = [self.part.ring.index[k.generator] for k in decays]
         return (
-            all(law.shift.is_zero for law in laws)
-            and all(_parity(f) is not None for value in (*values, self.part) for f, _ in value.factors)
+            len(odd) == len(decays)
+            and all(any(shift is x for x in odd) for shift in shifts)
+            and all(_parity(f) is not None for value in (*values, *odd) for f, _ in value.factors)
+            and all(_turned(f, places) in (f, -f) for f, _ in self.part.factors)
             and all(sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in values)
+            and all(sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 1 for value in odd)
         )
+
+    @property
+    def _own_kernels(self) -> list[Kernel]:
+        return [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
 
     def order(self) -> int | None:
         """Return how often s = 0 is a root of F to the :attr:`power` that makes it one function, or None."""
@@ -437,6 +454,17 @@ def _parity(polynomial: fmpz_mpoly) -> int | None:
     """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
     parities = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
     return parities.pop() if len(parities) == 1 else None
+
+
+def _turned(polynomial: fmpz_mpoly, decays: Sequence[int]) -> fmpz_mpoly:
+    """Return a polynomial at -s, times exponentials: decays at some places are one over themselves there."""
+    terms = [(list(map(int, monomial)), c) for monomial, c in polynomial.terms()]
+    ends = {i: max(m[i] for m, _ in terms) + min(m[i] for m, _ in terms) for i in decays}
+    turned = {
+        tuple(ends[i] - e if i in ends else e for i, e in enumerate(m)): -c if m[0] % 2 else c
+        for m, c in terms
+    }
+    return polynomial.context().from_dict(turned)
 
 
 def divisors_in_s(law: Dispersion) -> list[Factored]:

@@ -282,7 +282,7 @@ class RootSearch:
             return None
         with precision(FIRST_BITS):
             s = acb(z.real, z.imag).exp().mid()
-        root = prove_simple(self.function, s, self.digits, even=self.is_even)
+        root = prove_simple(self.function, s, self.digits, even=self.function.is_mirrored)
         if root is not None and root.multiplicity * self.function.power == count and _is_in(cell, root):
             return [root]
         if count <= self.function.power:
@@ -293,7 +293,8 @@ class RootSearch:
             radius = (s.abs_upper() * NEIGHBOURS).mid()
         if not is_branched(self.function, s, radius):
             return None
-        one = prove_together(self.function, s, radius, self.digits, count, even=self.is_even, is_close=True)
+        even = self.function.is_mirrored
+        one = prove_together(self.function, s, radius, self.digits, count, even=even, is_close=True)
         return [one] if one is not None and _is_in(cell, one) else None
 
     def _as_one(self, cell: Cell, count: int) -> list[Root] | None:
@@ -308,7 +309,7 @@ class RootSearch:
         """Return all roots next to a point as one, in a disc proved to hold so many."""
         with precision(FIRST_BITS):
             size = (s.abs_upper() * NEIGHBOURS).mid()
-        root = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
+        root = prove_together(self.function, s, size, self.digits, count, even=self.function.is_mirrored)
         return None if root is None else [root]
 
 

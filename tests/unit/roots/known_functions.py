@@ -31,6 +31,7 @@ class KnownFunction:
 
     factors: tuple
     is_even: bool = False
+    is_mirrored: bool = False
     scale: int = 3
     power: int = 1
 

@@ -147,6 +147,24 @@ def test_roots_on_other_sheets_are_no_poles():
     assert complex(pole) == pytest.approx(np.exp(2j * np.pi / 3), abs=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("plant", "poles"),
+    [
+        ("1/cosh(sqrt(s*k))", [-(((n + 0.5) * np.pi) ** 2) for n in range(3)]),
+        ("tanh(sqrt(s*k))/sqrt(s*k)", [-(((n + 0.5) * np.pi) ** 2) for n in range(3)]),
+        ("sqrt(s*k)/sinh(sqrt(s*k))", [-((n * np.pi) ** 2) for n in range(1, 4)]),
+        # A wall of Biot number 1: beta tan(beta) = 1 (Carslaw and Jaeger 1959, appendix IV).
+        ("1/(cosh(sqrt(s*k)) + sqrt(s*k)*sinh(sqrt(s*k)))", [-(b**2) for b in (0.8603, 3.4256, 6.4373)]),
+    ],
+)
+def test_poles_on_the_branch_cut_are_proved_to_be_real_and_simple(plant, poles):
+    text = RATIO.format(parameters="k = 1", plant=f"1/({plant})")
+    found = located(text, Modes(3))
+    assert found.certificate.certified
+    assert [r.is_real for r in found.poles] == [True] * 3
+    assert [complex(r) for r in found.poles] == pytest.approx(poles, rel=1e-4)
+
+
 def test_factors_without_roots_keep_exact_places():
     found = located(RATIO.format(parameters="k = 1", plant="(s^2 + 4)*(s + 1)^2*(1 + k*s^0.5)"), Modes(3))
     assert found.verdict.sentence == "marginal, not asymptotically stable: poles on the imaginary axis"

@@ -34,7 +34,7 @@ class Counting:
     """Stands for the winding of a function with so many roots at one place."""
 
     def __init__(self, power=1, *, is_even=False, blocked=0):
-        self.function = SimpleNamespace(is_even=is_even, power=power)
+        self.function = SimpleNamespace(is_even=is_even, is_mirrored=is_even, power=power)
         self.blocked, self.counted, self.count_at_place = blocked, [], 1
 
     def sample(self, z):
