@@ -1,7 +1,7 @@
 """Parsing by the tables of a grammar, without the program that makes them.
 
 Lark reads a grammar and makes an LALR(1) table of it, which takes as long as deriving a small model does. So
-the tables are made beforehand and kept in a ``grammar.json`` beside each grammar (``python -m tests.tables``
+the tables are made beforehand and kept in ``grammar.json`` beside a grammar (``python -m tests.tools.tables``
 after a change; a test compares them). A rule is reduced as Lark does it: by calling the method of its name.
 
 Example: ``2 kg`` by the grammar of quantities.

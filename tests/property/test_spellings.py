@@ -9,7 +9,7 @@ from random import Random
 import pytest
 
 from tests import random_models as made
-from tests.spellings import compared
+from tests.tools.spellings import compared
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
 CLASSICS = (

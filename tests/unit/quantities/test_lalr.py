@@ -6,7 +6,7 @@ import pytest
 from lark import Tree, UnexpectedCharacters, UnexpectedToken
 
 from symflex.quantities.lalr import END, Grammar, Reading, UnexpectedError
-from tests.tables import larks, written
+from tests.tools.tables import larks, written
 
 LARKS = larks()
 WORDS = [

@@ -1,7 +1,7 @@
 """Measure how many small changes of modules their tests notice.
 
-    python -m tests.mutation symflex/roots/plane/local_roots.py tests/unit/roots/plane/test_simple_root.py
-    python -m tests.mutation --sample 40 symflex/roots/distributed/side.py symflex/roots/locate.py
+    python -m tests.tools.mutation symflex/loops/lumped.py tests/unit/loops/test_lumped.py
+    python -m tests.tools.mutation --sample 40 symflex/roots/distributed/side.py symflex/roots/locate.py
 
 changes the modules in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
 prints the share of changes that they notice and the diff of every other. Without tests the unit tests of the
@@ -9,8 +9,8 @@ modules' rooms are taken; ``--sample`` draws so many changes of each module, the
 of functions with a decorator (properties, cached results) are not made. docs/mutation.md has the figures of
 the core.
 
-    python -m tests.mutation --sample 40 --record before.json symflex/loops/lumped.py tests/unit/loops
-    python -m tests.mutation --again before.json symflex/loops/lumped.py tests/unit/loops
+    python -m tests.tools.mutation --sample 40 --record before.json symflex/loops/lumped.py tests/unit/loops
+    python -m tests.tools.mutation --again before.json symflex/loops/lumped.py tests/unit/loops
 
 The first writes down which changes the tests noticed; the second makes just these again, after tests were cut
 or joined, and prints every one that nobody notices any more.
@@ -28,7 +28,7 @@ import tempfile
 from pathlib import Path
 from random import Random
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 COPIED = [
     "docs",
     "derivations",

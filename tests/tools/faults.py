@@ -1,4 +1,4 @@
-"""Faults injected into commands that write: ``python -m tests.faults --count N [--seed S]``.
+"""Faults injected into commands that write: ``python -m tests.tools.faults --count N [--seed S]``.
 
 A command is killed at an instant or before one of its file operations, one of its operations fails, files
 may not grow, its folder cannot be written, or it runs twice at once. Afterwards every file is as it was or as
@@ -264,7 +264,7 @@ def main(count, seed):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.tools.faults", description=__doc__)
     parser.add_argument("--count", type=int, default=216)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()

@@ -1,6 +1,6 @@
 """Plant faults in the derivation and the print, and see whether the program's two own checks notice them.
 
-    python -m tests.planted --sample 200
+    python -m tests.tools.planted --sample 200
 
 changes a sign, drops a factor or swaps two arguments in one place at a time of the modules that derive and
 print, and derives and prints with each change the files of derivations/ that come there, in all forms.
@@ -33,7 +33,7 @@ from pathlib import Path
 from random import Random
 from time import process_time
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 MODULES = ("symflex/transfer", "symflex/equations", "symflex/print/forms", "symflex/algebra/propagators.py")
 SPARED = {"direct_solve.py", "against_equations.py", "read_back.py", "probes.py", "__init__.py"}
 """The checks themselves, and what holds no arithmetic."""
@@ -274,7 +274,7 @@ def main() -> None:
     kept = ROOT / "build" / "planted.json"
     kept.parent.mkdir(exist_ok=True)
     if not (given.only or given.skip) or not kept.exists():
-        command = (sys.executable, "-m", "tests.planted", "--baseline", str(kept))
+        command = (sys.executable, "-m", "tests.tools.planted", "--baseline", str(kept))
         subprocess.run(command, cwd=ROOT, check=True)
     before = json.loads(kept.read_text(encoding="utf-8"))
     modules = [

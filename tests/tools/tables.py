@@ -1,4 +1,4 @@
-"""Makes the tables ``grammar.json`` of the grammars: ``python -m tests.tables`` after one has changed."""
+"""Makes the tables ``grammar.json`` of the grammars: ``python -m tests.tools.tables`` after a change."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from lark import Lark
 
 from symflex.quantities import grammar as quantities
 
-ROOT = Path(__file__).resolve().parents[1] / "symflex"
+ROOT = Path(__file__).resolve().parents[2] / "symflex"
 EXPRESSIONS = ROOT / "expressions"
 
 
