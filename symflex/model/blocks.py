@@ -31,7 +31,7 @@ from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import read_entries, signed_number
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue, StringValue, parse_with_recovery, read
+from symflex.model.spec import ArrayValue, StringValue, TableValue, parse_with_recovery, read
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from symflex.model.model import Model
     from symflex.model.reading import Reader
     from symflex.model.settings import Setting
-    from symflex.model.spec import KeyValue, TableValue, Value
+    from symflex.model.spec import KeyValue, Value
 
 NESTING_LIMIT = 8
 DECLARATION = "symflex"
@@ -126,6 +126,8 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
             reader.note("SF216", message, text.span, hint or f"types: {types}")
             return None
         block = BLOCKS[text.value]
+        if has_ports(table):
+            return None  # its outputs are signals
     values = _read_values(reader, entry, table, block)
     if values is not None and block.kernel_time and is_number(lower(values[0][1]), 0):
         # Without dead time it is rational: a lag of no time.
@@ -195,39 +197,63 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
 def _matrix(
     reader: Reader, value: Value, name: str, where: str, size: int
 ) -> tuple[tuple[str, Expression], ...] | None:
-    """Return the entries of a matrix of ``ss``, ``A[1][2]``; ``size`` is that of A, 0 if it is not known.
+    """Return the entries of a matrix of ``ss``, ``A[1][2]``; ``size`` is that of A, 0 if it is not known."""
+    size = len(items_of(value)) if name == "A" else size
+    if not size and name != "A":
+        return None  # A is wrong, and told so
+    shape = {"A": (size, size), "B": (size, 1), "C": (1, size), "D": (1, 1)}[name]
+    rows = matrix_rows(reader, value, where, shape)
+    if rows is None:
+        return None
+    if name == "A":
+        return tuple((f"A[{i}][{j}]", x) for i, row in enumerate(rows, 1) for j, x in enumerate(row, 1))
+    entries = [x for row in rows for x in row]
+    return tuple(("D" if name == "D" else f"{name}[{i}]", x) for i, x in enumerate(entries, 1))
+
+
+def has_ports(value: Value) -> bool:
+    """Tell whether a block is an ``ss`` that lists what goes in and comes out."""
+    kind = value.get("type") if isinstance(value, TableValue) else None
+    is_matrix = kind is not None and isinstance(kind.value, StringValue) and kind.value.text.value == "ss"
+    return is_matrix and isinstance(value, TableValue) and bool(value.get("from") or value.get("to"))
+
+
+def items_of(value: Value) -> tuple[Value, ...]:
+    """Return the items of an array, and anything else as the only one."""
+    return value.items if isinstance(value, ArrayValue) else (value,)
+
+
+def matrix_rows(
+    reader: Reader, value: Value, where: str, wanted: tuple[int, int]
+) -> list[list[Expression]] | None:
+    """Return a matrix of so many rows and columns.
 
     A column or row may be written as one array, and what has one entry as that.
     """
-    items = value.items if isinstance(value, ArrayValue) else (value,)
-    rows = [r.items if isinstance(r, ArrayValue) else (r,) for r in items]
-    if name == "A" and rows and len(rows) > EXPONENT_LIMIT:
+    rows = [items_of(row) for row in items_of(value)]
+    is_state = where.startswith("A ")
+    if is_state and len(rows) > EXPONENT_LIMIT:
         message = f"{where} has {len(rows)} rows; at most {EXPONENT_LIMIT} are allowed"
         reader.note("SF103", message, value.span, "write its equations in [equations]")
         return None
-    wanted = {"A": (len(rows),) * 2, "B": (size, 1), "C": (1, size), "D": (1, 1)}[name]
     entries = [x for row in rows for x in row]
-    is_flat = all(len(row) == 1 for row in rows) and name != "A"
+    is_flat = all(len(row) == 1 for row in rows) and not is_state
     shape = (len(rows), len(rows[0]) if rows else 0)
     is_whole = bool(entries) and all(len(row) == shape[1] for row in rows)
-    if name != "A" and not size:
-        return None  # A is wrong, and told so
-    if not is_whole or (shape != wanted and not (is_flat and len(entries) == max(wanted))):
+    fits = shape == wanted or (is_flat and len(entries) == max(wanted) and min(wanted) == 1)
+    if not is_whole or not fits:
         shape_found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
         shape_found = f"{len(entries)} entries" if is_flat else shape_found
-        sizes = "square" if name == "A" else f"{wanted[0]} x {wanted[1]}"
-        hint = "a block has one input and one output; in Python "
-        hint += "from_control((A, B, C, D)).to_toml() writes a system with more as [equations]"
-        hint_here = None if name == "A" or is_flat else hint
+        sizes = "square" if is_state else f"{wanted[0]} x {wanted[1]}"
+        hint = 'several inputs and outputs are listed: from = ["u_1", "u_2"], to = ["y_1", "y_2"]'
+        hint_here = None if is_state or is_flat else hint
         reader.note("SF206", f"{where} must be {sizes}, found {shape_found}", value.span, hint_here)
         return None
     read = [reader.expression(x, where) for x in entries]
-    names = {
-        "A": [f"A[{i + 1}][{j + 1}]" for i in range(len(rows)) for j in range(len(rows))],
-        "D": ["D"],
-    }.get(name, [f"{name}[{i + 1}]" for i in range(len(entries))])
-    found_all = [(n, e) for n, e in zip(names, read, strict=True) if e is not None]
-    return tuple(found_all) if len(found_all) == len(names) else None
+    if any(x is None for x in read):
+        return None
+    whole = [x for x in read if x is not None]
+    return [whole[i : i + wanted[1]] for i in range(0, len(whole), wanted[1])]
 
 
 def _term(coefficient: Expression, degree: int) -> Expression:

@@ -1,30 +1,54 @@
-"""Reading ``[equations]``: linear equations of motion as they stand on paper, as many as unknowns.
+"""Reading ``[equations]``, linear equations of motion as they stand on paper, and ``ss`` blocks with ports.
 
 Input: the section. Output: a :class:`~symflex.model.model.Signal` for each unknown, whose expression is an
 equation; which equation an unknown is listed with does not matter.
 
     unknowns  = ["x", "theta"]
     equations = ["(M + m)*s^2*x + m*l*s^2*theta = F", "s^2*x + l*s^2*theta - g*theta = 0"]
+
+A block in state space that lists what goes in and comes out has a signal for each output as well.
+
+    type = "ss", from = ["u", "w"], to = ["y"], A = [["-a", 2], [0, -3]], B = [[0, 1], [5, 0]], C = [[1, 0]]
+    s*G_x_1 = -a*G_x_1 + 2*G_x_2 + 1*w,    s*G_x_2 = -3*G_x_2 + 5*u,    y = 1*G_x_1
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import counted, nearest
-from symflex.expressions import Attribute, Equation, Name, names
+from symflex.algebra import LAPLACE
+from symflex.errors import Text, counted, nearest
+from symflex.expressions import (
+    Attribute,
+    Equation,
+    Name,
+    Negative,
+    Number,
+    Product,
+    is_number,
+    names,
+    number,
+    product_of,
+    sum_of,
+)
+from symflex.model.blocks import has_ports, items_of, matrix_rows
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import Signal
+from symflex.model.spec import NumberValue, TableValue
+from symflex.model.units import lower
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
     from symflex.expressions import Expression
     from symflex.model.reading import Reader
-    from symflex.model.spec import TableValue
+    from symflex.model.spec import KeyValue
 
 KEYS = ("unknowns", "equations", "doc")
 EXAMPLE = 'for instance: unknowns = ["x"], equations = ["m*s^2*x + k*x = F"]'
+BLOCK_KEYS = ("type", "from", "to", "A", "B", "C", "D", "states", "doc")
+PORTS_EXAMPLE = 'for instance from = ["u_1", "u_2"], to = ["y_1", "y_2"]'
 
 
 def read_equations(
@@ -87,3 +111,83 @@ def check_unknowns(reader: Reader, signals: Sequence[Signal], others: Iterable[E
             hint = nearest(unknown.name, used) or "leave it out, together with one equation"
             message = f"no equation contains the unknown '{unknown.name}'"
             reader.note("SF242", message, unknown.span, hint)
+
+
+def read_state_equations(
+    reader: Reader, section: TableValue | None, taken: Collection[str], signals: Collection[str]
+) -> tuple[Signal, ...]:
+    """Return states and outputs; ``taken`` names parameters, definitions and other blocks."""
+    read: list[Signal] = []
+    for entry in section.entries if section else ():
+        if isinstance(entry.value, TableValue) and has_ports(entry.value):
+            read += _read_ports(reader, entry, entry.value, taken, {*signals, *(x.name for x in read)})
+    return tuple(read)
+
+
+def _read_ports(
+    reader: Reader, entry: KeyValue, table: TableValue, taken: Collection[str], signals: set[str]
+) -> list[Signal]:
+    what = f"ss '{entry.key}'"
+    reader.keys(table, BLOCK_KEYS, what)
+    needed = [
+        reader.needed(table, k, entry, f"{what} lacks {k}", PORTS_EXAMPLE) for k in ("from", "to", *"ABC")
+    ]
+    given = {e.key: e for e in (*needed, table.get("D"), table.get("states")) if e is not None}
+    if None in needed:
+        return []
+    sources = [
+        reader.expression(x, f"from of {what}", quantities=False) for x in items_of(given["from"].value)
+    ]
+    outputs = reader.strings(given["to"], f"to of {what}")
+    order = len(items_of(given["A"].value))
+    states: tuple[Text, ...] | None
+    states = tuple(Text(f"{entry.key}_x_{i + 1}", entry.key_span) for i in range(order))
+    if "states" in given:
+        states = reader.strings(given["states"], f"states of {what}")
+    if outputs is None or states is None:
+        return []
+    if len(states) != order:
+        message = f"states of {what} are {counted(len(states), 'name')}, A has {counted(order, 'row')}"
+        reader.note("SF206", message, given["states"].value.span)
+        return []
+    is_good = None not in sources
+    for text in (*states, *outputs):
+        problem = name_problem(text.value, taken, {})
+        if problem is None and text.value in signals:
+            problem = "SF211", f"'{text.value}' is a signal already", "rename one of them"
+        if problem is not None:
+            reader.note(problem[0], problem[1].replace("an unknown", "a signal"), text.span, problem[2])
+            is_good = False
+        signals.add(text.value)
+    shapes = {"A": (order, order), "B": (order, len(sources)), "C": (len(outputs), order)}
+    through = given.get("D")
+    is_direct = through and not (isinstance(through.value, NumberValue) and not through.value.value)
+    shapes |= {"D": (len(outputs), len(sources))} if is_direct else {}
+    a, b, c, d = (
+        matrix_rows(reader, given[k].value, f"{k} of {what}", shapes[k])
+        if k in shapes
+        else [[number(0)] * len(sources)] * len(outputs)
+        for k in "ABCD"
+    )
+    if not is_good or a is None or b is None or c is None or d is None:
+        return []
+    moving = [Name(x.value, span=x.span) for x in states]
+    columns = [*moving, *(x for x in sources if x is not None)]
+    sums = [
+        sum_of(_times(x, name) for x, name in zip((*left, *right), columns, strict=True))
+        for left, right in zip((*a, *c), (*b, *d), strict=True)
+    ]
+    sides = zip(moving, sums[:order], strict=True)
+    equations = [Equation(Product((Name(LAPLACE), x)), total, span=x.span) for x, total in sides]
+    read = [*equations, *(replace(x, span=y.span) for x, y in zip(sums[order:], outputs, strict=True))]
+    return [Signal(x.value, e, x.span) for x, e in zip((*states, *outputs), read, strict=True)]
+
+
+def _times(entry: Expression, factor: Expression) -> Expression:
+    """Return a product in which 1 stays, as a number may have any unit."""
+    value = lower(entry)
+    if is_number(value, 0):
+        return value
+    if isinstance(value, Negative):
+        return Negative(_times(value.operand, factor))
+    return Product((value, factor)) if isinstance(value, Number) else product_of([value, factor])

@@ -11,6 +11,7 @@ from symflex.errors import Diagnostic, nearest
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
+from symflex.model.blocks import has_ports
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
     INPUT_KINDS,
@@ -685,7 +686,10 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
     for section, names_read in read.items():
         table = sections[section]
         for entry in table.entries if table else ():
-            if entry.key not in names_read:
+            if section == "blocks" and isinstance(entry.value, TableValue) and has_ports(entry.value):
+                listed = _listed_names(e for e in entry.value.entries if e.key in ("to", "states"))
+                broken.update(set(listed) - read["signals"])
+            elif entry.key not in names_read:
                 broken.add(entry.key)
                 if not isinstance(entry.value, TableValue):
                     continue

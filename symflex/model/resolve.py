@@ -44,7 +44,7 @@ from symflex.model.declarations import (
     with_formulas_defined,
 )
 from symflex.model.dimensions import turned_name
-from symflex.model.equations import check_unknowns, read_equations
+from symflex.model.equations import check_unknowns, read_equations, read_state_equations
 from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
 from symflex.model.linearity import check_equation, check_expression, without_signal
@@ -170,6 +170,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     )
     taken = {p.name for p in declared} | {p.name for p in inherited}
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
+    signals += read_state_equations(reader, sections["blocks"], taken, {x.name for x in signals})
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     loads = {x.name for x in signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(

@@ -207,6 +207,9 @@ def _block_type(block: Block) -> Schema:
         value = _value_of(parameter)
         several = {"type": ["string", "number", "array"], "minItems": 1}
         properties[parameter.name] = {**value, **several} if is_list else value
+    if block.type_name == "ss":
+        ports = (("from", "inputs"), ("to", "signals of the outputs"), ("states", "names of the states"))
+        properties |= {key: _said({"type": ["string", "array"], "minItems": 1}, doc) for key, doc in ports}
     required = [p.name for p in block.parameters if p.default is None]
     required += [] if block.type_name == "tf" else ["type"]
     return {"title": block.type_name, **_closed(properties, required)}
