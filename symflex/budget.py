@@ -7,6 +7,7 @@ proved until its time was over enters a budget besides.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from contextlib import contextmanager
@@ -211,3 +212,27 @@ def memory_held(process: int | None = None) -> int:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except OSError:
         return 0 if process else peak_memory()
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Pause the collector of cycles, whose passes over all objects would make linear work quadratic.
+
+    Examples
+    --------
+    >>> import gc
+    >>> with uncollected():
+    ...     gc.isenabled()
+    False
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            if not gc.get_freeze_count():
+                # Now they all count as old, and the next young generation is looked at without them.
+                gc.freeze()
+                gc.unfreeze()
+            gc.enable()

@@ -1,6 +1,5 @@
 """The exact ring, factored rational functions over it, and the functions that may appear as generators."""
 
-from symflex.algebra.collection import uncollected
 from symflex.algebra.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.algebra.factored import (
     PRIME,

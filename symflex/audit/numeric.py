@@ -18,6 +18,7 @@ from symflex.expressions import Expression
 from symflex.model import ExactValue, Model
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import principal_values
+from symflex.transfer.probes import probes_of
 
 POINTS = 40
 DIGITS = 50
@@ -158,7 +159,9 @@ def compare(numbers: Numbers) -> Comparison:
 def compare_anywhere(numbers: Numbers, tf: TransferFunction) -> Comparison:
     """Compare both functions, also with other values than the declared ones: 1 kg hides a factor."""
     comparison = compare(numbers)
-    for setting in () if comparison.differs else dict.fromkeys(setting for setting, _ in tf.probes.points):
+    for setting in (
+        () if comparison.differs else dict.fromkeys(setting for setting, _ in probes_of(tf).points)
+    ):
         bound = bind(tf, {name: v.rational for name, v in setting.values.items() if not v.pi_power})
         other = compare(replace(numbers, bound=bound, values=setting.values, _enclosed={}))
         if other.differs:

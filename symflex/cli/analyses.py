@@ -109,7 +109,7 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate
-    from symflex.analysis.rational.text import rational_json, rational_text
+    from symflex.analysis.rational.approximation import rational_json, rational_text
 
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.completion import OFFERED, completed
 from symflex.cli.reporting import keep, note, reporting, show
 from symflex.options import OUTSIDE, option
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from dataclasses import Field
+
+    from click.shell_completion import CompletionItem
 
     from symflex.model import Model
 
@@ -122,11 +123,15 @@ def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., 
         said["type"] = click.Path(exists=True, file_okay=False)
     if not flags:
         return click.argument(one.name, **said)
-    if not OFFERED.keys().isdisjoint(flags) and one.default is not False:
-        said["shell_complete"] = completed
     if not said.get("required"):
         said["default"] = one.default
-    return click.option(*flags, one.name, **said)
+    return click.option(*flags, one.name, shell_complete=_completed, **said)
+
+
+def _completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    from symflex.cli.completion import completed  # only the tab key needs it
+
+    return completed(context, parameter, incomplete)
 
 
 def first_pair(model: Model, tf: str | None, doing: str) -> tuple[str, str]:

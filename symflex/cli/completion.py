@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from click.shell_completion import CompletionItem
+
 from symflex.errors import SymflexError
 
 if TYPE_CHECKING:
@@ -19,12 +21,14 @@ if TYPE_CHECKING:
     from symflex.model import Model
 
 
-def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Return the words that an option may continue with."""
-    kind = next(OFFERED[flag] for flag in parameter.opts if flag in OFFERED)
+    kind = next((OFFERED[flag] for flag in parameter.opts if flag in OFFERED), None)
+    if kind is None:
+        return parameter.type.shell_complete(context, parameter, incomplete)
     # An option that still lacks its value ends click's parsing early: the path is then among what is left.
     path = context.params.get("spec") or next(iter(context.args), "")
-    return [word for word in kind(str(path)) if word.startswith(incomplete)]
+    return [CompletionItem(word) for word in kind(str(path)) if word.startswith(incomplete)]
 
 
 def _of_model(names: Callable[[Model], Sequence[str]]) -> Callable[[str], Sequence[str]]:
@@ -70,4 +74,4 @@ OFFERED: Mapping[str, Callable[[str], Sequence[str]]] = {
     "--form": _forms,
     "--to": _targets,
 }
-"""What each option offers, of the specification's path; options of other names complete as click does."""
+"""What each option offers, of the specification's path; others complete as their types do."""

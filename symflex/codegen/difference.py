@@ -38,7 +38,8 @@ from symflex.codegen.module_text import (
     value_as_written,
     wrapped,
 )
-from symflex.codegen.python.module import NUMPY_DIALECT, docstring
+from symflex.codegen.python.dialects import NUMPY_DIALECT
+from symflex.codegen.python.module import docstring
 from symflex.codegen.python.pieces import WIDTH
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import NestedTransferFunction, bind

@@ -19,8 +19,8 @@ from symflex.codegen.module_text import default_value, identifiers, inert, wrapp
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import DEFAULT_BAND, Verification, double_of, measure_values
+from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.module import (
-    NUMPY_DIALECT,
     docstring,
     literal,
     origin,

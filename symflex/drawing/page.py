@@ -9,8 +9,9 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from symflex.drawing.geometry import BLACK, Drawing, Placed, union
+from symflex.figures.figure import new_figure
 from symflex.figures.files import render
-from symflex.figures.style import DEFAULT_FONT, new_figure, paper_style
+from symflex.figures.style import DEFAULT_FONT, paper_style
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -26,7 +26,7 @@ from symflex.algebra import (
 )
 from symflex.budget import spend
 from symflex.equations.against_text import error_of
-from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
+from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow, radicals_of
 from symflex.equations.evaluate import (
     ExactEvaluator,
     Opener,
@@ -35,7 +35,6 @@ from symflex.equations.evaluate import (
     written_denominator,
     written_poles,
 )
-from symflex.equations.radicals import radicals_of
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,

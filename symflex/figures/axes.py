@@ -20,6 +20,7 @@ from matplotlib.ticker import (
 )
 
 from symflex.errors import Diagnostic, UsageError
+from symflex.figures.figure import new_figure
 from symflex.figures.style import (
     COLUMN_INCHES,
     QUIET,
@@ -27,7 +28,6 @@ from symflex.figures.style import (
     TITLE_SPACING,
     label_of_frequency,
     label_of_unit,
-    new_figure,
 )
 
 if TYPE_CHECKING:

@@ -20,16 +20,8 @@ from symflex.figures.axes import (
     write_title,
 )
 from symflex.figures.bode import set_frequency_axes
-from symflex.figures.style import (
-    COLOURS,
-    COLUMN_INCHES,
-    DASHES,
-    PAGE_INCHES,
-    QUIET,
-    new_figure,
-    paper_style,
-    title_lines,
-)
+from symflex.figures.figure import new_figure
+from symflex.figures.style import COLOURS, COLUMN_INCHES, DASHES, PAGE_INCHES, QUIET, paper_style, title_lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,13 +11,14 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.axes import FREE, AxisLimits, Canvas, axes_of
 from symflex.figures.bode import draw_bode
+from symflex.figures.figure import raster_of
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.in_time import draw_responses
 from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
 from symflex.figures.modes import draw_modes, draw_shapes
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.runs import panels_of
-from symflex.figures.style import DEFAULT_FONT, family_of, paper_style, raster_of
+from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
 from symflex.loops import require_arrival, trace_locus
 from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex.page import checked_width
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.modes import EnclosedModeShape
     from symflex.figures.axes import AxesGiven, Drawing
-    from symflex.figures.style import Raster
+    from symflex.figures.figure import Raster
     from symflex.loops import AnyLoop
     from symflex.model import Model
     from symflex.transfer import AnyBoundFunction

@@ -14,6 +14,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.figures.axes import root_figure
+from symflex.figures.figure import new_figure
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.runs import Plan, Run, Stems, panels_of
 from symflex.figures.style import (
@@ -25,7 +26,6 @@ from symflex.figures.style import (
     PLAIN_HIGH,
     QUIET,
     label_of_name,
-    new_figure,
     title_lines,
     write_titles,
 )

@@ -7,6 +7,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Final
 
 from symflex.figures.axes import FREE, draw_points, draw_zero_lines, root_figure, set_round_ticks
+from symflex.figures.figure import new_figure
 from symflex.figures.s_plane import GLYPHS, Panel, View, choose_view, inches_of, marks_of, write_notes
 from symflex.figures.style import (
     COLOURS,
@@ -14,7 +15,6 @@ from symflex.figures.style import (
     LINE_INCHES,
     PAGE_INCHES,
     label_of_tf,
-    new_figure,
     stability_lines,
     title_lines,
     write_titles,

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import re
 import textwrap
-from io import BytesIO
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from matplotlib import style
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
 
@@ -124,48 +121,6 @@ def family_of(text: str, font: str) -> list[str] | None:
     if font != "latex" or all(c in _COMPUTER_MODERN or c > _LAST_OF_LATIN for c in text):
         return None
     return _FALLBACK
-
-
-Raster = tuple[bytes, dict[str, int]]
-
-
-class ShownFigure(Figure):
-    r"""A figure that belongs to no window, and that a notebook shows where it is a cell's value.
-
-    Examples
-    --------
-    >>> data, size = ShownFigure(figsize=(3.5, 2.0))._repr_png_()
-    >>> data[:4], size
-    (b'\x89PNG', {'width': 420, 'height': 240})
-    """
-
-    def _repr_png_(self) -> Raster:
-        return raster_of(self)
-
-    def savefig(self, fname: Any, **kwargs: Any) -> None:  # noqa: ANN401 (as matplotlib has it)
-        """Save the figure as matplotlib does; PGF as ``symflex plot`` writes it, which needs no TeX."""
-        from symflex.figures.files import save  # imports this module
-
-        format = kwargs.get("format") or Path(str(fname)).suffix.removeprefix(".")
-        if isinstance(fname, str | Path) and format.lower() == "pgf":
-            save(self, Path(fname), "pgf")
-        else:
-            super().savefig(fname, **kwargs)
-
-
-def raster_of(figure: Figure) -> Raster:
-    """Return a figure as a notebook takes it: a PNG, and how large it is to be shown."""
-    buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=2 * DOTS_SHOWN)  # sharp on fine screens
-    across, upwards = (round(inches * DOTS_SHOWN) for inches in figure.get_size_inches())
-    return buffer.getvalue(), {"width": across, "height": upwards}
-
-
-def new_figure(width: float, height: float) -> ShownFigure:
-    """Return an empty figure [inches]."""
-    figure = ShownFigure(figsize=(width, height))
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def stability_lines(maps: Sequence[PoleZeroMap], width: float) -> list[str]:

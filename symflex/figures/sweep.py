@@ -21,6 +21,7 @@ from symflex.figures.axes import (
     set_frequency_axis,
     write_title,
 )
+from symflex.figures.figure import new_figure
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
@@ -32,7 +33,6 @@ from symflex.figures.style import (
     label_of_frequency,
     label_of_name,
     label_of_unit,
-    new_figure,
     number_label,
     paper_style,
     title_lines,

@@ -44,7 +44,7 @@ from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
 from symflex.transfer import NestedTransferFunction
 from symflex.transfer.enclose import principal_values
-from symflex.transfer.probes import SOLVED_BITS
+from symflex.transfer.probes import SOLVED_BITS, probes_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -75,14 +75,15 @@ def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = N
 
     ``digits`` are those of the decimals that a form prints. Raises InternalError: SF992 where they differ.
     """
-    probes = tf.probes if digits is None else tf.probes.declared
+    every = probes_of(tf)
+    probes = every if digits is None else every.declared
     try:
         agreed = _Reader(tf, form, probes, digits).compared()
         # Most texts are read as the very tree they are made of.
         if (read := _as_read(form)) != form:
             _Reader(tf, read, probes, digits).compared()
         if form.closed:
-            _Reader(tf, form, tf.probes.solved, digits).compared()
+            _Reader(tf, form, every.solved, digits).compared()
     except _DiffersError as error:
         message = f"the {form.name} form of {tf.name} is not shown, as it is wrong: {error}"
         raise InternalError(Diagnostic("SF992", message, None, REPORT)) from None
@@ -99,7 +100,7 @@ def read_hidden(
     """
     if isinstance(tf, NestedTransferFunction) or not tf.hidden:
         return
-    probes, bits = tf.probes, PRECISIONS[1]
+    probes, bits = probes_of(tf), PRECISIONS[1]
     chosen = [i for i, (_, (re, _)) in enumerate(probes.points) if re > 0]
     with precision(bits):
         try:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from symflex import pipeline
 from symflex.errors import SpecError, SymflexError
 from symflex.report.document import Block, Notice, Section, code_of, text
-from symflex.report.facts import ModelFacts, bare_facts
+from symflex.report.facts import ModelFacts, bare_facts, facts_of
 from symflex.report.sections import SECTIONS
 from symflex.report.study import Study, attempt, said
 
@@ -86,7 +86,7 @@ def chapter_of(
             files.update(part.files)
             warnings += part.warnings
             code = max(code, part.code)
-    gathered = attempt(lambda: study.facts)
+    gathered = attempt(lambda: facts_of(study))
     if isinstance(gathered, SymflexError):
         warnings.append(f"{stem} is not compared: {said(gathered)}")
         code, facts = max(code, code_of(gathered)), bare_facts(stem, model)

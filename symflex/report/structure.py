@@ -35,7 +35,7 @@ from symflex.expressions import (
     product_of,
 )
 from symflex.model import Input, Model, ModelParameter, Output, PlacedElement, with_numbers
-from symflex.print.forms.notation import names_of
+from symflex.print.forms.naming import names_of
 
 Place = Literal["base", "transmission", "link", "contact"]
 PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")

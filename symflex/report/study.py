@@ -20,7 +20,6 @@ from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import has_loss_factors
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
-from symflex.report.facts import ModelFacts, facts_of
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
 from symflex.transfer import BoundNested, BoundTransferFunction, TransferFunction
 
@@ -196,11 +195,6 @@ class Study:
         """Zeros and poles without dampers; see :func:`symflex.report.structure.undamped_counts`."""
         counts = attempt(lambda: undamped_counts(self.model))
         return {} if isinstance(counts, SymflexError) else counts
-
-    @cached_property
-    def facts(self) -> ModelFacts:
-        """What the report compares and judges."""
-        return facts_of(self)
 
     @cached_property
     def responses(self) -> tuple[SampledResponse, ...]:

@@ -1,13 +1,7 @@
 """Transfer functions: derived exactly, reduced, named, and bound to numbers."""
 
-from symflex.transfer.bind import (
-    BoundTransferFunction,
-    EnclosedTransferFunction,
-    Given,
-    bind,
-    bind_polynomials,
-    coefficients_in_s,
-)
+from symflex.transfer.bind import Given, bind, bind_polynomials
+from symflex.transfer.bound import BoundTransferFunction, EnclosedTransferFunction, coefficients_in_s
 from symflex.transfer.derive import derive, derive_all, nested_transfer
 from symflex.transfer.nested_form import (
     AnyBoundFunction,

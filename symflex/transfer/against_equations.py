@@ -16,7 +16,7 @@ Example: ``1/(m s^2 - k)`` for a mass m on a spring k at s = 1 + 1j rad/s, m = 2
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from random import Random
@@ -24,34 +24,27 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
-from symflex.algebra import LAPLACE, NO_KERNELS, PolynomialMemo, uncollected
-from symflex.balls import Arithmetic, at_centre, ball, current_bits, plan, precision
+from symflex.algebra import LAPLACE
+from symflex.balls import ball, current_bits, precision
+from symflex.budget import uncollected
 from symflex.equations import assemble
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue
-from symflex.model.along import is_tapered, varies_along_x
+from symflex.model.along import is_tapered
 from symflex.transfer.direct_solve import (
     DirectSolve,
-    GeneratorValues,
     NotFollowedError,
     Point,
     SingularPointError,
-    carried,
 )
 from symflex.transfer.enclose import enclosure
-from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from flint import acb_mat
-
-    from symflex.algebra import Dispersion, Factored
     from symflex.equations import Equations
     from symflex.equations.assemble import Nested
     from symflex.model import Model
-    from symflex.transfer.bind import BoundTransferFunction
-    from symflex.transfer.transfer_function import ClosedForm
 
 BITS = 192
 """Precision that is tried first; then one or two more an unknown, as long chains of members need."""
@@ -195,87 +188,6 @@ def _is_narrow(value: acb) -> bool:
         return False
     is_zero = value.contains(0) and float(abs(value).upper()) < 2.0 ** -(current_bits() // 2)
     return bool(value == 0 or is_zero or value.rel_accuracy_bits() >= WANTED)
-
-
-def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:
-    """Return what a transfer function says: in its closed form, in its expanded one, and by its two parts."""
-    source = tf if isinstance(tf, TransferFunction) else tf.source
-    # A definition that divides by s, as of a viscoelastic stiffness, adds poles once it is opened.
-    definitions = source.solve.direct.equations.definitions if source.solve is not None else ()
-    is_opened = not isinstance(tf, TransferFunction) and any(
-        value.denominator().depends_on(LAPLACE) for _, value in definitions
-    )
-    determinant = None if tf.is_distributed or is_opened else partial(_determinant, tf)
-    return Agreement((source.output.name, source.input.name), partial(_values, tf), determinant)
-
-
-def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> list[acb]:
-    """Return the values of all forms; that of a large function is not opened."""
-    values = []
-    if (closed := _closed(tf)) is not None:
-        num, den = _sides(closed, here, known)
-        values.append(num / den)
-    if tf.is_distributed:
-        whole, num, den = _with_kernels(tf, here, known)
-        values += [whole, num / den]
-    elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
-        values.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
-    if not isinstance(tf, TransferFunction) and not tf.is_distributed:
-        values.append(replace(tf.enclosed(current_bits()), root=None)(here.s()))
-    return values
-
-
-def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
-    """Return the denominator times what cancelled from it."""
-    number, closed = GeneratorValues(dict(known), here.whole), _closed(tf)
-    left = number(tf.den) if closed is None else _sides(closed, here, known)[1]
-    if not tf.hidden:
-        return left  # nothing is opened for the names of its ring
-    ring = tf.ring if isinstance(tf, TransferFunction) else tf.ratio.ring
-    for hidden in tf.hidden:
-        left = left * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
-    return left
-
-
-def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
-    return tf.closed if isinstance(tf, TransferFunction) else None
-
-
-def _sides(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> tuple[acb, acb]:
-    number = GeneratorValues(dict(known), whole := dict(here.whole))
-    for name, opened in closed.closure.sums if whole else ():
-        if (integer := number.integer(opened, closed.closure.base.names)) is not None:
-            whole[name] = int(integer)
-    return closed.sides(number.values, number.polynomial)
-
-
-def _with_kernels(
-    tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]
-) -> tuple[acb, acb, acb]:
-    """Return the values of a transfer function with kernels, of its numerator and of its denominator."""
-    from symflex.algebra.modal_sum import ModalSums  # only with beams
-    from symflex.transfer.enclose_kernels import KernelValues
-
-    ring, table = tf.ratio.ring, tf.kernels
-    numbers: dict[str, Arithmetic] = {
-        n: x.real if (x := known[n]).imag == 0 else x for n in ring.names if n in known and n != LAPLACE
-    }
-    kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))
-    values = kernels.at(here.s())
-    constants = (tf if isinstance(tf, TransferFunction) else tf.source).constants
-    along = {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
-    matrices: dict[tuple[Dispersion, Factored], acb_mat] = {}
-    for kernel in table.kernels:
-        law = kernel.dispersion
-        if kernel.function == "entry":
-            if (law, kernel.length) not in matrices:
-                columns, reach = tuple(zip(*law.matrix, strict=True)), (law.start[0], kernel.length)
-                matrices[law, kernel.length] = carried(
-                    columns, reach, GeneratorValues(dict(known)), along, here
-                )
-            values[kernel.generator] = matrices[law, kernel.length][divmod(kernel.order, law.order)]
-    whole, above, below = (at_centre(kernels.value(x, values)) for x in (tf.ratio, tf.num, tf.den))
-    return whole, above, below
 
 
 def _differs(agreement: Agreement, here: Point, fault: str) -> InternalError:

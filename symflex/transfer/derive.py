@@ -18,7 +18,8 @@ from symflex.equations import assemble, radicals_of
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.model.along import is_tapered
-from symflex.transfer.against_equations import ModelSolve, agreement, compare
+from symflex.transfer.against_equations import ModelSolve, compare
+from symflex.transfer.agreement import agreement
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.transfer_function import (

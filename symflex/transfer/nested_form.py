@@ -24,12 +24,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import LAPLACE, uncollected
+from symflex.algebra import LAPLACE
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.balls import ball, expansion, precision, precisions, raised
-from symflex.budget import spend
+from symflex.budget import spend, uncollected
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
-from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
+from symflex.transfer.bind import Given, bind, values_for
+from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.direct_solve import NotFollowedError, Point, SingularPointError
 from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value, limit_at_zero
@@ -53,7 +54,6 @@ if TYPE_CHECKING:
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
-    from symflex.transfer.probes import Probes
 
 CONSTANT_BITS = 256
 
@@ -196,13 +196,6 @@ class NestedTransferFunction:
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
         return parameters_named(self.model, self.constants, self.generators)
-
-    @cached_property
-    def probes(self) -> Probes:
-        """Its values at test points, for what is printed of it."""
-        from symflex.transfer.probes import Probes  # it knows all kinds of transfer functions
-
-        return Probes(self)
 
 
 AnyTransferFunction = TransferFunction | NestedTransferFunction

@@ -11,8 +11,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex import equations as equations_room
-from symflex.algebra import LAPLACE, terms_of, uncollected
-from symflex.budget import spend
+from symflex.algebra import LAPLACE, terms_of
+from symflex.budget import spend, uncollected
 from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symflex.algebra import KernelTable
     from symflex.equations import Equations
     from symflex.model import Model
-    from symflex.transfer.bind import BoundTransferFunction
+    from symflex.transfer.bound import BoundTransferFunction
     from symflex.transfer.nested_form import AnyBoundFunction, AnyTransferFunction, NestedTransferFunction
     from symflex.transfer.transfer_function import TransferFunction
 

@@ -28,7 +28,7 @@ from symflex.balls import at_centre, ball, current_bits, plan, precision
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
-from symflex.transfer.bind import BoundTransferFunction
+from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.enclose import enclosure, evaluated, later, principal_values
 from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 
@@ -183,6 +183,15 @@ class Probes:
                     known[name] = principal_values(function, 1, own.__getitem__)[0]
                 values.append(evaluated(value, known.__getitem__, acb(1)))
         return values
+
+
+def probes_of(tf: AnyTransferFunction) -> Probes:
+    """Return the test points of a function, which keeps them: all that is printed of it is compared there."""
+    kept = vars(tf)
+    if "probes" not in kept:
+        kept["probes"] = Probes(tf)
+    probes: Probes = kept["probes"]
+    return probes
 
 
 def _is_large(tf: AnyTransferFunction) -> bool:

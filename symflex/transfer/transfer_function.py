@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from symflex.quantities import Dimension
     from symflex.transfer.against_equations import ModelSolve
     from symflex.transfer.expansion import Opening
-    from symflex.transfer.probes import Probes
 
 
 LARGE = 50_000
@@ -245,13 +244,6 @@ class TransferFunction:
             if name in used:
                 used |= value.ring.used_in(f for f, _ in value.factors)
         return parameters_named(self.model, self.constants, used)
-
-    @cached_property
-    def probes(self) -> Probes:
-        """Its values at test points, for what is printed of it."""
-        from symflex.transfer.probes import Probes  # it knows all kinds of transfer functions
-
-        return Probes(self)
 
     @property
     def order(self) -> tuple[int, int]:

@@ -15,7 +15,7 @@ from symflex.budget import Silent
 from symflex.report.article import report_article
 from symflex.report.claims.claim import claims_json, judge_all
 from symflex.report.claims.read import read_claims
-from symflex.report.facts import DataFact, LoopFacts, ModelFacts
+from symflex.report.facts import DataFact, LoopFacts, ModelFacts, facts_of
 from symflex.report.page import report_page
 from symflex.report.report import compose, find_measurements, name_specifications, write_chapters
 from symflex.report.study import Study
@@ -85,7 +85,7 @@ def report(chapters):
 def models(chapters):
     """The facts about each model; chapters hold them already."""
     paths = [FOLDER / f"{name}.toml" for name in JUDGED]
-    found = {c.stem: c.facts for c in chapters} | {p.stem: Study.of(p, p.stem).facts for p in paths}
+    found = {c.stem: c.facts for c in chapters} | {p.stem: facts_of(Study.of(p, p.stem)) for p in paths}
     return found | {
         stem: ModelFacts(stem, source=PUBLICATION.name, loops=(loop,)) for stem, loop in SLIDING.items()
     }
@@ -239,7 +239,7 @@ def test_a_claim_is_refuted_where_the_model_is_another(tmp_path):
     text = (FOLDER / "lumped_bending_beam.toml").read_text("utf-8")
     (tmp_path / "lumped_bending_beam.toml").write_text(text.replace('"150 mm"', '"1 mm"'), encoding="utf-8")
     study = Study.of(tmp_path / "lumped_bending_beam.toml", "lumped_bending_beam")
-    judged = {key: claim["verdict"] for key, claim in verdicts({study.stem: study.facts}).items()}
+    judged = {key: claim["verdict"] for key, claim in verdicts({study.stem: facts_of(study)}).items()}
     assert judged["lumped-noncolocated"] == "does not hold"
     assert judged["lumped-pair"] == "does not hold"
     assert judged["lumped-colocated"] == "holds"

@@ -33,7 +33,7 @@ from symflex.roots.locate import locate, of_numbers
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, modes_of
 from symflex.transfer import BoundNested
-from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.bound import EnclosedTransferFunction
 
 if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction

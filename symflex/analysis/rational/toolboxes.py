@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
-    from symflex.transfer.bind import Enclosed
+    from symflex.transfer.bound import Enclosed
 
 TRANSFER_FUNCTION, STATE_SPACE, ZEROS_POLES_GAIN = "transfer-function", "state-space", "zeros-poles-gain"
 CONTROL_FORMS = (TRANSFER_FUNCTION, STATE_SPACE)

@@ -24,7 +24,7 @@ from flint import acb, acb_poly, acb_series, arb, arb_mat
 
 from symflex.analysis.rational.laurent import principal_part
 from symflex.balls import raised, series_quotient, series_terms
-from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.bound import EnclosedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from symflex.codegen.program.nodes import Piecewise
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundTransferFunction
-    from symflex.transfer.bind import Enclosed
+    from symflex.transfer.bound import Enclosed
 
 
 CLOSED_TERMS = 60

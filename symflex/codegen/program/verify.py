@@ -30,7 +30,7 @@ from symflex.transfer import (
     bind,
     bind_nested,
 )
-from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from symflex.codegen.python.module import Dialect
+    from symflex.codegen.python.dialects import Dialect
 
 
 @dataclass(frozen=True)

@@ -31,9 +31,8 @@ from dataclasses import dataclass, field, replace
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.algebra import uncollected
 from symflex.algebra.straight_line import ONE, ZERO, Step, StraightLine, Workbench
-from symflex.budget import spend
+from symflex.budget import spend, uncollected
 from symflex.equations.elimination.singular import explain_singular
 from symflex.errors import Diagnostic, ModelError
 

@@ -51,7 +51,7 @@ from symflex.print.forms.arrange import Sides, length_sides
 if TYPE_CHECKING:
     from symflex.algebra import Dispersion
     from symflex.print.forms.arrange import ProductPrinter
-    from symflex.print.forms.notation import Naming
+    from symflex.print.forms.naming import Naming
     from symflex.transfer import TransferFunction
 
 Line = tuple[Expression, Expression]

@@ -28,9 +28,9 @@ from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
     Line,
-    Naming,
     angles_of,
     constant_symbols,
     pair_lines,

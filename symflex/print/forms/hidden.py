@@ -18,7 +18,8 @@ from symflex.algebra import KernelTable
 from symflex.errors import InternalError
 from symflex.expressions import Name, format_expression, number, product_of, quotient, substitute
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
+from symflex.print.forms.naming import Naming
+from symflex.print.forms.notation import Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm, in_roots
 from symflex.print.forms.shapes import powers_of

@@ -10,14 +10,8 @@ from symflex.expressions import Expression, Name, negative, number, power, produ
 from symflex.print.forms.arrange import Arranged, Arranger, shortest_sides
 from symflex.print.forms.invariants import NOT_ENTIRE, Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.notation import (
-    Line,
-    Naming,
-    constant_symbols,
-    notation_of,
-    reachable,
-    wavenumber_laws,
-)
+from symflex.print.forms.naming import Naming
+from symflex.print.forms.notation import Line, constant_symbols, notation_of, reachable, wavenumber_laws
 from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import BegunForm, PrintedForm, lacks, terms_of
 

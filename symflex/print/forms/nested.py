@@ -40,7 +40,8 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import length
 from symflex.print.forms.definitions import tidied_sum
-from symflex.print.forms.notation import Naming, names_of, reachable
+from symflex.print.forms.naming import Naming, names_of
+from symflex.print.forms.notation import reachable
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, powers_of
 

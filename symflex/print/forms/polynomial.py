@@ -10,8 +10,8 @@ from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irred
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranged, Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
-    Naming,
     Notation,
     constant_symbols,
     notation_of,

@@ -28,9 +28,9 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranged, Arranger, Sides, length
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
     Line,
-    Naming,
     angles_of,
     constant_symbols,
     other_kernels,

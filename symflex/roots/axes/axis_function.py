@@ -7,7 +7,7 @@ on it:
     d/dt exp(g) (E cos(p) + O sin(p)) = exp(g) ((E' + g' E + p' O) cos(p) + (O' + g' O - p' E) sin(p))
 
 Roots are sought from two places of opposite sign and from guesses in doubles: Newton steps of rising
-precision come close, and :mod:`symflex.algebra.interval_newton` proves them.
+precision come close, and :mod:`symflex.balls.interval_newton` proves them.
 """
 
 from __future__ import annotations

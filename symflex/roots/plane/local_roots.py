@@ -1,7 +1,7 @@
 """Proving roots of a function with kernels about a guess: a simple one, or several that lie close together.
 
 An interval Newton step proves that a factor has exactly one root in a box, a simple one; see
-:mod:`symflex.algebra.interval_newton`. Where all other factors differ from 0 on the box, the function has
+:mod:`symflex.balls.interval_newton`. Where all other factors differ from 0 on the box, the function has
 that root with the factor's exponent for its multiplicity. Example: in ``(s^2 + 4) cosh(s)^2`` a box about 2j
 holds a simple root, one about ``j pi/2`` a double root.
 

@@ -26,7 +26,8 @@ from symflex.codegen.matlab import LONGEST, MATLAB, main_name
 from symflex.codegen.matlab import RESERVED as OF_MATLAB
 from symflex.codegen.module_text import formula_of, identifiers, inert
 from symflex.codegen.program.verify import choose_programs
-from symflex.codegen.python.module import ARRAY_API, ARRAY_API_DIALECT, JAX, JAX_DIALECT, NUMPY, NUMPY_DIALECT
+from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT
+from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space import state_space_module
 from symflex.print import forms
 from symflex.state_space import realise

@@ -20,6 +20,7 @@ from symflex.errors import SpecError, UsageError
 from symflex.report.article import report_article
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS, comparison_section
 from symflex.report.document import Mathematics, Paragraph, Section
+from symflex.report.facts import facts_of
 from symflex.report.page import inline_svg, report_page
 from symflex.report.report import (
     Report,
@@ -248,7 +249,7 @@ def test_modes_of_a_structure_that_a_spring_holds_to_ground_are_counted(tmp_path
     facts = []
     for stem, text in (("free", SMALL), ("held", HELD)):
         (tmp_path / f"{stem}.toml").write_text(text, encoding="utf-8")
-        facts.append(Study.of(tmp_path / f"{stem}.toml", stem).facts)
+        facts.append(facts_of(Study.of(tmp_path / f"{stem}.toml", stem)))
     free, held = (each.to_json_dict()["transfer_functions"] for each in facts)
     assert [(f["modes"], f["poles_added"]) for f in free] == [(1, 2), (1, 2)]
     assert [(f["modes"], f["poles"], f["poles_added"], f["zeros_added"]) for f in held] == [

@@ -13,7 +13,8 @@ from symflex import pipeline
 from symflex.errors import InternalError
 from symflex.model import ExactValue
 from symflex.transfer import nested_transfer
-from symflex.transfer.against_equations import Agreement, ModelSolve, agreement, compare
+from symflex.transfer.against_equations import Agreement, ModelSolve, compare
+from symflex.transfer.agreement import agreement
 from symflex.transfer.direct_solve import Point, SingularPointError
 from tests.house.repository import ROOT
 

@@ -6,7 +6,7 @@ import mpmath
 from flint import ctx
 
 from symflex import pipeline
-from symflex.transfer.probes import Probes
+from symflex.transfer.probes import Probes, probes_of
 
 SUSPENSION = """symflex = 1
 parameters = { m = "3 kg", k = "200 N/m", b = {}, zeta = 0.2 }
@@ -39,7 +39,7 @@ def test_points_lie_on_axes_and_in_all_quadrants_and_parameters_on_both_sides_of
 
 def test_values_are_those_of_the_formula():
     tf = only(SUSPENSION)
-    probes = tf.probes
+    probes = probes_of(tf)
     with mpmath.workdps(40), ctx.workprec(128):
         for (setting, (re, im)), value in zip(probes.points, probes.values(128), strict=True):
             v = {
@@ -56,6 +56,6 @@ def test_values_are_those_of_the_formula():
 
 def test_declared_values_are_kept_where_they_are_asked_for():
     tf = only(SUSPENSION.replace("b = {}", 'b = "7 N*s/m"'))
-    for setting, _ in tf.probes.declared.points:
+    for setting, _ in probes_of(tf).declared.points:
         assert {n: v.rational for n, v in setting.values.items()}["b"] == 7
     assert Probes(only(SUSPENSION)).declared.points == ()
