@@ -68,9 +68,8 @@ class Stability:
     @property
     def counted_up_to_hz(self) -> float:
         """Frequency up to which poles right of the axis are counted [Hz]; infinite if all are."""
-        if self.proved.is_complete or self.proved.radius is None:
-            return float("inf")
-        return self.proved.radius / (2 * float(mpmath.pi))
+        end = self.proved.counted_up_to
+        return float("inf") if end is None else end / (2 * float(mpmath.pi))
 
     @property
     def stable(self) -> tuple[tuple[mpmath.mpf, mpmath.mpf], ...]:

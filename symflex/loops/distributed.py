@@ -88,6 +88,7 @@ class DistributedFactors:
     method: str = "argument principle"
     is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
     loop: Loop | None = None  # whose factors they are
+    is_cut: bool = False  # poles beyond ``up_to`` are not asked for
 
     @property
     def where_no_delay_leads(self) -> DistributedFactors:
@@ -161,6 +162,9 @@ class DistributedFactors:
 
         Where it is not, ``reasons`` says why.
         """
+        if self.is_cut:
+            self.reasons.append("the data end there")
+            return self._without_end, False
         if not self.is_endless:
             return max(tail for tail in self._tails if not isinstance(tail, str)), True
         if self.passive is not None and self.passive.rests:

@@ -70,7 +70,8 @@ def find_stable_gains(
     ``limits`` are the range of the gain, its ends left out: by default all gains of the sign that is assumed
     of it; of a loop with kernels up to 100 times its value. ``digits`` are of boundaries and frequencies.
     Where it cannot be proved that no pole lies right of the axis beyond some frequency, poles are counted
-    ``up_to`` [rad/s]; by default about ten waves of the longest element.
+    ``up_to`` [rad/s]; by default about ten waves of the longest element. Of a model that was fitted to data
+    poles are counted up to where these end, and no others.
 
     SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
     SF505, SF506.
@@ -80,7 +81,8 @@ def find_stable_gains(
     root = loop.bound.root
     if root is not None and root.shift != 0:
         return _at_nominal(loop, limits or (None, None), digits, BRANCH)
-    lumped, along, (low, high) = _factors(loop, limits, up_to)
+    end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
+    lumped, along, (low, high) = _factors(loop, limits, up_to, end)
     if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
         return _at_nominal(loop, (low, high), digits, MIRRORED)
     if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
@@ -98,9 +100,13 @@ def find_stable_gains(
             raise
         return _at_nominal(loop, (low, high), digits, error.diagnostics[0].message)
     nominal = loop.nominal
-    reasons = [] if along is None else along.reasons
-    radius = None if along is None else loop.bound.from_root(along.radius[0])
-    is_complete = along is None or along.radius[1]
+    radius = end if along is None else loop.bound.from_root(along.radius[0])
+    reasons = [] if along is None else along.reasons[end is not None :]
+    if end is not None and any(factor.factor.degree > 1 for factor in lumped):
+        reasons.append(
+            f"poles that pass the end of the data are not sought where '{loop.gain.name}' is squared"
+        )
+    is_complete = along is None or along.radius[1] or end is not None
     stability = StabilityMap(
         loop.gain.name,
         loop.gain.unit,
@@ -117,6 +123,8 @@ def find_stable_gains(
         tf=loop.bound.name,
         is_passive=along is not None and along.passive is not None,
         is_narrowed=along is not None and along.is_narrowed,
+        data_end=end,
+        beyond=() if end is None or nominal is None else _beyond(lumped, nominal, end),
     )
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
     if nominal is not None and stability.verdict.word == "unknown":
@@ -128,6 +136,11 @@ def find_stable_gains(
         interval = stability.nominal_interval
         if nominal and interval is not None and interval.poles.is_stable:
             phase_margins = loop_gain.margins(nominal)
+        if end is not None:
+            phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
+            stability = replace(
+                stability, gain_at_end=1 / float(abs(_ratio(loop_gain.function, arb(end), BITS)).mid())
+            )
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
         if is_complete and along is not None and along.is_endless and along.passive:
             beyond = along.passive.least_phase_margin(along.radius[0])
@@ -141,6 +154,13 @@ def find_stable_gains(
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
+
+
+def _beyond(lumped: Sequence[LumpedFactor], gain: Fraction, end: float) -> tuple[float, ...]:
+    """Return abs(s) of the poles right of the axis beyond the end of the data [rad/s], ascending."""
+    roots = (root for factor in lumped for root in factor.roots(gain))
+    sizes = (abs(r.enclosure()) for r in roots if r.re > 0)
+    return tuple(sorted(float(size.mid()) for size in sizes if size > end))
 
 
 def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> StabilityMap:
@@ -182,12 +202,14 @@ def _holds_smallest(
 
 
 def _factors(
-    loop: Loop, limits: Limits | None, up_to: float | None
+    loop: Loop, limits: Limits | None, up_to: float | None, end: float | None
 ) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
     low, high = _limits(loop, limits, is_distributed=bool(mixed))
-    lumped = [LumpedFactor.of(loop.bound, factor, loop, (low, high)) for factor in plain if factor.degree]
+    lumped = [
+        LumpedFactor.of(loop.bound, factor, loop, (low, high), end) for factor in plain if factor.degree
+    ]
     if not mixed:
         return lumped, None, (low, high)
     if low is None or high is None:
@@ -196,8 +218,10 @@ def _factors(
         message = f"a loop with roots of s must be linear in '{loop.gain.name}'"
         hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
-    along = DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to, loop=loop)
-    if limits is None:
+    along = DistributedFactors(
+        loop.bound, loop.gain.name, mixed, (low, high), end or up_to, loop=loop, is_cut=end is not None
+    )
+    if limits is None and end is None:
         along = along.where_no_delay_leads
     return lumped, along, along.limits
 

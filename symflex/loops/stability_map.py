@@ -131,6 +131,12 @@ class StabilityMap:
         It is proved that no gain of the range brings a pole into the right half plane.
     is_narrowed : bool
         The range ends where a delayed term may outweigh the others of the highest power of s.
+    data_end : float or None
+        Where the data end that the model was fitted to, which is ``radius`` then [rad/s].
+    beyond : tuple of float
+        Poles of the nominal gain right of the axis beyond that, without kernels: their abs(s) [rad/s].
+    gain_at_end : float or None
+        The gain with which the loop gain is one where the data end.
     """
 
     gain: str
@@ -153,6 +159,9 @@ class StabilityMap:
     tf: str = ""
     is_passive: bool = False
     is_narrowed: bool = False
+    data_end: float | None = None
+    beyond: tuple[float, ...] = ()
+    gain_at_end: float | None = None
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -168,6 +177,16 @@ class StabilityMap:
     def certified(self) -> bool:
         """All of it is proved, for all poles."""
         return self.is_complete and not self.reasons
+
+    @property
+    def counted_up_to(self) -> float | None:
+        """Up to which abs(s) poles right of the axis are counted [rad/s]; ``None``: all of them are."""
+        return None if self.is_complete and self.data_end is None else self.radius
+
+    @property
+    def where_data_end(self) -> str:
+        """Up to where the loop is judged, in words; empty where no data end."""
+        return "" if self.data_end is None else f"up to {_hertz(self.data_end)}, where the data end"
 
     @property
     def stable(self) -> tuple[GainInterval, ...]:
@@ -195,10 +214,11 @@ class StabilityMap:
             )
         right, axis = interval.poles.right, interval.poles.axis
         beyond = "" if self.is_complete else self.reasons[0]
+        beyond = beyond or self.where_data_end
         if right:
             return StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
         where = f"{_poles(axis)} on the imaginary axis" if axis else ""
-        if beyond and not (self.is_passive and axis):
+        if not self.is_complete and not (self.is_passive and axis):
             reason = f"{where}; {beyond}" if where else beyond
             right_of_it = 0 if self.is_passive else None
             return self.at_nominal or StabilityVerdict("unknown", right_of_it, False, reason)
@@ -225,7 +245,8 @@ class StabilityMap:
             "unit": self.unit,
             "range": [None if x is None else str(x) for x in self.limits],
             "certified": self.certified,
-            "counted_up_to_rad_per_s": None if self.radius is None or self.is_complete else self.radius,
+            "counted_up_to_rad_per_s": self.counted_up_to,
+            "data_end": self._data_end(),
             "reasons": list(self.reasons),
             "boundaries": [self._boundary(i) for i in range(len(self.boundaries))],
             "intervals": [
@@ -287,6 +308,13 @@ class StabilityMap:
             "limited": bandwidth.is_limited,
         }
 
+    def _data_end(self) -> dict[str, object] | None:
+        if self.data_end is None:
+            return None
+        beyond = [omega / (2 * pi) for omega in self.beyond]
+        own = {"gain_with_loop_gain_one": self.gain_at_end, "right_half_plane_poles_beyond_hz": beyond}
+        return {"frequency_hz": self.data_end / (2 * pi), **own}
+
     def change(self, index: int) -> int:
         """Return by how many poles the number right of the axis grows at a boundary, as the gain grows."""
         return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
@@ -299,6 +327,7 @@ class StabilityMap:
             "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
             "through_infinity": any(c.is_infinite for c in boundary.crossings),
             "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
+            "beyond_data": any(c.is_entering for c in boundary.crossings),
             "no_solution": any(c.is_singular for c in boundary.crossings),
             "poles_entering_right_half_plane": self.change(index),
         }
@@ -348,6 +377,7 @@ class Crossing:
     is_symmetric: bool = False
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
+    is_entering: bool = False  # a pole right of the axis passes the end of the data
     # By how many the poles of factors with kernels grow right of the axis with the gain, None where unknown.
     change: int | None = 0
 
@@ -410,6 +440,7 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     if not stability.intervals:
         return
     scope = "" if stability.is_complete else ", as far as poles were counted"
+    scope = f", {stability.where_data_end}" if stability.where_data_end else scope
     stable = [2 * INDENT + _between(interval, stability) for interval in stability.stable]
     yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
     marginal = [
@@ -430,6 +461,10 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     yield Passage([title], [("from", "to", "right of the axis", "on the axis"), *counted])
     if stability.gain_margins or stability.phase_margins:
         yield _margins(stability)
+    if stability.data_end is not None:
+        yield Passage(
+            [f"{INDENT}beyond {_hertz(stability.data_end)} nothing was measured", *_beyond(stability)]
+        )
     if stability.bandwidth is not None:
         said = 2 * INDENT + bandwidth_text(stability.gain, stability.bandwidth)
         yield Passage([f"{INDENT}bandwidth with a gain margin of 6 dB", said])
@@ -437,8 +472,23 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
         yield Passage([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
 
 
+def _beyond(stability: StabilityMap) -> Iterator[str]:
+    """Tell what matters beyond the end of the data: poles of the function, and the loop gain there."""
+    if stability.beyond:
+        places = ", ".join(_hertz(omega) for omega in stability.beyond)
+        shown = f"{stability.gain} = {_number(stability.nominal)}"
+        count = _poles(len(stability.beyond))
+        yield f"{2 * INDENT}{count} of the model right of the axis for {shown}: {places}"
+    if stability.gain_at_end is not None:
+        size = f"abs({stability.gain}) < {stability.gain_at_end:.{SHORT_DIGITS}g}"
+        yield f"{2 * INDENT}for {size} the loop gain is below one at this end; nothing beyond"
+        yield f"{2 * INDENT}matters where it stays so"
+
+
 def _status(stability: StabilityMap) -> str:
     if stability.certified:
+        if stability.where_data_end:
+            return f"certified {stability.where_data_end}"
         if stability.margin_beyond is not None:
             return f"certified: the loop is passive, {stability.gain} acts as a spring and a damper"
         return "certified: all poles right of the imaginary axis counted"
@@ -490,6 +540,8 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     if not boundary.frequencies:
         if any(c.is_singular for c in boundary.crossings):
             return ("no solution", "")
+        if any(c.is_entering for c in boundary.crossings):
+            return ("beyond the data", "")
         infinite = any(c.is_infinite for c in boundary.crossings)
         return ("infinite" if infinite else "on the axis", "")
     omegas = [figure(w, digits) for w in boundary.frequencies]
@@ -530,6 +582,10 @@ def bandwidth_text(gain: str, bandwidth: AllowedBandwidth) -> str:
     size = figure(abs(angle), 3, trimmed=True)
     shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
     return shown if bandwidth.is_limited else f"at least {shown}"
+
+
+def _hertz(omega: float) -> str:
+    return f"{omega / (2 * pi):.{SHORT_DIGITS}g} Hz"
 
 
 def _end(value: arb | None, infinite: str) -> str:

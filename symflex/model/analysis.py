@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
-ANALYSIS_KEYS = ("band", "modes", "digits", "print")
+ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print")
 FIGURE_KEYS = ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc")
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
@@ -54,9 +54,13 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
     if section is None:
         return Analysis()
     reader.keys(section, ANALYSIS_KEYS, "[analysis]")
-    band = section.get("band")
+    band, data_end = section.get("band"), section.get("data_end")
+    end = _frequency(reader, data_end.value) if data_end else None
+    if data_end and end is not None and end <= 0:
+        reader.note("SF227", "the data must end above 0 Hz", data_end.value.span, 'as in "1 kHz"')
     return Analysis(
         _band(reader, band) if band else None,
+        end,
         _count(reader, section, "modes", MODES_LIMIT),
         _count(reader, section, "digits", DIGITS_LIMIT),
         _where(reader, section, "[analysis]", "print") or (),

@@ -257,9 +257,13 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Defaults for the commands: band [Hz], number of modes, digits; names in which formulas are printed."""
+    """Defaults for the commands: band [Hz], number of modes, digits; names in which formulas are printed.
+
+    ``data_end`` is the frequency at which the data end that the model was fitted to [Hz].
+    """
 
     band: tuple[Fraction, Fraction] | None = None
+    data_end: Fraction | None = None
     modes: int | None = None
     digits: int | None = None
     print: tuple[tuple[str, Expression], ...] = ()
@@ -356,6 +360,12 @@ class Model:
         pairs = ", ".join("/".join(pair) for pair in self.transfer_functions[:PAIRS_SHOWN])
         more = ", ..." if len(self.transfer_functions) > PAIRS_SHOWN else ""
         return f"<Model {self.title or 'without title'}: {pairs}{more}>"
+
+    @property
+    def data_end(self) -> Fraction | None:
+        """The lowest frequency [Hz] at which data end that it, or a model in its blocks, was fitted to."""
+        inner = [b.submodel.data_end for b in self.blocks if b.submodel is not None]
+        return min((end for end in (self.analysis.data_end, *inner) if end is not None), default=None)
 
     @property
     def has_equations(self) -> bool:

@@ -255,6 +255,7 @@ def _count(most: int, description: str) -> Schema:
 def _analysis() -> Schema:
     known: dict[str, Schema] = {
         "band": _said(FREQUENCIES, "frequencies of interest [Hz]"),
+        "data_end": _said(VALUE, "frequency at which the data end that the model was fitted to [Hz]"),
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
         "print": _said({"type": "object", "additionalProperties": VALUE}, "names formulas are printed in"),

@@ -361,7 +361,8 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
         hint = "write its elements and fields into this file"
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio
-    images = [ring.generator(name) for name in inner.ring.names]
+    # What the outer ring lacks stands in a part of the inner model that its function does not use.
+    images = [ring.generator(name) if name in ring.index else ring.constant(0) for name in inner.ring.names]
     hidden = Factored.number(inner.ring, 1)
     for factor in (f for f in tf.hidden if len(inner.ring.coefficients(f.polynomial)[0])):
         hidden = hidden * Factored.polynomial(inner.ring, factor.polynomial) ** factor.multiplicity

@@ -114,6 +114,7 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
             gain = float(coefficients[0]) / full.middle ** shape[0]
             bic = float(full.bic(np.array([rest]), [shape])[0])
             bic += STRANGE * strange(zeros[0], zeros[1], np.array(zeros[2]), *problem.band)
+            bic += STRANGE * (not problem.has_base and sum(shape) > order)  # it grows beyond the band
             every.append(Numerator(bic, shape[0], *zeros, gain, delay))
     return sorted(every, key=lambda one: one.bic)[:most]
 

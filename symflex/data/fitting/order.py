@@ -397,7 +397,8 @@ def _merit(problem: FitProblem, refined: Refined, correlation: float = 1.0) -> f
     fit = size * np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE)
     merit = float(fit + refined.parameters * np.log(size))
     modes = refined.resonances
-    return merit + STRANGE * strange(modes.omega_z, modes.zeta_z, modes.real_z, *problem.band)
+    improper = 0 if problem.has_base else int(modes.is_improper.sum())
+    return merit + STRANGE * (improper + strange(modes.omega_z, modes.zeta_z, modes.real_z, *problem.band))
 
 
 def _is_better(problem: FitProblem, candidate: Candidate, best: Candidate) -> bool:

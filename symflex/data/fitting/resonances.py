@@ -114,6 +114,12 @@ class Resonances:
         """How many poles there are."""
         return 2 * self.count + self.real_p.size
 
+    @property
+    def is_improper(self) -> Mask:
+        """Which responses have more zeros than poles, powers of s among both, shape (m,)."""
+        zeros = self.slope + 2 * self.has_zeros.sum(axis=1) + np.isfinite(self.real_z) + (self.lag < 0)
+        return np.asarray(zeros > self.order + (self.lag > 0))
+
     def in_band(self, low: float, high: float) -> Mask:
         """Return which pole pairs are resonances in a band [rad/s], shape (n,).
 

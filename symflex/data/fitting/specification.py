@@ -147,7 +147,7 @@ def _written(
             "Eppinger & Seering 1988, section 'Polynomial Resonance Model'",
             **({"doc": f"on a copy of {Path(fit.bases[0].path).name}, {fit.bases[0].tf}"} if copied else {}),
             **sections,
-            "analysis": {"band": [f"{low:.6g} Hz", f"{high:.6g} Hz"]},
+            "analysis": {"band": [f"{low:.6g} Hz", f"{high:.6g} Hz"], "data_end": f"{high:.6g} Hz"},
         }
     )
 

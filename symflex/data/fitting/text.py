@@ -77,6 +77,9 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
         lines.append(f"{INDENT}lag of the sensor {modes.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
     if free.delay:
         lines.append(f"{INDENT}dead time {modes.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+    if modes.is_improper[r] and not fit.problem.has_base:
+        end = fit.problem.band[1] / (2 * pi)
+        lines.append(f"{INDENT}more zeros than poles, as the data ask for: it grows beyond {end:.4g} Hz")
     rows = [
         _row(str(i + 1), modes.omega_z[r, i], errors.omega_z[r, i], modes.zeta_z[r, i], errors.zeta_z[r, i])
         for i in np.flatnonzero(modes.has_zeros[r]).tolist()
