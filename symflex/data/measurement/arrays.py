@@ -25,6 +25,7 @@ from symflex.data.measurement.columns import (
     Assembled,
     ColumnMeaning,
     DataColumn,
+    ask,
     assembled,
     columns_asked,
     meaning_of,
@@ -177,7 +178,8 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
         known: dict[str, Array] = {}
         for outer in (scopes.get(".".join(parts[:depth]), {}) for depth in range(len(parts))):
             known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
-        responses += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
+        called = stem if len(holding) == 1 else scope or stem
+        responses += _from_scope(known | scopes[scope], name, called, scope)
     return tuple(responses) if responses else _from_unknown(arrays, name, stem)
 
 
@@ -224,13 +226,17 @@ def _has_values(own: Arrays) -> bool:
     return "complex" in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds
 
 
-def _from_scope(known: Arrays, name: str, stem: str) -> list[MeasuredResponse]:
+def _from_scope(known: Arrays, name: str, stem: str, scope: str = "") -> list[MeasuredResponse]:
     guesses: list[str] = []
     lines = _frequency(known, name, guesses)
     if lines is None:
         message = f"'{name}' has no array frequency_hz; it has {listed_names(list(known)) or 'none'}"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
     columns = [DataColumn("frequency", ColumnMeaning("frequency"), lines)]
+    kinds = ("complex", "real", "imaginary", "magnitude", "phase")
+    used = [key for key in known if _meaning(key).kind in kinds and key != "values"]
+    if used:
+        guesses.append(f"the values are {listed_names(used)}{f' of {scope}' if scope else ''}")
     for key, array in known.items():
         meaning = _meaning(key)
         is_whole = meaning.kind == "complex" or lines.size in array.shape
@@ -321,11 +327,10 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
         first = ColumnMeaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
         meanings = [first, *[ColumnMeaning("complex")] * (width - 1)]
     else:
-        unit = unit_by_round_ends(numbers[0])
-        word = "omega" if unit == "rad/s" else "f"
+        word = "omega" if unit_by_round_ends(numbers[0]) == "rad/s" else "f"
         message = f"'{name}': {key} is a matrix of {width} real columns without names"
-        option = f"--columns {word},re,im or --columns {word},mag,phase_deg"
-        raise DataError(Diagnostic("SF602", message, None, f"say what they are: {option} (omega for rad/s)"))
+        hint = ask([DataColumn("", ColumnMeaning(), n) for n in numbers], word)
+        raise DataError(Diagnostic("SF602", message, None, f"{hint} (omega for rad/s)"))
     columns = [
         DataColumn(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
         for n, m, v in zip(names, meanings, numbers, strict=True)

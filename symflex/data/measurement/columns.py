@@ -15,7 +15,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise, product
+from itertools import combinations, pairwise, product
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -73,12 +73,18 @@ _JOINED = re.compile(
 """Where words are joined: FrequencyHz, magdB, Hreal, ImH."""
 _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
-_OTHER_SIZE = re.compile(
-    r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|^log_?10|[([]\s*(?:np|nepers?)\s*[])]", re.I
+_OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
+"""Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
+_LEVEL = re.compile(r"\b[12]0\s*\*?\s*log(?:_?10)?\s*(?:db\b)?", re.I)
+"""What a level in dB is: of a power ten times its logarithm, so that both are those of the amplitude."""
+_LOGARITHM = re.compile(r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|freq|[wz]\b)", re.I)
+_NO_WORD = re.compile(
+    rf"{_OTHER_SIZE.pattern}|\b(?:time|zeit|temps|tiempo)\b|^t\b|^f\s*/\s*f|\b(?:shift|detuning)\b", re.I
 )
-"""Names of squares and logarithms of magnitudes, which are no magnitudes."""
+"""Names of what no word of ``--columns`` means."""
+_SIGNALS: Final = dict.fromkeys(("e", "v", "u", "voltage"), "out") | dict.fromkeys(("i", "current"), "in")
+"""Labels of a voltage and a current, whose ratio is an impedance."""
 _FORCE = re.compile(r"force|hammer|excitation|kraft", re.I)
-_RATIO: Final = "ratio"
 CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 _LETTERS: Final = {
     ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
@@ -106,8 +112,9 @@ FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
 DECADE: Final = 10.0
 """Ratio of the largest and smallest of positive numbers up to which they may well be dB."""
-MOST_RADIANS, MOST_DEGREES = 7.0, 1e4
-"""A column whose largest number lies between is rather a phase, in degrees."""
+SAME_SIZE: Final = 0.02
+MOST_ALIKE: Final = 0.9
+"""Relative deviation up to which a column is another one, of few digits, and in how many of its lines."""
 MOST_LISTED: Final = 6
 """Columns that are not used and are listed by name."""
 ROUNDED_COHERENCE: Final = 1.01
@@ -120,6 +127,8 @@ SAME_PHASE: Final = 1e-2
 UNLIKE, CLEARLY = 0.1, 4.0
 """Mean of 1 - cos of a difference of phases up to which they are alike; how much closer one has to be."""
 FEWEST_TO_DECIDE: Final = 8
+MOST_DECADES: Final = 18
+"""The decimal logarithm of the highest frequency [Hz]; larger numbers are no logarithms."""
 ROUND: Final = 1e-7
 """Relative deviation from a decimal of three digits, below which a number was meant to be one."""
 LONGEST_NAME: Final = 200
@@ -137,6 +146,9 @@ class ColumnMeaning:
     label: str = ""  # of which response
     unit: str = ""  # as written
     word: str = ""  # the one by which it is known
+
+
+_RATIO: Final = ColumnMeaning("magnitude", word="ratio")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -179,13 +191,7 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     written = re.sub(r"(?<=z)\"(?=\W)", "''", bare(name).strip(" #*%!;:"), flags=re.I).replace("µ", "u")
     unit = unit_below.strip("[]<> ").replace("µ", "u")
     unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
-    text = re.sub(
-        r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
-    )
-    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
-    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
-    sign = -1.0 if _NEGATIVE.match(text) else 1.0
-    text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
+    text, sign, is_log = _spelled(written)
     if text.strip().lower() in _PHASE_UNITS:
         unit = text.strip()
     for bracket in _BRACKET.finditer(text):
@@ -235,10 +241,25 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
     if not kind and _END.fullmatch(label):
         kind = "magnitude"
-    if kind == "magnitude" and not unit and {"abs", "lin", "linear"} & set(words):
-        unit = "lin"
+    if kind in ("magnitude", "power") and not unit:
+        unit = "dB" if "db" in words else "lin" if {"abs", "lin", "linear"} & set(words) else ""
     meaning = ColumnMeaning(kind, label=label, unit=unit, word=word)
-    return _with_unit(meaning, unit, sign, "log" in words or low.startswith("log"))
+    return _with_unit(meaning, unit, sign, is_log or (kind != "magnitude" and "log" in words))
+
+
+def _spelled(written: str) -> tuple[str, float, bool]:
+    """Return a name in the usual words, without the sign before it and whether it is a logarithm."""
+    text = re.sub(
+        r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
+    )
+    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
+    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
+    text = re.sub(r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)", r"\1 \2 [\3]", _LEVEL.sub("dB", text), flags=re.I)
+    is_log = bool(_LOGARITHM.match(text))
+    text = _LOGARITHM.sub("", text)
+    sign = -1.0 if _NEGATIVE.match(text) else 1.0
+    text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
+    return text, sign, is_log
 
 
 def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
@@ -251,9 +272,10 @@ def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> C
     if column.kind == "phase":
         factor = _PHASE_UNITS.get(small)
         return replace(column, factor=None if factor is None else sign * factor)
-    if column.kind == "magnitude":
+    if column.kind in ("magnitude", "power"):
         is_level = small.startswith(_LEVELS) or column.word.startswith(("db", "logmag", "spl"))
-        return replace(column, scale="decibel" if is_level else "unknown" if small in ("", "-") else "linear")
+        plain = "logarithm" if is_log else "unknown" if small in ("", "-") else "linear"
+        return replace(column, scale="decibel" if is_level else plain)
     return replace(column, factor=sign)
 
 
@@ -344,7 +366,8 @@ def assembled(
     a phase, that of a minimum-phase function is taken for a power spectrum, and where ``is_asked``.
     """
     guesses: list[str] = []
-    columns = _over_input(_with_frequency(list(columns), file, header, guesses), guesses)
+    columns = _with_frequency(list(columns), file, header, guesses, is_asked=is_asked)
+    columns = _over_input(columns, guesses)
     crossed = next((c for c in columns if CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
     if crossed is not None and not is_asked:
         message = f"column '{crossed.name[:40]}' is named like a cross spectrum, which is not a response"
@@ -354,8 +377,9 @@ def assembled(
     used: set[int] = set()
     for frequency, *rest in _sections(columns):
         lines = _hertz(frequency, guesses)
-        for label, group in _groups(rest, is_asked=is_asked, guesses=guesses):
-            values = _values(group, lines, guesses)
+        for label, own in _groups(rest, is_asked=is_asked, guesses=guesses):
+            group = _without_zeros(own, guesses)
+            values = _values(group, lines, guesses, columns)
             coherence = group.get("coherence")
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
             shares = None if coherence is None else _shares(coherence, guesses)
@@ -389,7 +413,7 @@ def assembled(
 
 
 def _with_frequency(
-    columns: list[DataColumn], file: str, header: Span | None, guesses: list[str]
+    columns: list[DataColumn], file: str, header: Span | None, guesses: list[str], *, is_asked: bool
 ) -> list[DataColumn]:
     problems = []
     for c in columns:
@@ -400,7 +424,21 @@ def _with_frequency(
             problems.append(Diagnostic("SF602", said, c.span, f"units: {', '.join(list(known)[:5])}"))
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
-    if any(c.meaning.kind == "frequency" for c in columns):
+    lines = [c for c in columns if c.meaning.kind == "frequency"]
+    shift, centre = (
+        next((c for c in lines if re.search(word, c.name, re.I)), None)
+        for word in (r"\bshift\b|detun", r"cent(?:er|re)")
+    )
+    if shift is not None and centre is not None and shift is not centre:
+        guesses.append(f"the frequency is '{shift.name[:30]}' plus '{centre.name[:30]}'")
+        numbers, meaning = _hertz(shift, []) + _hertz(centre, []), ColumnMeaning("frequency")
+        total = replace(shift, numbers=numbers, meaning=meaning)
+        return [total if c is shift else c for c in columns if c is not centre]
+    if shift is not None and lines == [shift] and not is_asked:
+        message = f"'{shift.name[:40]}' is a distance from a frequency, and no column has that frequency"
+        hint = "add it to the column, and call the sum frequency_hz"
+        raise DataError(Diagnostic("SF602", message, shift.span, hint))
+    if lines:
         return columns
     first = columns[0]
     steps = np.diff(first.numbers.real)
@@ -437,22 +475,26 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
         return columns
     over, result = sorted(ends, key=lambda c: ends[c])
     ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
-    what = "magnitude" if "magnitude" in kinds else "spectrum"
-    guesses.append(f"the {what} is '{result.name[:30]}' over '{over.name[:30]}'")
-    meaning, wrong = ColumnMeaning(kinds.pop(), word=_RATIO), tuple({*result.wrong, *over.wrong})
-    whole = replace(result, meaning=meaning, numbers=ratio, wrong=wrong)
+    guesses.append(f"the magnitude is '{result.name[:30]}' over '{over.name[:30]}'")
+    whole = replace(result, meaning=_RATIO, numbers=ratio, wrong=tuple({*result.wrong, *over.wrong}))
     return [whole if c is result else c for c in columns if c is not over]
 
 
 def _plain_size(column: DataColumn) -> Real:
-    is_level = column.meaning.scale == "decibel" or np.any(column.numbers.real < 0)
+    is_level = column.meaning.scale == "unknown" and np.any(column.numbers.real < 0)
     with np.errstate(all="ignore"):
-        return _size(column, "decibel" if is_level else "linear")
+        return _size(column, "decibel" if is_level else column.meaning.scale)
 
 
 def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assembled]:
     """Return one response for two, of which one is what goes in and the other what comes out."""
     ends = [match[1].lower() if (match := _END.fullmatch(m.label)) else "" for m in made]
+    signals = [_SIGNALS.get(m.label.lower(), "") for m in made]
+    if any(signals) and any(m.label.lower() in ("z", "impedance") for m in made):
+        listed = ", ".join(f"'{m.label}'" for m, signal in zip(made, signals, strict=True) if signal)
+        guesses.append(f"{listed} beside the impedance: signals, no responses, and left out")
+        return [m for m, signal in zip(made, signals, strict=True) if not signal]
+    ends = signals if all(signals) else ends
     forces = [bool(_FORCE.fullmatch(m.label)) and "/" not in m.columns[1].meaning.unit for m in made]
     if sorted(forces) == [False, True]:
         ends = ["in" if is_force else "out" for is_force in forces]
@@ -498,6 +540,9 @@ def _is_rounded(first: DataColumn, other: DataColumn) -> bool:
 def _hertz(column: DataColumn, guesses: list[str]) -> Real:
     numbers = np.asarray(column.numbers.real, np.float64)
     factor = column.meaning.factor
+    if column.meaning.scale == "logarithm" and np.nanmax(np.abs(numbers), initial=0) <= MOST_DECADES:
+        guesses.append(f"'{column.name[:30]}' is read as the decimal logarithm of the frequency")
+        numbers = 10.0**numbers
     if factor is None:
         is_angular = unit_by_round_ends(numbers) == "rad/s"
         factor = _FREQUENCY_UNITS["rad/s"] if is_angular else 1.0
@@ -505,10 +550,6 @@ def _hertz(column: DataColumn, guesses: list[str]) -> Real:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in {said}")
     if column.meaning.word in _WORDS["omega"] and column.meaning.word and not column.meaning.unit:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in rad/s")
-    if column.meaning.scale == "logarithm":
-        guesses.append(f"'{column.name[:30]}' is read as the decimal logarithm of the frequency")
-        with np.errstate(over="ignore"):
-            numbers = 10.0**numbers
     return numbers * factor
 
 
@@ -548,11 +589,11 @@ def _groups(
             totals = [float(np.nan_to_num(np.nansum(np.abs(c.numbers)))) for c in own]
         best = own[totals.index(max(totals))]
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
-        flat = "" if best.meaning.word == _RATIO else ", the excitation taken as flat"
-        guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
+        flat = "its square root is the magnitude, the excitation taken as flat"
+        guesses.append(f"'{best.name[:30]}'{others}: {flat}")
         groups = [(best.meaning.label, {"power": best})]
     sizes = [c for c in rest if c.meaning.kind == "magnitude"]
-    if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO):
+    if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning is _RATIO):
         groups = [("", {"magnitude": sizes[0]})]
     return groups
 
@@ -564,7 +605,8 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
         by_kind.setdefault(kind, []).append(c)
     if by_kind.get("complex"):
         return [{"complex": c} for c in by_kind["complex"]]
-    sizes, phases = by_kind.get("magnitude", []), _in_one_unit(by_kind.get("phase", []))
+    phases = _in_one_unit(by_kind.get("phase", []))
+    sizes = by_kind.get("magnitude") or (by_kind.get("power", []) if phases else [])
     if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
         own = [c for c in sizes if c.meaning.label and phases[0].meaning.label.startswith(c.meaning.label)]
         sizes = sorted(
@@ -610,35 +652,54 @@ def _in_one_unit(phases: list[DataColumn]) -> list[DataColumn]:
     return kept
 
 
-def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Complex:
+def _values(
+    group: dict[str, DataColumn], lines: Real, guesses: list[str], columns: Sequence[DataColumn]
+) -> Complex:
     with np.errstate(all="ignore"):  # what overflows is reported as no finite number
-        if "complex" in group:
-            return np.asarray(group["complex"].numbers, np.complex128)
-        if "real" in group:
-            one, two = group["real"], group["imaginary"]
-            if (two.meaning.factor or 1) < 0:
-                guesses.append(f"'{two.name[:30]}' is the imaginary part times -1")
-            parts = one.numbers.real * (one.meaning.factor or 1), two.numbers.real * (two.meaning.factor or 1)
-            return np.asarray(parts[0] + 1j * parts[1], np.complex128)
+        if "complex" in group or "real" in group:
+            one = group.get("complex") or group["real"]
+            values = np.asarray(one.numbers * (one.meaning.factor or 1), np.complex128)
+            if two := group.get("imaginary"):
+                if (two.meaning.factor or 1) < 0:
+                    guesses.append(f"'{two.name[:30]}' is the imaginary part times -1")
+                values = values.real + 1j * two.numbers.real * (two.meaning.factor or 1)
+            return values
         if "phase" in group:
-            size, phase = _decided(group["magnitude"], group["phase"], lines, guesses)
+            size, phase = _decided(group["magnitude"], group["phase"], lines, guesses, columns)
         else:
             said = "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
             guesses.append(said)
-            if "power" in group:
-                size = np.sqrt(group["power"].numbers.real)
-            else:
-                size = _size(group["magnitude"], group["magnitude"].meaning.scale)
+            size = _plain_size(group.get("power") or group["magnitude"])
             phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
 
+def _without_zeros(group: dict[str, DataColumn], guesses: list[str]) -> dict[str, DataColumn]:
+    """Return the columns of a response, the imaginary part left out if it is zero everywhere.
+
+    No response has a phase of zero everywhere: an analyser saved a magnitude as a complex number.
+    """
+    one = group.get("complex") or group.get("real")
+    if one is None or not np.any(one.numbers) or np.any(one.numbers.real < 0):
+        return group
+    if np.any(one.numbers.imag) or ("imaginary" in group and np.any(group["imaginary"].numbers)):
+        return group
+    guesses.append(f"the imaginary part of {_called(one, 'the values')} is zero: it is a magnitude")
+    size = replace(one, numbers=one.numbers.real, meaning=replace(_RATIO, unit=one.meaning.unit))
+    return {"magnitude": size} | {k: c for k, c in group.items() if k == "coherence"}
+
+
 def _size(column: DataColumn, scale: str) -> Real:
     numbers = column.numbers.real / (100 if column.meaning.unit == "%" else 1)
-    return np.asarray(10 ** (numbers / 20) if scale == "decibel" else np.where(numbers < 0, np.nan, numbers))
+    if scale in ("decibel", "logarithm"):
+        return np.asarray(10 ** (numbers / (20 if scale == "decibel" else 1)))
+    numbers = np.where(numbers < 0, np.nan, numbers)
+    return np.asarray(np.sqrt(numbers) if column.meaning.kind == "power" else numbers)
 
 
-def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: list[str]) -> tuple[Real, Real]:
+def _decided(
+    magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: list[str], columns: Sequence[DataColumn]
+) -> tuple[Real, Real]:
     """Return magnitude and phase [rad], with the scale and unit that names or numbers say."""
     scales = ["linear", "decibel"] if magnitude.meaning.scale == "unknown" else [magnitude.meaning.scale]
     if len(scales) > 1 and np.any(magnitude.numbers.real <= 0):
@@ -657,15 +718,13 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
     factor = _best({f: min(costs[s, f] for s in readings) for f in factors}, UNDECIDED)
     if factor is None:
         message = f"column '{phase.name[:40]}' has no unit, and its numbers fit degrees as well as radians"
-        hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
-        raise DataError(Diagnostic("SF602", message, phase.span, hint))
+        raise DataError(Diagnostic("SF602", message, phase.span, ask(columns, pair=(magnitude, phase))))
     scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED * (0.5 if is_gain else 0.7))
     if scale is None and (is_gain or costs["linear", factor] - costs["decibel", factor] > UNDECIDED / 6):
         message = (
             f"column '{magnitude.name[:40]}' has no unit, and its numbers fit dB as well as a plain ratio"
         )
-        hint = "say mag or mag_db with --columns, such as --columns f,mag_db,phase_deg"
-        raise DataError(Diagnostic("SF602", message, magnitude.span, hint))
+        raise DataError(Diagnostic("SF602", message, magnitude.span, ask(columns, pair=(magnitude, phase))))
     scale = scale or "linear"
     if phase.meaning.factor is None:
         unit = "radians" if factor == 1 else "degrees"
@@ -798,34 +857,84 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
     return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
 
 
-def ask(columns: Sequence[DataColumn]) -> str:
-    """Return the hint with the option that says what columns are, the likelier reading first."""
-    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
-    places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [int(is_indexed)]
-    lines = columns[places[0]].numbers
-    rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]
-    rest = [i for i in rest if not np.array_equal(columns[i].numbers, lines)]
-    rest = rest[1:] if is_indexed and len(rest) > 2 and rest[0] == 0 else rest  # noqa: PLR2004
-    if len(rest) == 1:
-        return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"
-    if not rest:
-        return HINT
+_READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
+"""Words of ``--columns`` that make a response in pairs."""
 
-    def option(**words: int) -> str:
-        """Return the option that says which word each column has, after the frequency's."""
-        at = {i: word for word, i in words.items()} | {places[0]: "f"}
+
+def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, ...] = ()) -> str:
+    """Return the hint with the option that says what columns are, or a pair, the likeliest reading first.
+
+    Nothing is offered that a name contradicts, or the numbers; readings that fit far worse are left out.
+    """
+    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
+    axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
+    if re.search(r"\b(?:time|zeit|temps|tiempo)\b|^t\b", columns[axis].name, re.I):
+        return f"'{columns[axis].name[:30]}' is no frequency: --columns t,u,y reads a record in time"
+    if _NO_WORD.search(columns[axis].name):
+        return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
+    open_ones: list[int] = []
+    for i, c in enumerate(columns):
+        is_other = c.meaning.kind in ("coherence", "frequency") or bool(pair and c not in pair)
+        is_other = is_other or bool(_NO_WORD.search(c.name))
+        is_again = any(_is_same(c.numbers.real, columns[k].numbers.real) for k in open_ones)
+        if not (is_other or is_again or np.array_equal(c.numbers, columns[axis].numbers)):
+            open_ones.append(i)
+    open_ones = open_ones[is_indexed and axis == 0 :] if len(open_ones) > 2 else open_ones  # noqa: PLR2004
+
+    def option(*words: tuple[str, int]) -> str:
+        """Return the option that says which word each column has, besides the frequency's."""
+        at = {i: word for word, i in words} | {axis: unit}
         return "--columns " + ",".join(at.get(i, "-") for i in range(max(at) + 1))
 
-    kinds = {columns[i].meaning.kind for i in rest}
-    if "magnitude" in kinds and not kinds & {"phase", "real", "imaginary"}:
-        size = next(i for i in rest if columns[i].meaning.kind == "magnitude")
-        word = "mag" if columns[size].meaning.scale == "linear" else "mag_db"
-        return f"{option(**{word: size})} computes the phase of a minimum-phase response"
-    one, two = (columns[i].numbers.real for i in rest[:2])
+    readings = _likely(columns, axis, open_ones, UNDECIDED if pair else UNDECIDED / 3)
+    if readings:
+        options = [option(*zip(words, pair, strict=True)) for words, pair in readings]
+        return f"say what the columns are: {', or '.join(options)}"
+    sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
+    if not sizes:
+        return "a phase alone is no response: save the magnitude too" if open_ones else HINT
+    i = next((i for i in sizes if columns[i].meaning.kind), sizes[0])
+    options = [option((word, i)) for word in ("mag_db", "mag", "psd") if _may_be(columns[i], word)]
+    return f"{' or '.join(options)} computes the phase of a minimum-phase response"
+
+
+def _is_same(values: Real, other: Real) -> bool:
+    """Return whether a column has the numbers of another, perhaps as a ratio where that is in dB."""
     with np.errstate(all="ignore"):
-        is_phase = bool(MOST_RADIANS < np.nanmax(np.abs(two), initial=0) < MOST_DEGREES)
-        sizes = ("mag_db", "mag") if np.any(one < 0) else ("mag", "mag_db")
-    readings = [("re", "im"), *((s, "phase_deg") for s in sizes)]
-    readings = readings[1:] + readings[:1] if is_phase else readings
-    options = [option(**dict(zip(reading, rest, strict=False))) for reading in readings]
-    return f"say what the columns are: {options[0]}, or {', or '.join(options[1:])}"
+        ways = (other, 10 ** (other / 20), 20 * np.log10(other))
+        return any(np.mean(np.abs(values / way - 1) <= SAME_SIZE) > MOST_ALIKE for way in ways)
+
+
+def _may_be(column: DataColumn, word: str) -> bool:
+    """Return whether neither the name of a column nor its numbers contradict a word of ``--columns``."""
+    meaning, asked = column.meaning, meaning_of(word)
+    if meaning.kind and (meaning.kind != asked.kind or {meaning.factor, asked.factor} == {1.0, np.pi / 180}):
+        return False
+    if word == "psd":
+        return bool(meaning.kind)
+    if word == "mag":
+        return meaning.scale != "decibel" and not np.any(column.numbers.real <= 0)
+    return word != "mag_db" or meaning.scale in ("decibel", "unknown") or not meaning.kind
+
+
+def _likely(
+    columns: Sequence[DataColumn], axis: int, open_ones: Sequence[int], margin: float
+) -> list[tuple[tuple[str, str], tuple[int, int]]]:
+    """Return the readings of two columns as one response, words and places, the likeliest first."""
+    lines, costs = np.asarray(columns[axis].numbers.real, np.float64), {}
+    for pair, words in product(combinations(open_ones[:MOST_LISTED], 2), _READINGS):
+        one, two = (columns[i] for i in pair)
+        if not all(_may_be(columns[i], word) for i, word in zip(pair, words, strict=True)):
+            continue
+        with np.errstate(all="ignore"):
+            if words[0] == "re":
+                values = one.numbers.real + 1j * two.numbers.real
+                size, turn = np.abs(values), np.unwrap(np.angle(values))
+            else:
+                size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
+                turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
+            off = np.nan_to_num(np.abs(np.cos(turn - _minimum_phase(lines, size))))
+        costs[words, pair] = _unlikeness(lines, size, turn) + float(np.mean(1 - off))
+    best = min(costs.values(), default=0.0)
+    near = [reading for reading in costs if costs[reading] <= best + margin]
+    return sorted(near, key=costs.__getitem__)[:3]

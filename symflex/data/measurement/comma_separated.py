@@ -229,6 +229,11 @@ def _responses(
             columns = columns + others[1:]
     if asked:
         meanings = columns_asked(asked, len(columns), [c.name for c in columns])
+        better = re.search(r"--columns ([^\s,]+(?:,[^\s,]+)*)", ask(columns))
+        if better and {"real", "phase"} & {m.kind for m in meanings}:
+            used = [[bool(word.strip("- ")) for word in option.split(",")] for option in (better[1], asked)]
+            if better[1] != asked and (used[0] == used[1] or not header):
+                guesses.append(f"names and numbers look more like --columns {better[1]}")
         columns = [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)]
         return assembled(columns, name, header, is_asked=True)
     implied = _IMPLIED.get(Path(name).suffix.lower())
@@ -239,10 +244,16 @@ def _responses(
         made, more = assembled(columns, name, header)
         return made, [said, *more]
     if not any(c.meaning.kind for c in columns):
-        span = table.line(blocks[0].lines[0])
-        raise DataError(
-            Diagnostic("SF602", "no line above the numbers names the columns", span, ask(columns))
-        )
+        span, message = table.line(blocks[0].lines[0]), "no line above the numbers names the columns"
+        for i in reversed(blocks[0].above[-NEAR:]):
+            words = cut(table.lines[i].strip().lstrip(SIGNS), table.delimiter)
+            spare = len(words) - len(columns)  # a comment has no column
+            are_names = all(number(w, table.decimal) is None for w in words)
+            if are_names and (not spare or (spare > 0 and table.delimiter != " ")):
+                columns = [replace(c, name=w) for c, w in zip(columns, words, strict=False)]
+                span, message = table.line(i), "none of these names is one that symflex knows"
+                break
+        raise DataError(Diagnostic("SF602", message, span, ask(columns)))
     if len(parts) > 1 and len(columns) == len(parts[0][0]):
         each = [assembled(one, name, line) for one, line in parts]
         return [m for made, _ in each for m in made], [s for _, said in each for s in said]
@@ -284,6 +295,12 @@ def _columns(
         np.any(n.real < 0) for (n, _), m in zip(numbers, meanings, strict=True) if m.word in ("x", "y")
     ):  # two amplitudes rather than the parts of one number
         meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
+    ends = {"Channel 1": "in", "Channel 2": "out"}
+    is_size = [m.kind == "magnitude" for m in meanings]
+    if {*re.findall(r"^#Relative: (\w+)", table.source.text, re.M)} == {"no"} and sum(is_size) == len(ends):
+        # WaveForms: both channels as they are, and the phase between them
+        pairs = zip(meanings, is_size, strict=True)
+        meanings = [replace(m, label=ends.get(m.label, "") if is_one else "") for m, is_one in pairs]
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":
             meanings[i] = ColumnMeaning("complex", label=cells[i])

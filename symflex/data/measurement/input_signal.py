@@ -99,7 +99,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
     written = [
         i for i, line in enumerate(table.lines) if line.strip() and not line.strip().startswith(COMMENTS)
     ]
-    first = next((i for i in written if _is_row(table, i)), None)
+    first = next((i for i in written if table.is_row(i, 2)), None)
     is_beside = first is None and all(_is_beside(table, i) for i in written)
     first = written[0] if is_beside and written else first
     if first is None:
@@ -150,11 +150,6 @@ def _signal(name: str, data: bytes) -> InputSignal:
     if max(time.denominator for time in times) > MOST_DIGITS:  # binary numbers written to the end
         times = _decimal_times(times)
     return InputSignal(tuple(times), tuple(values), tuple(guesses))
-
-
-def _is_row(table: TextTable, index: int) -> bool:
-    cells = cut(table.lines[index], table.delimiter)
-    return len(cells) > 1 and _decimal(cells[0], table.decimal) is not None
 
 
 def _is_beside(table: TextTable, index: int) -> bool:

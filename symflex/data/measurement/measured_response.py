@@ -246,8 +246,11 @@ def _ordered(
         return lines[~wrong]
 
     lines = np.flatnonzero(frequency != 0)
-    if lines.size < frequency.size:
-        said.append("the line at 0 Hz is left out")
+    if lines.size < frequency.size - 1 and not are_few(frequency == 0):
+        lines = np.arange(frequency.size)  # so many zeros are no frequencies
+    elif lines.size < frequency.size:
+        many = frequency.size - lines.size
+        said.append("the line at 0 Hz is left out" if many == 1 else f"{many} lines at 0 Hz are left out")
     is_negative = frequency[lines] < 0
     if is_negative.any() and (~is_negative).sum() >= FEWEST_LINES:
         note(lines[is_negative], "negative frequencies")

@@ -64,6 +64,7 @@ _ALIKE = re.compile(r"[ _.-]?(?:[xyz]|\d+)$", re.I)
 _OF_AN_INSTRUMENT: Final = {"ch", "channel", "kanal", "ai", "trace", "in", "col", "column"}
 """What channels are called whatever they measure."""
 _FREQUENCY = re.compile(r"freq|fr\u00e9q|omega|\brad/s\b", re.I)
+_SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
 _IN_BRACKETS = re.compile(r"\s*[\[(](.*?)[\])]\s*$")
 
 
@@ -94,7 +95,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if not is_asked and not _may_be_record(data):
         return None
     table = TextTable.of(name, data)
-    first = next((i for i, line in enumerate(table.lines[:SEARCHED]) if _is_row(table, line)), None)
+    first = next((i for i in range(min(SEARCHED, len(table.lines))) if table.is_row(i)), None)
     if first is None:
         return None
     width = len(cut(table.lines[first], table.delimiter))
@@ -122,8 +123,9 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
 
 
 def _is_frequency(name: str) -> bool:
-    """Tell whether a name is that of a frequency; a force may be called F."""
-    return meaning_of(name).kind == "frequency" and bare(name).lower() != "f"
+    """Tell whether a name is that of a frequency or of a spectrum; a force may be called F."""
+    is_named = meaning_of(name).kind == "frequency" and bare(name).lower() != "f"
+    return is_named or bool(_SPECTRUM.search(name))
 
 
 def _may_be_record(data: bytes) -> bool:
@@ -135,14 +137,6 @@ def _may_be_record(data: bytes) -> bool:
     if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q", b"omega", b"rad/s")):
         return True
     return not _FREQUENCY.search(_RATE.sub("", data.decode("latin-1")))
-
-
-def _is_row(table: TextTable, line: str) -> bool:
-    """Tell whether a line is a row of at least two numbers, or one of a record with a single channel."""
-    if line.strip().startswith(COMMENTS):
-        return False
-    cells = cut(line, table.delimiter)
-    return bool(cells) and all(isinstance(number(c, table.decimal), float) for c in cells[:2])
 
 
 def _names(table: TextTable, first: int, width: int) -> list[str]:

@@ -234,6 +234,13 @@ class TextTable:
         start, text = self.starts[index], self.lines[index]
         return Span(self.source, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
 
+    def is_row(self, index: int, fewest: int = 1) -> bool:
+        """Tell whether a line that is no comment begins with real numbers, two if it has as many cells."""
+        line = self.lines[index]
+        cells = [] if line.strip().startswith(COMMENTS) else cut(line, self.delimiter)
+        are_numbers = (isinstance(number(cell, self.decimal), float) for cell in cells[:2])
+        return len(cells) >= fewest and all(are_numbers)
+
     def cell(self, index: int, cells: Sequence[str], which: int) -> Span:
         """Return where a cell of a line stands, the whole line when it is empty or not there."""
         text, end = self.lines[index], 0
@@ -265,7 +272,7 @@ class TextTable:
         left = MAX_CELLS
         for i, line in enumerate(self.lines):
             cells = cut(line, self.delimiter) if line and not line.isspace() else []
-            if not self._is_row(cells, len(begun[-1][2][-1]) if begun else 0, has_text_in_front):
+            if not self._has_numbers(cells, len(begun[-1][2][-1]) if begun else 0, has_text_in_front):
                 gap.append(i)
                 continue
             left -= len(cells)
@@ -286,7 +293,7 @@ class TextTable:
         fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
         return [b for b in blocks if len(b.rows) >= (min(most, FEWEST_ROWS) if b.names_frequency else fewest)]
 
-    def _is_row(self, cells: list[str], width: int, has_text_in_front: bool) -> bool:
+    def _has_numbers(self, cells: list[str], width: int, has_text_in_front: bool) -> bool:
         if len(cells) < 2 or (number(cells[0], self.decimal) is None and not has_text_in_front):  # noqa: PLR2004
             return False
         if len(cells) == width and not has_text_in_front:

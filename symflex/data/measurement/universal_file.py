@@ -16,6 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from symflex.data.measurement.columns import ColumnMeaning, DataColumn, assembled
 from symflex.data.measurement.measured_response import (
     MAX_LINES,
     MAX_RESPONSES,
@@ -31,7 +32,8 @@ _MARKS: Final = re.compile(rb"    -1[^\S\n]*(?:\n|\Z)")
 HEADER_LINES: Final = 11
 """Records of a dataset 58 before its data."""
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
-"""Function types of datasets 58."""
+POWERS: Final = (2, 9)
+"""Function types of datasets 58; those of powers are an auto spectrum and a power spectral density."""
 FREQUENCY_AXIS: Final = 18
 """Data type of an abscissa that is a frequency."""
 SPECIFIC_TYPES: Final = {
@@ -94,6 +96,14 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
         one = _response(f"{name}:{line}", stem, entry, coherences.get(_ends(entry)), system)
         same = sum(one.name == other.name.partition(" ")[0] for other in responses)
         responses.append(replace(one, name=f"{one.name} {same + 1}") if same else one)
+    powers = [entry for entry in sets if entry.get("func_type") in POWERS]
+    if not responses and powers and all(np.array_equal(entry["x"], powers[0]["x"]) for entry in powers):
+        axis = DataColumn("frequency", ColumnMeaning("frequency"), np.asarray(powers[0]["x"]))
+        read = ((str(entry.get("id4", "")).strip(), np.asarray(entry["data"]).real) for entry in powers)
+        columns = [DataColumn(title, ColumnMeaning("power"), numbers) for title, numbers in read]
+        (power,), said = assembled([axis, *columns], name, None)
+        response = MeasuredResponse(stem, power.frequency_hz, power.values, guesses=tuple(said))
+        return (checked_response(response, name, lambda *_: None),)
     if not responses:
         types = sorted({int(entry.get("func_type", 0)) for entry in sets})
         held = ", ".join(f"{t} ({FUNCTIONS.get(t, 'not read')})" for t in types[:8])

@@ -52,6 +52,33 @@ POLAR = [f"({d:.14e}dB,{p:.14e}°)" for d, p in zip(DB, DEG, strict=True)]
 
 def text_files():  # noqa: PLR0915 - one statement a file
     """Return files of text."""
+    for said, first, second in (("no", DB - 6, H), ("yes", DB, H)):
+        yield Saved(  # WaveForms: the phase is always that of channel 2 against channel 1
+            f"relative_{said}.csv",
+            (
+                f"#Digilent WaveForms Network Analyzer - Bode\n#Channel: Channel 2\n#Relative: {said}\n\n"
+                "Frequency (Hz),Channel 1 Magnitude (dB),Channel 2 Magnitude (dB),Channel 2 Phase (deg)\n"
+                + rows(F, 0 * F - 6, first, DEG)
+            ).encode(),
+            (second,),
+        )
+    yield Saved("power.csv", ("f (Hz),Power ratio (10log10 dB),Phase (deg)\n" + rows(F, DB, DEG)).encode())
+    yield Saved("power_plain.csv", ("f (Hz),Power,Phase (deg)\n" + rows(F, SIZE**2, DEG)).encode())
+    yield Saved(
+        "shift.dat",
+        ("Frequency Shift (Hz)\tCenter Frequency (Hz)\tAmplitude (m)\tPhase (deg)\n"
+        + rows(F - 25, 0 * F + 25, SIZE, DEG, sep="\t")).encode(),
+    )  # fmt: skip
+    yield Saved(  # VersaStudio: an impedance beside the voltage and the current whose ratio it is
+        "potentiostat.par",
+        ("#,E(V),Frequency(Hz),E Real,E Imag,I Real,I Imag,Z Real,Z Imag\n"
+        + rows(POINT, 0 * F, F, 2 * RE, 2 * IM, 0 * F + 2, 0 * F, RE, IM)).encode(),
+    )  # fmt: skip
+    for name in ("log f", "log10(f/Hz)", "lg f [Hz]"):
+        yield Saved(f"{len(name)}.csv", (f"{name},re,im\n" + rows(np.log10(F), RE, IM)).encode())
+    yield Saved(
+        "log_ohm.csv", ("f/Hz;log(|Z|/Ohm);phase/deg\n" + rows(F, np.log10(SIZE), DEG, sep=";")).encode()
+    )
     yield Saved(
         "oros.csv",
         (
