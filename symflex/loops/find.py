@@ -59,6 +59,8 @@ SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
 """Of gains between boundaries: the fewest that lie between them."""
 BITS = 128
 """Of gains."""
+NEXT_TO_ZERO = 2**20
+"""By what the first boundary is divided where poles of a small gain are counted."""
 Limits = tuple[Fraction | None, Fraction | None]
 
 
@@ -82,7 +84,8 @@ def find_stable_gains(
     if root is not None and root.shift != 0:
         return _at_nominal(loop, limits or (None, None), digits, BRANCH)
     end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
-    lumped, along, (low, high) = _factors(loop, limits, up_to, end)
+    at_end = None if end is None else _gain_at_end(loop, end)
+    lumped, along, (low, high) = _factors(loop, limits, up_to, end, at_end)
     if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
         return _at_nominal(loop, (low, high), digits, MIRRORED)
     if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
@@ -90,7 +93,7 @@ def find_stable_gains(
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
-    search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
+    search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis), end)
     try:
         if along is not None:
             crossings += along.crossings(digits + GUARD_DIGITS)
@@ -102,9 +105,9 @@ def find_stable_gains(
     nominal = loop.nominal
     radius = end if along is None else loop.bound.from_root(along.radius[0])
     reasons = [] if along is None else along.reasons[end is not None :]
-    if end is not None and any(factor.factor.degree > 1 for factor in lumped):
+    if end is not None and at_end is None:
         reasons.append(
-            f"poles that pass the end of the data are not sought where '{loop.gain.name}' is squared"
+            f"'{loop.gain.name}' closes several loops: no loop gain says what matters beyond the data"
         )
     is_complete = along is None or along.radius[1] or end is not None
     stability = StabilityMap(
@@ -125,9 +128,10 @@ def find_stable_gains(
         is_narrowed=along is not None and along.is_narrowed,
         data_end=end,
         beyond=() if end is None or nominal is None else _beyond(lumped, nominal, end),
+        gain_at_end=at_end,
     )
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
-    if nominal is not None and stability.verdict.word == "unknown":
+    if nominal is not None and end is None and stability.verdict.word == "unknown":
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
     loop_gain = None if root else _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
@@ -138,9 +142,6 @@ def find_stable_gains(
             phase_margins = loop_gain.margins(nominal)
         if end is not None:
             phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
-            stability = replace(
-                stability, gain_at_end=1 / float(abs(_ratio(loop_gain.function, arb(end), BITS)).mid())
-            )
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
         if is_complete and along is not None and along.is_endless and along.passive:
             beyond = along.passive.least_phase_margin(along.radius[0])
@@ -154,6 +155,15 @@ def find_stable_gains(
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
+
+
+def _gain_at_end(loop: Loop, end: float) -> float | None:
+    """Return the gain with which the loop gain is one at a frequency [rad/s]; None without a loop gain."""
+    if not is_straight(loop):
+        return None
+    function = LoopFunction.of(loop.bound, *loop.with_gain[0].coefficients)
+    size = float(abs(_ratio(function, arb(end), BITS)).upper())
+    return 1 / size if 0 < size < inf else None
 
 
 def _beyond(lumped: Sequence[LumpedFactor], gain: Fraction, end: float) -> tuple[float, ...]:
@@ -202,14 +212,17 @@ def _holds_smallest(
 
 
 def _factors(
-    loop: Loop, limits: Limits | None, up_to: float | None, end: float | None
+    loop: Loop, limits: Limits | None, up_to: float | None, end: float | None, at_end: float | None
 ) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
     low, high = _limits(loop, limits, is_distributed=bool(mixed))
-    lumped = [
-        LumpedFactor.of(loop.bound, factor, loop, (low, high), end) for factor in plain if factor.degree
-    ]
+    if at_end is not None:
+        # Counts begin at 0, and end where the loop gain is one at the end of the data.
+        most = Fraction(at_end)
+        low = -most if low is None else max(min(low, Fraction(0)), -most)
+        high = most if high is None else min(max(high, Fraction(0)), most)
+    lumped = [LumpedFactor.of(loop.bound, factor, loop, (low, high)) for factor in plain if factor.degree]
     if not mixed:
         return lumped, None, (low, high)
     if low is None or high is None:
@@ -282,6 +295,7 @@ class _GainSearch:
     along: DistributedFactors | None
     limits: Limits
     apart: PoleCount  # of poles that no gain moves
+    end: float | None = None  # crossings of the axis beyond this are left out [rad/s]
     reasons: list[str] = field(default_factory=list)  # what is not proved
 
     def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
@@ -320,6 +334,7 @@ class _GainSearch:
                 total = total + own
             counts.append(total)
             spend()
+        counts = counts if self.end is None else self._up_to_end(counts, groups, ends)
         boundaries, intervals = [], []
         is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
         start: arb | None = ends[0]
@@ -335,7 +350,8 @@ class _GainSearch:
             is_same, where = counts[i] == counts[i + 1], f"near a gain of {float(gain.mid()):.6g}"
             if is_same and counts[i].is_stable and any(c.is_open for c in group):
                 self.reasons.append(f"it could not be decided whether poles touch the axis {where}")
-            if is_same and not is_lower and not (counts[i].is_stable and turns):
+            stays = not is_lower and not (counts[i].is_stable and turns)
+            if is_same and (stays or not self._is_within(group)):
                 continue
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))
@@ -345,6 +361,30 @@ class _GainSearch:
             start = gain
         intervals.append(GainInterval(start, ends[-1], counts[-1]))
         return tuple(boundaries), tuple(intervals)
+
+    def _is_within(self, group: Sequence[Crossing]) -> bool:
+        end = self.end
+        return end is None or any(c.is_singular or any(not w > end for w in c.frequencies) for c in group)
+
+    def _up_to_end(
+        self, counts: Sequence[PoleCount], groups: Sequence[Sequence[Crossing]], ends: Sequence[arb | None]
+    ) -> list[PoleCount]:
+        """Return the counts of poles that pass the axis where there are data, or are there for small gains.
+
+        They are those of every plant with these data whose loop gain stays below one beyond (Nyquist 1932).
+        """
+        first = next(i for i, high in enumerate(ends[1:]) if high is None or high > 0)
+        top = ends[first + 1]
+        small = (Fraction(1) if top is None else exact_fraction(top)) / NEXT_TO_ZERO
+        own = [factor.count(small, self.end or inf) for factor in self.lumped]
+        own += [] if self.along is None else [self.along.count(small)]
+        made = {first: sum(own, self.apart)}
+        for i, group in [*enumerate(groups[first:], first), *reversed(list(enumerate(groups[:first])))]:
+            known, new, sign = (i, i + 1, 1) if i in made else (i + 1, i, -1)
+            below, above = counts[i], counts[i + 1]
+            moved = (above.right - below.right, above.axis - below.axis) if self._is_within(group) else (0, 0)
+            made[new] = PoleCount(made[known].right + sign * moved[0], made[known].axis + sign * moved[1])
+        return [made[i] for i in range(len(counts))]
 
 
 def _ball(value: Fraction) -> arb:

@@ -11,20 +11,19 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial, reduce
-from math import lcm
+from math import inf, lcm
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, fmpz_mpoly
+from flint import arb, fmpz_mpoly
 
 from symflex.algebra import Ring, degree_in, irreducible_factors
 from symflex.balls import bits_for_digits, precision, value_at
 from symflex.budget import spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
-from symflex.loops.loop import LoopFunction
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots
 from symflex.roots.pole_zero_map import count_right
-from symflex.roots.problem import polynomial_in_s, problem_of
+from symflex.roots.problem import problem_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,7 +58,6 @@ class LumpedFactor:
     # root of the gain, whose place that root takes; and the range examined.
     functions: GainFunctions | None = None
     limits: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
-    end: float | None = None  # poles are counted within this abs(s) [rad/s]; None: all of them
 
     @classmethod
     def of(
@@ -68,7 +66,6 @@ class LumpedFactor:
         factor: GainPolynomial,
         loop: Loop | None = None,
         limits: tuple[Fraction | None, Fraction | None] = (None, None),
-        end: float | None = None,
     ) -> LumpedFactor:
         """Return a factor without kernels as E and O; of one with functions of the gain limits are known."""
         terms = _integer_terms(factor)
@@ -98,7 +95,6 @@ class LumpedFactor:
             loop,
             functions,
             (limits[0] or Fraction(0), limits[1] or Fraction(0)),
-            end,
         )
 
     def _moves(self, *polynomials: fmpz_mpoly) -> bool:
@@ -114,11 +110,6 @@ class LumpedFactor:
     def crossings(self, digits: int) -> list[Crossing]:
         """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
         crossings, functions = self._crossings(digits), self.functions
-        if self.end is not None:
-            crossings = [
-                c for c in crossings if c.is_singular or any(not w > self.end for w in c.frequencies)
-            ]
-            crossings += self._entering(digits)
         if functions is None or functions.root is None:
             return crossings
         with precision(max([COUNT_DIGITS, *(2 * c.gain.bits() for c in crossings)])):
@@ -143,39 +134,6 @@ class LumpedFactor:
             Crossing(gain, (), is_infinite=True) for f in leading for gain in self._gains(f, digits)
         ]
         return crossings + self._meetings(digits) + self._on_axis(digits)
-
-    def _entering(self, digits: int) -> list[Crossing]:
-        """Return where poles right of the axis pass the circle within which they are counted.
-
-        On ``s = end (1 + j t)/(1 - j t)``, ``0 <= t < 1``, the gain ``-A/B`` of a pole is real where
-        ``Im(A conj(B))`` vanishes, which is t times a polynomial in ``t^2``.
-        """
-        if self.end is None or self.factor.degree != 1:
-            return []
-        function = LoopFunction.of(self.bound, *self.factor.coefficients)
-        with precision(4 * bits_for_digits(digits)):
-            parts = [polynomial_in_s(self.bound, f).enclosure() for f in (function.a, function.b)]
-            up, down = acb_poly([1, acb(0, 1)]), acb_poly([1, acb(0, -1)])
-            most = max(part.degree() for part in parts)
-            a, b = (
-                sum(
-                    (c * arb(self.end) ** k * up**k * down ** (most - k) for k, c in enumerate(part)),
-                    acb_poly(),
-                )
-                for part in parts
-            )
-            turned = a * acb_poly([c.conjugate() for c in b])
-            places = [arb(0)]
-            squares = acb_poly([c.imag for c in list(turned)[1::2]])
-            try:
-                roots = squares.roots()
-            except ValueError as error:
-                message = "poles that pass the end of the data right of the axis cannot be told apart"
-                raise UncertifiedError(Diagnostic("SF802", message)) from error
-            places += [u.real.sqrt() for u in roots if u.imag.contains(0) and 0 < u.real < 1]
-            points = [self.end * acb(1, t) / acb(1, -t) for t in places]
-            values = [function.around(s, 4 * bits_for_digits(digits))[0] for s in points]
-            return [Crossing(v.gain(), (), is_entering=True) for v in values if not v.b.contains(0)]
 
     def _meetings(self, digits: int) -> list[Crossing]:
         """Return where poles that mirror each other in the axis meet, on it or beside it."""
@@ -306,14 +264,12 @@ class LumpedFactor:
         problem = RootProblem(((self._polynomial(self.ring.coefficients(polynomial, variable)), 1),))
         return [root for root in find_polynomial_roots(problem, digits) if root.is_real]
 
-    def count(self, gain: Fraction) -> PoleCount:
+    def count(self, gain: Fraction, within: float = inf) -> PoleCount:
         """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
 
-        SF802 when a root cannot be told from one on the axis.
+        They are those within an abs(s) [rad/s]. SF802 when a root cannot be told from one on the axis.
         """
-        roots = [
-            root for root in self.roots(gain) if self.end is None or not abs(root.enclosure()) > self.end
-        ]
+        roots = [root for root in self.roots(gain) if not abs(root.enclosure()) > within]
         times = self.factor.multiplicity
         axis = sum(root.multiplicity for root in roots if root.on_imaginary_axis)
         return PoleCount(count_right(roots) * times, axis * times)

@@ -327,7 +327,6 @@ class StabilityMap:
             "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
             "through_infinity": any(c.is_infinite for c in boundary.crossings),
             "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
-            "beyond_data": any(c.is_entering for c in boundary.crossings),
             "no_solution": any(c.is_singular for c in boundary.crossings),
             "poles_entering_right_half_plane": self.change(index),
         }
@@ -377,7 +376,6 @@ class Crossing:
     is_symmetric: bool = False
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
-    is_entering: bool = False  # a pole right of the axis passes the end of the data
     # By how many the poles of factors with kernels grow right of the axis with the gain, None where unknown.
     change: int | None = 0
 
@@ -480,9 +478,8 @@ def _beyond(stability: StabilityMap) -> Iterator[str]:
         count = _poles(len(stability.beyond))
         yield f"{2 * INDENT}{count} of the model right of the axis for {shown}: {places}"
     if stability.gain_at_end is not None:
-        size = f"abs({stability.gain}) < {stability.gain_at_end:.{SHORT_DIGITS}g}"
-        yield f"{2 * INDENT}for {size} the loop gain is below one at this end; nothing beyond"
-        yield f"{2 * INDENT}matters where it stays so"
+        yield f"{2 * INDENT}the loop gain there is taken to stay below one: for {stability.gain} up to"
+        yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it is so where the data end"
 
 
 def _status(stability: StabilityMap) -> str:
@@ -540,8 +537,6 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     if not boundary.frequencies:
         if any(c.is_singular for c in boundary.crossings):
             return ("no solution", "")
-        if any(c.is_entering for c in boundary.crossings):
-            return ("beyond the data", "")
         infinite = any(c.is_infinite for c in boundary.crossings)
         return ("infinite" if infinite else "on the axis", "")
     omegas = [figure(w, digits) for w in boundary.frequencies]
