@@ -51,6 +51,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Dispersion, Ring
     from symflex.codegen.program.exponents import KernelSum, Key
+    from symflex.codegen.program.nodes import Straight
     from symflex.codegen.program.site import Scales
     from symflex.transfer import TransferFunction
 
@@ -151,6 +152,14 @@ class Pieces:
         axis = RealAxis(self.tf.ratio.ring, self.tf.kernels, positive)
         return self._maker(use).real_program(axis) if axis.is_real else None
 
+    def side(self, number: int, factor: Factored) -> Straight:
+        """Return the numerator (0) or denominator (1) times a factor, all over an exponential.
+
+        After the value come the exponent of that, and what has no zero where the function is analytic.
+        Kernels are evaluated as exponentials, so the value cancels where arguments are small.
+        """
+        return self._maker(SeriesUse(REACHES[0])).side(number, factor)
+
     def _maker(self, use: SeriesUse) -> _PieceMaker:
         if use not in self._makers:
             self._makers[use] = _PieceMaker(self.tf, use, self.values)
@@ -214,7 +223,8 @@ class _PieceMaker:
         self.families = families_of(self.ring, self.table)
         self.waves = {self.ring.index[w] for w in self.table.wavenumbers}
         self.kernels = {self.ring.index[k.generator] for k in self.table.kernels}
-        self.plain, self.halves = self._halves()
+        self.plains, self.halves = self._halves()
+        self.plain = self.plains[0] / self.plains[1]
         self.groups = tuple(self._groups())
         self.delays = tuple(i for i, f in enumerate(self.families) if not f.wavenumber)
 
@@ -223,24 +233,26 @@ class _PieceMaker:
     def _holds(self, polynomial: fmpz_mpoly, positions: Iterable[int]) -> bool:
         return any(degree_in(polynomial, i) for i in positions)
 
-    def _halves(self) -> tuple[Factored, tuple[_Half, _Half]]:
-        """Return the factor without wavenumbers and kernels, and numerator and denominator of the rest."""
+    def _halves(self) -> tuple[tuple[Factored, Factored], tuple[_Half, _Half]]:
+        """Return the factors without wavenumbers and kernels above and below, and the rest of both."""
         sides = (self.tf.num, self.tf.den)
         above, below = (v.filter(lambda f: self._holds(f, self.kernels)) for v in sides)
         kernels = (above.numerator() * below.denominator(), above.denominator() * below.numerator())
         rest = [v.filter(lambda f: not self._holds(f, self.kernels)) for v in sides]
         waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
-        num, den = (v.filter(lambda f: not self._holds(f, self.waves)) for v in rest)
-        plain = num / den * self.tf.num.unit / self.tf.den.unit
+        plains = [
+            v.filter(lambda f: not self._holds(f, self.waves)) * side.unit
+            for v, side in zip(rest, sides, strict=True)
+        ]
         expanded = [expand(self.ring, k.expand(), self.families) for k in kernels]
         sums = self._in_segments([terms for terms, _ in expanded])
         halves = []
         for side, (own, terms, (_, common)) in enumerate(zip(waves, sums, expanded, strict=True)):
             # A common factor without wavenumbers leaves the half; wavenumbers stay, to balance its own.
             free = common.filter(lambda f: not self._holds(f, self.waves | self.kernels)) * common.unit
-            plain = plain * free ** (-1 if side else 1)
+            plains[side] = plains[side] * free
             halves.append(self._half(terms, own * (common / free)))
-        return plain, (halves[0], halves[1])
+        return (plains[0], plains[1]), (halves[0], halves[1])
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
         """Return the sums in base lengths in each of which the denominator's largest term is largest.
@@ -643,6 +655,18 @@ class _PieceMaker:
             return numerator
         reduced, _ = cancel(numerator, c0 ** (even // 2) * (c2**2 - c0 * 4) ** (twice // 2))
         return reduced
+
+    def side(self, number: int, factor: Factored) -> Straight:
+        """Return a numerator or denominator; see :meth:`Pieces.side`."""
+        forge, half = forge_of(self.tf.model), self.halves[number]
+        site = Site(forge, self.tf, self.families, {}, self._exponents())
+        scales = self._scales((), {})
+        value, taken = self._value(half, (), site, scales)
+        growth = [forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()]
+        laws = [c for law in self.table.dispersions for c in (*law.characteristic, law.shift)]
+        divisors = [site.value(c.denominator()) for c in laws if c.denominator().depends_on(LAPLACE)]
+        whole = forge.multiply([site.value(self.plains[number] * taken * factor), value])
+        return straight(forge, [whole, forge.add(growth), *divisors])
 
     # ----------------------------------------------------------------------------------- real arithmetic
 

@@ -1,0 +1,1 @@
+"""Pages that prove poles and zeros while a parameter moves."""

@@ -1,0 +1,276 @@
+"""Numerators and denominators as tapes: what a page needs to prove poles and zeros under a slider.
+
+Input: a :class:`symflex.transfer.TransferFunction`, and the identifiers of parameters in the exported module.
+Output: a dict that JSON can say, or one with the reason why there is no tape, ``{"refused": "..."}``.
+
+A tape is a list of instructions; instruction i computes register i. ``m*s^2 + k`` is::
+
+    [["p", 0], ["p", 1], ["s"], ["*", 2, 2], ["*", 0, 3], ["+", 4, 1]]
+
+``symflex/live/roots.js`` evaluates it on discs: a result holds every value that the function takes on the
+disc of s, for exactly these doubles as parameters. Let F be analytic and F(conj s) = conj F(s).
+
+Interval Newton (Moore 1966; complex: Krawczyk 1969). Let F' on a disc about z lie in a disc G without 0. If
+``z - F(z)/G`` lies within the disc about z, that holds one zero of F, and it is simple.
+
+Argument principle (Cauchy 1831). F has as many zeros in a polygon, counted with multiplicity, as its argument
+turns on the way around; if the polygon is its own mirror image, the upper half of it turns half as often.
+
+A numerator or denominator with kernels is a polynomial in wavenumbers q and exponentials, times powers of q
+that make it analytic and the same for every choice of q among the roots that it is: so on a disc any branch
+serves that is continuous there. :class:`~symflex.roots.functions.kernel_function.KernelFunction` tells these
+powers, ``algebra/vanishing`` the order of the zero at s = 0; both for all values at once. The tape divides by
+``exp(growth)``, which has no zeros, and what its argument turns is added to the count. The count is valid
+where the laws of q have no poles: their divisors are on the tape, too, and must not vanish in the window.
+
+A polynomial in s of degree n has n zeros: n discs that are apart hold them all, and need no count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored
+from symflex.algebra.vanishing import OriginSeries
+from symflex.codegen.program import nodes as tree
+from symflex.codegen.program.band import is_closed
+from symflex.codegen.program.build import TERM_LIMIT, Generators, forge_of
+from symflex.codegen.program.derivative import differentiated
+from symflex.codegen.program.distributed import Pieces
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.forge import straight
+from symflex.errors import Diagnostic, SymflexError, UncertifiedError
+from symflex.roots import Everything, Modes
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.locate import locate
+from symflex.transfer import NestedTransferFunction, bind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symflex.roots import Root
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
+
+MODES = 10
+"""Number of modes that a page follows."""
+
+BEYOND = 2
+"""Modes known beyond them, between which the edge of the window is placed."""
+
+ULP = 2.0**-52
+"""Bound of the relative error of a number that is rounded to a double."""
+
+SERIES_TERMS = (20, 80)
+"""Lengths of the series about 0 in which the first term is sought, as in ``kernel_function``."""
+
+ZERO = Fraction(0)
+
+Instruction = list[object]
+
+
+def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:
+    """Return the tapes of a transfer function's numerator and denominator, or why there are none.
+
+    ``names`` are the identifiers of parameters, by their names in the model.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.load("derivations/eppinger1988/two_mass.toml")
+    >>> tf = pipeline.derive_all(model)[0]
+    >>> tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
+    >>> [part["degree"] for part in tape["poles"]], len(tape["start"]["poles"])
+    ([1, 2], 1)
+    """
+    if (reason := _refusal(tf)) or isinstance(tf, NestedTransferFunction):
+        return {"refused": reason}
+    try:
+        bound = bind(tf)
+        located = locate(bound, Modes(modes + BEYOND) if tf.is_distributed else Everything(), digits=17)
+        poles, zeros = (list(_parts(tf, bound, i)) for i in (1, 0))
+    except SymflexError as error:
+        return {"refused": error.diagnostics[0].message}
+    start = {"poles": _upper(located.poles), "zeros": _upper(located.zeros)}
+    return {
+        "name": tf.name,
+        "parameters": [names[p.name] for p in tf.parameters],
+        "poles": poles,
+        "zeros": zeros,
+        "start": start,
+        "modes": modes,
+    }
+
+
+def _refusal(tf: AnyTransferFunction) -> str:
+    """Return why there is no tape of a function, empty where there may be one."""
+    if not is_closed(tf):
+        return "it is evaluated by a product over its roots, whose parameters are fixed"
+    if isinstance(tf, NestedTransferFunction) or tf.is_large or tf.length > TERM_LIMIT:
+        return "its polynomials would have too many terms"
+    if tf.model.root is not None:
+        return "it is a function of a root of s"
+    if tf.model.imaginary:
+        return "its coefficients are complex"
+    if tf.is_zero:
+        return "it is zero"
+    return ""
+
+
+def _upper(roots: Sequence[Root]) -> list[list[float]]:
+    """Return roots but those at 0, one of each conjugate pair."""
+    points = [complex(root) for root in roots if not root.is_zero]
+    return [[z.real, z.imag] for z in points if z.imag >= 0]
+
+
+def _parts(tf: TransferFunction, bound: BoundTransferFunction, number: int) -> Iterator[dict[str, object]]:
+    """Yield what numerator (0) or denominator (1) is a product of, each with its tape."""
+    side, ring = (tf.num, tf.den)[number], tf.ratio.ring
+    if any(side.depends_on(k.generator) for k in tf.kernels.kernels):
+        own = (bound.num, bound.den)[number]
+        function = KernelFunction(bound, own)
+        if function.power > 1:
+            message = f"a part of {tf.name} has no value of its own for every s"
+            raise UncertifiedError(Diagnostic("SF404", message))
+        factor = Factored.number(ring, 1)
+        for wave in tf.kernels.wavenumbers:
+            q = own.ring.generator(wave)
+            factor = factor * Factored.generator(ring, wave) ** (
+                function.part.exponent_of(q) - own.exponent_of(q)
+            )
+        orders = (OriginSeries(ring, tf.kernels, terms=n).order(side * factor) for n in SERIES_TERMS)
+        yield _part(
+            tf, Pieces(tf).side(number, factor), order=next((n for n in orders if n is not None), None)
+        )
+        return
+    for polynomial, exponent in side.factors:
+        forge = forge_of(tf.model)
+        value, degree = Generators(forge, tf, is_far=False).polynomial(ring, polynomial)
+        if degree:
+            order = min(int(monomial[0]) for monomial in polynomial.monoms())
+            yield _part(tf, straight(forge, [value]), order=order, degree=degree, multiplicity=exponent)
+
+
+def _part(
+    tf: TransferFunction, code: tree.Straight, *, order: int | None, degree: int = 0, multiplicity: int = 1
+) -> dict[str, object]:
+    """Return the tape of code, with the registers of its value, slope, growth and divisors."""
+    tape = _Tape({p.name: i for i, p in enumerate(tf.parameters)})
+    both = differentiated(code)
+    tape.assign(both)
+    value, slope, *others = (tape.register(v) for v in (*both.values[:2], *both.values[2::2]))
+    return {
+        "order": order,
+        "degree": degree,  # 0 with kernels
+        "multiplicity": multiplicity,
+        "tape": tape.instructions,
+        "value": value,
+        "slope": slope,
+        "growth": others[:1],
+        "divisors": others[1:],
+    }
+
+
+@dataclass
+class _Tape:
+    """Instructions while they are written."""
+
+    places: Mapping[str, int]  # of parameters
+    instructions: list[Instruction] = field(default_factory=list)
+    _known: dict[tuple[object, ...], int] = field(default_factory=dict)
+    _names: dict[str, int] = field(default_factory=dict)
+
+    def assign(self, code: tree.Straight) -> None:
+        """Write assignments."""
+        for a in code.every:
+            self._names[a.name] = self.register(a.value)
+
+    def _write(self, *instruction: object) -> int:
+        if instruction not in self._known:
+            self._known[instruction] = len(self.instructions)
+            self.instructions.append(list(instruction))
+        return self._known[instruction]
+
+    def _number(self, re: Fraction, im: Fraction = ZERO, pi_power: int = 0) -> int:
+        x, y = nearest_double(re, pi_power), nearest_double(im)
+        is_exact = not pi_power and (Fraction(x), Fraction(y)) == (re, im)
+        return self._write("#", x, y, 0.0 if is_exact else ULP * (abs(x) + abs(y)))
+
+    def _is_zero(self, register: int) -> bool:
+        return self.instructions[register] == ["#", 0.0, 0.0, 0.0]
+
+    def _sum(self, x: int, y: int, sign: str = "+") -> int:
+        if self._is_zero(y):
+            return x
+        return self._write(sign, x, y) if sign == "-" or not self._is_zero(x) else y
+
+    def _negative(self, x: int) -> int:
+        return x if self._is_zero(x) else self._write("-", self._number(ZERO), x)
+
+    def _product(self, x: int, y: int) -> int:
+        zero = next((z for z in (x, y) if self._is_zero(z)), None)
+        return self._write("*", x, y) if zero is None else zero
+
+    def _exponential(self, x: int, re: int, im: int) -> int:
+        return self._write("exp", self._product(x, self._number(Fraction(re), Fraction(im))))
+
+    def register(self, node: tree.CodeNode) -> int:
+        """Write what computes an expression, and return its register."""
+        match node:
+            case tree.RealNumber(value, pi_power):
+                return self._number(value, pi_power=pi_power)
+            case tree.ComplexNumber(re, im):
+                return self._number(re, im)
+            case tree.ParameterValue(name):
+                return self._write("p", self.places[name])
+            case tree.Laplace():
+                return self._write("s")
+            case tree.Assigned(name):
+                return self._names[name]
+            case tree.ToComplex(operand):
+                return self.register(operand)
+            case tree.LargerRoot(spelled):
+                return self.register(spelled)
+            case tree.Negate(operand):
+                return self._negative(self.register(operand))
+            case tree.Add((first, *others)):
+                total = self.register(first)
+                for term in others:
+                    sign, size = ("-", term.operand) if isinstance(term, tree.Negate) else ("+", term)
+                    total = self._sum(total, self.register(size), sign)
+                return total
+            case tree.Multiply(factors):
+                return reduce(self._product, map(self.register, factors))
+            case tree.Divide(above, below):
+                return self._product(self.register(above), self._write("/", self.register(below)))
+            case tree.IntegerPower(base, exponent):
+                return reduce(self._product, [self.register(base)] * exponent)
+            case tree.Apply(function, argument):
+                return self._applied(function.removeprefix("complex_"), self.register(argument))
+        message = f"{type(node).__name__} has no enclosure in doubles"
+        raise UncertifiedError(Diagnostic("SF404", message))
+
+    def _applied(self, function: str, x: int) -> int:
+        match function:
+            case "abs":  # what programs add there is less than a rounding: analytic functions do without
+                return self._number(ZERO)
+            case "sqrt":
+                return x if self._is_zero(x) else self._write("sqrt", x)
+            case "exp":
+                return self._exponential(x, 1, 0)
+            case "tan" | "tanh":
+                name = "sin" + function[3:]
+                return self._product(
+                    self._applied(name, x), self._write("/", self._applied("cos" + function[3:], x))
+                )
+            case "cosh" | "sinh" | "cos" | "sin":
+                turn = (0, 1) if len(function) < len("cosh") else (1, 0)
+                up, down = self._exponential(x, *turn), self._exponential(x, -turn[0], -turn[1])
+                if function.startswith("cos"):
+                    return self._product(self._sum(up, down), self._number(Fraction(1, 2)))
+                half = self._number(Fraction(turn[0], 2), Fraction(-turn[1], 2))
+                return self._product(self._sum(up, down, "-"), half)
+        message = f"{function} has no enclosure in doubles"
+        raise UncertifiedError(Diagnostic("SF404", message))
