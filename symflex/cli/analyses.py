@@ -20,7 +20,7 @@ DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
 NO_CLOSED_FORM = Diagnostic(
     "SF502",
-    "--sensitivity and --explain need the closed form, which is too large here",
+    "--explain needs the closed form, which is too large here",
     hint="split the model, or ask for the roots alone",
 )
 
@@ -59,10 +59,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     explained: ZeroExplanation | None = None
     wanted, is_over = bool(given.sensitivity), located.certificate.is_exceeded
     try:
-        if isinstance(bound, BoundNested):
-            if wanted or given.explain:
-                raise BudgetError(NO_CLOSED_FORM)
-        elif wanted:
+        if isinstance(bound, BoundNested) and given.explain:
+            raise BudgetError(NO_CLOSED_FORM)
+        if wanted:
             from symflex.analysis.sensitivity.sensitivity import sensitivities  # most calls need none of it
 
             names = () if "" in given.sensitivity else given.sensitivity

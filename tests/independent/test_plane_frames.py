@@ -10,6 +10,7 @@ from mpmath import mp, mpf, pi
 
 from benchmarks.frames import specification
 from symflex import pipeline
+from symflex.analysis.sensitivity.sensitivity import sensitivities
 from symflex.roots import Modes
 from tests.independent.plane_frames import Member, clamped, determinant, response
 
@@ -124,6 +125,45 @@ def test_the_modes_of_a_portal_frame_are_where_its_determinant_changes_sign():
             omega = mpf(str(float(pole.im.mid())))
             low, high = (determinant(members, clamped("a", "d"), omega + d) for d in (-1e-6, 1e-6))
             assert low * high < 0
+
+
+@pytest.mark.slow
+def test_roots_of_a_two_storey_frame_move_as_its_determinant_says():
+    """Poles of ``det K``, zeros of K held at the force: ``ds/dp = -(dD/dp)/(dD/ds)``, by differences of D."""
+    given = {"I_1": mpf("2e-8"), "l_1": mpf("0.4"), "m": mpf("0.7")}
+    legs = (("left", "ground", "p"), ("right", "ground", "q"), ("up", "p", "r"), ("far", "q", "t"))
+    text = "".join(frame(name, a, b, '"90 deg"') for name, a, b in legs)
+    text = text.replace('I = "1e-8 m^4"', 'I = "I_1"', 1).replace('l = "0.5 m"', 'l = "l_1"', 1)
+    text += frame("floor", "p", "q", 0) + frame("roof", "r", "t", 0)
+    text += 'body = { type = "mass", at = "r.x", m = "m" }\n'
+    table = '[parameters]\nI_1 = "2e-8 m^4"\nl_1 = "0.4 m"\nm = "0.7 kg"\n'
+    model = pipeline.loads(
+        f'symflex = 1\n{table}[elements]\n{text}[inputs]\nF = {{ force = "r.x" }}\n[outputs]\nx = "r.x"\n'
+    )
+    (bound,) = pipeline.derive_for_roots(model, [("x", "F")])
+    moved = sensitivities(model, bound, pipeline.roots(bound, Modes(2), 15))
+
+    def determinant_of(omega, kind, values):
+        left = {**STEEL, "I": values["I_1"]}
+        members = [Member("a", "p", **left, l=values["l_1"], angle=pi / 2)]
+        members += [Member(a, b, **STEEL, l=HALF, angle=pi / 2) for a, b in ("dq", "pr", "qt")]
+        members += [Member(a, b, **STEEL, l=HALF) for a, b in ("pq", "rt")]
+        held = clamped("a", "d") | ({("r", "x")} if kind == "zero" else set())
+        return determinant(members, held, omega, on("r", x=-values["m"] * omega**2))
+
+    assert len(moved) == 2 * 4 * 3
+    with mp.workdps(40):
+        for each in (m for m in moved if m.root.im > 0):
+            name, omega = each.parameter.name, mpf(each.place.imag.mid().str(35, radius=False))
+            step = given[name] * mpf(10) ** -10
+            beside = [
+                determinant_of(omega, each.kind, given | {name: given[name] + d}) for d in (step, -step)
+            ]
+            ahead = [determinant_of(omega + d, each.kind, given) for d in (step, -step)]
+            right = float(-(beside[0] - beside[1]) / (ahead[0] - ahead[1]))
+            assert each.status == "certified"
+            assert float(each.derivative.real.mid()) == pytest.approx(0, abs=1e-25)
+            assert float(each.derivative.imag.mid()) == pytest.approx(right, rel=1e-9, abs=1e-12)
 
 
 CROSS = 'E = "200 GPa", I = "a^4/12", A = "a^2", rho = "8000 kg/m^3", l = "5 m"'

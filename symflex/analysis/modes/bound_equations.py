@@ -12,24 +12,18 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
-from symflex.algebra import LAPLACE, Factored, composed
-from symflex.algebra.propagators import EXPONENTIAL, Propagation
+from symflex.algebra import LAPLACE
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
 from symflex.balls import at_centre, balancing, binary_exponent, current_bits
-from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.enclose import enclose, enclosure, evaluated
-from symflex.transfer.enclose_kernels import fundamental_functions
-from symflex.transfer.varying_law import BoundLaw
+from symflex.transfer.equations_at import number
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from symflex.algebra import Dispersion
-    from symflex.balls import Value
-    from symflex.equations import Continuum, Equations
-    from symflex.expressions import Call
+    from symflex.algebra import Factored
+    from symflex.equations import Continuum
     from symflex.library.elements import Variable
-    from symflex.model import ExactValue
+    from symflex.transfer.equations_at import EquationsAt, Laws
 
 
 SEED = 7
@@ -71,7 +65,59 @@ def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = No
     n = int(matrix.nrows())
     if not n:
         return NullSpace((), True)
-    rows = matrix.tolist()
+    bordered, right = _bordered(matrix, dimension, typical)
+    solved = _solve(bordered, _corner(n, dimension))
+    if solved is None:
+        return None
+    basis = tuple(tuple(solved[j][k] * right[j] for j in range(n)) for k in range(dimension))
+    is_refuted = not all(x.contains(0) for row in solved[n:] for x in row)
+    return NullSpace(basis, is_refuted)
+
+
+@dataclass(frozen=True, slots=True)
+class SingularPair:
+    """Vectors X and Y on both sides of a matrix A that is bordered by B and C, and the corner T.
+
+    ``[A B; C 0] [X; T] = [0; 1]``, ``[Y T] [A B; C 0] = [0 1]``: A is singular just where T is 0, and
+    ``dT = -Y dA X`` for any change of A (Govaerts 2000, chapter 3).
+    """
+
+    right: Column
+    left: Column
+    corner: acb
+
+    def change(self, entries: Mapping[tuple[int, int], acb]) -> acb:
+        """Return how T changes with entries of A."""
+        return -sum((self.left[i] * x * self.right[j] for (i, j), x in entries.items()), acb(0))
+
+
+def singular_pair(matrix: acb_mat, typical: acb_mat) -> SingularPair | None:
+    """Return the vectors of a matrix whose null space has at most one dimension; None on balls too wide.
+
+    Examples
+    --------
+    >>> pair = singular_pair(acb_mat([[1, -2], [-2, 4]]), acb_mat([[1, 1], [1, 1]]))
+    >>> pair.corner.contains(0), (pair.right[0] / pair.right[1]).contains(2)
+    (True, True)
+    """
+    n = int(matrix.nrows())
+    bordered, right = _bordered(matrix, 1, typical)
+    solved = _solve(bordered, _corner(n, 1))
+    transposed = [list(column) for column in zip(*bordered, strict=True)]
+    mirrored = None if solved is None else _solve(transposed, _corner(n, 1))
+    if solved is None or mirrored is None:
+        return None
+    left, _ = _scales(typical.tolist())
+    return SingularPair(
+        tuple(solved[j][0] * right[j] for j in range(n)),
+        tuple(mirrored[i][0] * left[i] for i in range(n)),
+        solved[n][0],
+    )
+
+
+def _bordered(matrix: acb_mat, dimension: int, typical: acb_mat | None) -> tuple[list[list[acb]], list[arb]]:
+    """Return a scaled matrix with its borders, and the scales of its columns."""
+    n, rows = int(matrix.nrows()), matrix.tolist()
     left, right = _scales(rows if typical is None else typical.tolist())
     random = Random(SEED)
     bordered = [
@@ -79,14 +125,12 @@ def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = No
         for i, row in enumerate(rows)
     ]
     below = list(zip(*(_border(random, dimension) for _ in range(n)), strict=True))
-    bordered += [[*row, *([acb(0)] * dimension)] for row in below]
-    wanted = [[acb(int(i == n + k)) for k in range(dimension)] for i in range(n + dimension)]
-    solved = _solve(bordered, wanted)
-    if solved is None:
-        return None
-    basis = tuple(tuple(solved[j][k] * right[j] for j in range(n)) for k in range(dimension))
-    is_refuted = not all(x.contains(0) for row in solved[n:] for x in row)
-    return NullSpace(basis, is_refuted)
+    return bordered + [[*row, *([acb(0)] * dimension)] for row in below], right
+
+
+def _corner(size: int, dimension: int) -> list[list[acb]]:
+    """Return the right sides of bordered equations, whose last rows alone are not at rest."""
+    return [[acb(int(i == size + k)) for k in range(dimension)] for i in range(size + dimension)]
 
 
 def _border(random: Random, dimension: int) -> list[acb]:
@@ -115,84 +159,18 @@ def _scales(rows: Sequence[Sequence[acb]]) -> tuple[list[arb], list[arb]]:
     return [two**e for e in left], [two**e for e in right]
 
 
-Values = dict[str, acb]
-Laws = dict["Dispersion", BoundLaw]
-
-
-@dataclass(frozen=True)
-class BoundEquations:
-    """``A(s) x = 0`` with numbers."""
-
-    # Assembled without names for wavenumbers: fundamental functions are entire in s, also where wavenumbers
-    # vanish.
-    equations: Equations
-    values: tuple[tuple[str, ExactValue], ...]  # of every parameter that occurs
-
-    def at(self, s: acb) -> SystemAt:
-        """Return the equations at a ball of s [rad/s], at the current precision."""
-        equations = self.equations
-        known = self._constants()
-        values: Values = {LAPLACE: s, **{name: acb(value) for name, value in known.items()}}
-        waiting = [(n, v) for n, v in equations.definitions if not _define(n, v, values)]
-        laws = self._laws(values)
-        if equations.propagation is not None:
-            values |= _propagators(equations.propagation, values, laws)
-        for name, value in waiting:
-            _define(name, value, values)
-        columns = {variable: j for j, variable in enumerate(equations.unknowns)}
-        entries = [[acb(0)] * len(columns) for _ in equations.rows]
-        for entry, row in zip(entries, equations.rows, strict=True):
-            for variable, coefficient in row.form.terms:
-                if variable in columns:
-                    entry[columns[variable]] += _evaluated(coefficient, values)
-        continua = tuple(_continuum(c, values, laws) for c in equations.continua)
-        return SystemAt(tuple(columns), acb_mat(entries), continua)
-
-    def _constants(self) -> Mapping[str, arb]:
-        later: dict[str, Callable[[], arb]] = {name: enclosure(v) for name, v in self.values}
-        constants = {name: evaluate() for name, evaluate in later.items()}
-        constants["pi"] = arb.pi()
-        for constant in self.equations.constants:
-            if constant.generator not in self._along:
-                constants[constant.generator] = enclose(constant.expression, later)
-        return constants
-
-    @property
-    def _along(self) -> Mapping[str, Call]:
-        """The functions of the coordinate along x among the generators."""
-        if not is_tapered(self.equations.model):
-            return {}
-        return {c.generator: c.expression for c in self.equations.constants if varies_along_x(c.expression)}
-
-    def _laws(self, values: Values) -> Laws:
-        """Return the laws that vary along x with numbers, given those of all that does not."""
-        propagation = self.equations.propagation
-        if propagation is None:
-            return {}
-        constants = {name: _constant(value.real) for name, value in values.items() if name != LAPLACE}
-        parameters = {name: enclosure(value) for name, value in self.values}
-        return {
-            law: BoundLaw(
-                law.replaced(lambda x: self._opened(propagation.embed(x))),
-                self._along,
-                law.start[0],
-                constants,
-                parameters,
-            )
-            for law in propagation.table.dispersions
-            if law.kind == "varying"
-        }
-
-    def _opened(self, value: Factored) -> Factored:
-        """Return a coefficient without definitions that depend on s: of laws that is told."""
-        moving = {LAPLACE}
-        for name, meant in self.equations.definitions:
-            if any(meant.depends_on(each) for each in moving):
-                moving.add(name)
-        for name, meant in reversed(self.equations.definitions):
-            if name in moving and value.depends_on(name):
-                value = composed(value, {name: meant})
-        return value
+def system_at(equations: EquationsAt, s: acb) -> SystemAt:
+    """Return equations at a ball of s [rad/s], at the current precision."""
+    symbolic = equations.equations
+    values, laws = equations.generators(s)
+    columns = {variable: j for j, variable in enumerate(symbolic.unknowns)}
+    matrix = acb_mat(len(symbolic.rows), len(columns))
+    for i, row in enumerate(symbolic.rows):
+        for j, entry in equations.row(row.form, values, columns).items():
+            matrix[i, j] = at_centre(entry)
+    numbers = {name: at_centre(value) for name, value in values.items()}
+    continua = tuple(_continuum(c, numbers, laws) for c in symbolic.continua)
+    return SystemAt(tuple(columns), matrix, continua)
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,52 +204,10 @@ class SystemAt:
     continua: tuple[ContinuumAt, ...]
 
 
-def _evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
-    """Return a rational function with a ball in place of every generator; KeyError where one has no value."""
-    enclosed: acb = evaluated(value, values.__getitem__, acb(1))
-    return enclosed
+def _continuum(continuum: Continuum, values: Mapping[str, acb], laws: Laws) -> ContinuumAt:
+    def value(of: Factored) -> acb:
+        return at_centre(number(of, values, acb(1)))
 
-
-def _define(name: str, value: Factored, values: Values) -> bool:
-    """Add a definition's value; False when it holds what has none yet."""
-    try:
-        values[name] = _evaluated(value, values)
-    except KeyError:
-        return False
-    return True
-
-
-def _constant(value: arb) -> Callable[[], arb]:
-    return lambda: value
-
-
-def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values:
-    """Return the fundamental functions and exponentials at s."""
-    propagators: Values = {}
-    matrices: dict[tuple[int, int], list[list[acb]]] = {}
-    columns: dict[tuple[int, int], tuple[Value, ...]] = {}
-    for p in propagation.propagators:
-        law = propagation.table.dispersions[p.dispersion]
-        length = _evaluated(propagation.lengths[p.dispersion][p.length], values)
-        if p.order == EXPONENTIAL:
-            propagators[p.generator] = (-_evaluated(law.shift, values) * length).exp()
-            continue
-        key = (p.dispersion, p.length)
-        if law in laws:
-            if key not in matrices:
-                start, _ = laws[law].ends()
-                matrices[key] = laws[law].matrix_at(values[LAPLACE], (start, start + length.real))
-            row, column = divmod(p.order, law.order)
-            propagators[p.generator] = matrices[key][row][column]
-            continue
-        if key not in columns:
-            coefficients = [_evaluated(c, values) for c in law.characteristic]
-            columns[key] = fundamental_functions(coefficients, length)
-        propagators[p.generator] = at_centre(columns[key][p.order])
-    return propagators
-
-
-def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
     system = continuum.system
     axes = system.axes
     varying: VaryingCarrier | None = None
@@ -279,7 +215,7 @@ def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
         parts = tuple((states, laws[law]) for states, law in continuum.parts)
         varying = VaryingCarrier(parts, values[LAPLACE], len(system.states))
     matrix, loads = (
-        tuple(tuple(_evaluated(x, values) for x in row) for row in (() if varying else rows))
+        tuple(tuple(value(x) for x in row) for row in (() if varying else rows))
         for rows in (system.matrix, system.loads)
     )
     at_rest = DistributedShape(
@@ -289,10 +225,10 @@ def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
         matrix,
         (acb(0),) * len(system.states),
         (),
-        _evaluated(continuum.start, values).real,
-        _evaluated(continuum.length, values).real,
+        value(continuum.start).real,
+        value(continuum.length).real,
         current_bits(),
-        () if axes is None else tuple(_evaluated(x, values).real for x in (axes.cos, axes.sin)),
+        () if axes is None else tuple(value(x).real for x in (axes.cos, axes.sin)),
         varying,
     )
     return ContinuumAt(at_rest, loads, continuum.initial, continuum.loads)

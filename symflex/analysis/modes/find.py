@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import BoundEquations, SystemAt, null_space
+from symflex.analysis.modes.bound_equations import SystemAt, null_space, system_at
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.balls import precision
 from symflex.budget import spend
@@ -27,6 +27,7 @@ from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.transfer import BoundNested, nested_transfer
 from symflex.transfer.bind import read_values
+from symflex.transfer.equations_at import EquationsAt
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -162,7 +163,7 @@ class _ModeSearch:
             model = with_numbers(model, (), given, in_kernels=True)
         equations = known or assemble(model, nested_transfer, is_nameless=True)
         missing = tuple(p for p in model.parameters if p.name not in given)
-        self.equations = BoundEquations(equations, (*bound.values, *read_values(missing, {})))
+        self.equations = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
         domains = {n.name: n.domain for n in model.nodes}
         self._units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
 
@@ -242,8 +243,8 @@ class _ModeSearch:
         bits = root.working_bits() + SPARE_BITS
         with precision(bits):
             s = acb(root.re, root.im)
-            system = self.equations.at(s)
-            typical = self.equations.at(s.mid() * BESIDE if s.mid() != 0 else acb(1)).matrix
+            system = system_at(self.equations, s)
+            typical = system_at(self.equations, s.mid() * BESIDE if s.mid() != 0 else acb(1)).matrix
             for dimension in range(1, DIMENSIONS + 1):
                 space = null_space(system.matrix, dimension, typical)
                 if space is None:

@@ -28,6 +28,7 @@ from symflex.algebra import (
 from symflex.algebra.minors import MinorSums
 from symflex.algebra.modal_sum import ModalSums
 from symflex.algebra.vanishing import OriginSeries
+from symflex.analysis.sensitivity.of_equations import SingularMatrix, derivatives, is_fixed_at_zero
 from symflex.balls import (
     Arithmetic,
     EvaluationPlan,
@@ -46,10 +47,12 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
+from symflex.transfer import BoundNested
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.enclose_varying import VaryingMatrices
-from symflex.transfer.of_model import derive_all
+from symflex.transfer.equations_at import EquationsAt
+from symflex.transfer.of_model import NEVER_LARGE, assemble_sparse, derive_all
 from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
@@ -58,7 +61,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Dispersion
     from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, TransferFunction
 
 
 Kind = Literal["pole", "zero"]
@@ -333,7 +336,7 @@ def _is_simple(tangents: Tangents, factor: fmpz_mpoly, s: acb, bits: int) -> boo
 
 def sensitivities(
     model: Model,
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     located: PoleZeroMap,
     names: Sequence[str] = (),
     digits: int = 15,
@@ -349,15 +352,56 @@ def sensitivities(
     values = {p.name: given.get(p.name, p.value) for p in model.parameters}
     known = {name: value for name, value in values.items() if value is not None}
     chosen = [p for p in model.parameters if p.name in known and (not names or p.name in names)]
+    pair = (bound.source.output.name, bound.source.input.name)
+    if isinstance(bound, BoundNested) or (not model.is_distributed and len(model.elements) > NEVER_LARGE):
+        return _of_equations(model, pair, known, located, chosen, digits)
     if model.is_distributed:
         return differentiate(bound.symbolic or bound.source, known, located, chosen, digits)
     # One symbol at a time, among numbers, is far less than all at once.
-    pair = (bound.source.output.name, bound.source.input.name)
     moved: list[RootDerivative] = []
     for parameter in chosen:
         (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
         moved += differentiate(tf, known, located, [parameter], digits)
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
+
+
+def _of_equations(
+    model: Model,
+    pair: tuple[str, str],
+    values: Mapping[str, ExactValue],
+    located: PoleZeroMap,
+    parameters: Sequence[ModelParameter],
+    digits: int,
+) -> tuple[RootDerivative, ...]:
+    """Return how roots of a function move whose closed form is large; see :func:`sensitivities`."""
+    at, names = EquationsAt(assemble_sparse(model), tuple(values.items())), tuple(p.name for p in parameters)
+    sides: tuple[tuple[Kind, SingularMatrix, Sequence[Root]], ...] = (
+        ("pole", SingularMatrix.of(at), located.poles),
+        ("zero", SingularMatrix.of(at, *pair), located.zeros),
+    )
+    moved: list[RootDerivative] = []
+    for kind, matrix, roots in sides:
+        upper: tuple[acb, dict[str, acb | None]] | None = None
+        for i, root in enumerate(roots):
+            status: Status = "certified"
+            known: dict[str, acb | None]
+            if root.is_zero and is_fixed_at_zero(at, pair, root, is_pole=kind == "pole"):
+                place, known = acb(0), dict.fromkeys(names, acb(0))
+            elif root.multiplicity > 1:
+                status = "multiple" if root.certified and not root.is_zero else "undecided"
+                place, known = root.enclosure(), {}
+            elif root.im < 0 and upper is not None and upper[0].conjugate().overlaps(root.enclosure()):
+                place = _conjugate(upper[0])
+                known = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}
+            else:
+                place, known = upper = derivatives(matrix, root, names, digits)
+            for parameter in parameters:
+                slope = known.get(parameter.name)
+                said: Status = "undecided" if status == "certified" and slope is None else status
+                moved.append(
+                    RootDerivative(kind, i, root, parameter, values[parameter.name], said, place, slope)
+                )
+    return tuple(moved)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,0 +1,174 @@
+"""How poles and zeros of frames and networks move with parameters, from the equations themselves.
+
+Input: the equations of a model with the parameters as symbols, their values, and the roots that were found.
+Output: a :class:`~symflex.analysis.sensitivity.RootDerivative` per root and parameter.
+
+Poles are where A(s) is singular, zeros where ``[A b; c d]`` is, bordered by an input and an output. With
+vectors X and Y that both sides of a singular matrix take to zero, ``ds/dp = -(Y dA/dp X) / (Y dA/ds X)``.
+For two masses m on springs k in a row to ground, X = Y = (1, 1.618...) at the first pole.
+
+Theorem: with any borders that make the matrix regular on a ball of s, the corner T(s, p) of its inverse
+vanishes just where the matrix is singular, and dT = -Y dA X there and everywhere on the ball (Govaerts 2000,
+chapter 3). So where dT/ds differs from 0 on the ball, a root in it is simple, an interval Newton step on T
+keeps it (Moore 1966), and its derivative is that of the implicit function.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_mat, acb_series
+
+from symflex.algebra import LAPLACE
+from symflex.analysis.modes.bound_equations import SingularPair, singular_pair
+from symflex.balls import at_centre, bits_for_digits, precision, precisions
+from symflex.budget import spend
+from symflex.model import with_numbers
+from symflex.roots.networks.at_rest import order_at_zero
+from symflex.roots.networks.cramer import CramerEquations
+from symflex.transfer.of_model import assemble_sparse
+
+if TYPE_CHECKING:
+    from symflex.algebra import Factored
+    from symflex.library.elements import LinearForm, Variable
+    from symflex.roots import Root
+    from symflex.transfer.equations_at import EquationsAt
+
+MOST_TIMES = 8
+"""Largest factor on the first precision; what is not enclosed then is not for want of bits."""
+BESIDE = acb(1.0625, 0.03125)
+"""Times a root it is a point where nothing vanishes because of the root."""
+Entries = dict[tuple[int, int], acb]
+
+
+@dataclass(frozen=True, eq=False)
+class SingularMatrix:
+    """``A(s)``, or ``[A b; c d]`` with an input and an output."""
+
+    at: EquationsAt
+    rows: tuple[LinearForm, ...]
+    columns: tuple[Variable, ...]  # what its columns multiply
+    _moving: dict[str, list[tuple[int, LinearForm]]] = field(default_factory=dict)
+
+    @staticmethod
+    def of(at: EquationsAt, output: str = "", source: str = "") -> SingularMatrix:
+        """Return the matrix whose singular points are the poles, or with names the zeros."""
+        equations = at.equations
+        rows = tuple(row.form for row in equations.rows)
+        if not output:
+            return SingularMatrix(at, rows, equations.unknowns)
+        read = next(o for o in equations.outputs if o.name == output)
+        given = next(v for v in equations.inputs if v.owner == source)
+        return SingularMatrix(at, (*rows, read.form), (*equations.unknowns, given))
+
+    def value(self, s: acb) -> acb_mat:
+        """Return the matrix on a ball of s."""
+        values, _ = self.at.generators(s)
+        places = {v: j for j, v in enumerate(self.columns)}
+        matrix = acb_mat(len(self.rows), len(self.columns))
+        for i, form in enumerate(self.rows):
+            for j, entry in self.at.row(form, values, places).items():
+                matrix[i, j] = at_centre(entry)
+        return matrix
+
+    def slope(self, s: acb, along: str) -> Entries:
+        """Return the derivatives of the entries in s or a parameter on a ball of s; zeros are left out."""
+        if along not in self._moving:
+            names = self.at.moving(along)
+            self._moving[along] = [
+                (i, form) for i, form in enumerate(self.rows) if any(_holds(c, names) for _, c in form.terms)
+            ]
+        values, _ = self.at.generators(s, along)
+        places = {v: j for j, v in enumerate(self.columns)}
+        slopes: Entries = {}
+        for i, form in self._moving[along]:
+            for j, entry in self.at.row(form, values, places).items():
+                if isinstance(entry, acb_series) and entry[1] != 0:
+                    slopes[i, j] = entry[1]
+        return slopes
+
+
+def _holds(value: Factored, names: frozenset[str]) -> bool:
+    return any(name in value.ring.index and value.depends_on(name) for name in names)
+
+
+@dataclass(eq=False)
+class MovingRoot:
+    """A root of a matrix, enclosed ever closer."""
+
+    matrix: SingularMatrix
+    place: acb  # holds one root [rad/s]
+
+    def _pair(self, s: acb) -> SingularPair | None:
+        middle = s.mid()
+        typical = self.matrix.value(middle * BESIDE if middle != 0 else acb(1))
+        return singular_pair(self.matrix.value(s), typical)
+
+    def refine(self) -> tuple[SingularPair, acb] | None:
+        """Enclose the root closer; return the vectors on it and dT/ds, None where these are not enclosed."""
+        enclosed = self._on_place()
+        while enclosed is not None:
+            middle = self.place.mid()
+            beside = self._pair(middle)
+            if beside is None:
+                break
+            step = middle - beside.corner / enclosed[1]
+            if not step.is_finite() or not step.overlaps(self.place):
+                break
+            closer = acb(step.real.intersection(self.place.real), step.imag.intersection(self.place.imag))
+            if not closer.rad() < self.place.rad() / 2:
+                break
+            self.place = closer
+            enclosed = self._on_place()
+        return enclosed
+
+    def _on_place(self) -> tuple[SingularPair, acb] | None:
+        spend()
+        pair = self._pair(self.place)
+        if pair is None:
+            return None
+        slope = pair.change(self.matrix.slope(self.place, LAPLACE))
+        return (pair, slope) if slope.is_finite() and not slope.contains(0) else None
+
+
+def derivatives(
+    matrix: SingularMatrix, root: Root, parameters: tuple[str, ...], digits: int
+) -> tuple[acb, dict[str, acb | None]]:
+    """Return the enclosure of a simple root and its derivatives; None those that are not enclosed."""
+    wanted = bits_for_digits(digits)
+    first = max(root.working_bits(), 2 * wanted)
+    moving = MovingRoot(matrix, root.enclosure())
+    known: dict[str, acb | None] = dict.fromkeys(parameters)
+    missing = list(parameters)
+    for bits in precisions(first, MOST_TIMES * first):
+        with precision(bits):
+            if (enclosed := moving.refine()) is None:
+                continue
+            pair, slope = enclosed
+            for name in missing:
+                derivative = -pair.change(matrix.slope(moving.place, name)) / slope
+                known[name] = derivative if derivative.is_finite() else known[name]
+        missing = [n for n in missing if (x := known[n]) is None or not _is_enclosed(x, wanted)]
+        if not missing:
+            break
+    return moving.place, known
+
+
+def is_fixed_at_zero(at: EquationsAt, pair: tuple[str, str], root: Root, *, is_pole: bool) -> bool:
+    """Tell whether as many roots are at 0 whatever the parameters, as of motions of a rigid body.
+
+    Orders are those of determinants modulo a prime, with random residues for the parameters, and with their
+    values: one is mistaken with odds of about 1 in 2^61.
+    """
+    orders = []
+    numeric = assemble_sparse(with_numbers(at.equations.model, (), dict(at.values), in_kernels=True))
+    for equations in (at.equations, numeric):
+        cramer = CramerEquations.of(equations, *pair)
+        size = len(cramer.entries) - is_pole
+        orders.append(order_at_zero(cramer, size, root.multiplicity))
+    return orders[0] is not None and orders[0] == orders[1]
+
+
+def _is_enclosed(value: acb, wanted: int) -> bool:
+    return bool(value == 0 or value.rel_accuracy_bits() >= wanted)
