@@ -183,7 +183,7 @@ def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
     line = fit.problem.lines[response]
     every = line.every.measured
     with np.errstate(divide="ignore"):
-        left = _decibels(fit.values(response) - every.values)
+        left = _decibels(line.every.rest(fit.values(response)))
     wild = fit.left_out(response)
     kept = np.delete(np.arange(left.size), wild)
     axes.plot(every.frequency_hz[kept], left[kept], ".", color=DATA_COLOUR, markersize=1.6)
@@ -241,6 +241,8 @@ def _draw_data(
     name = "synthetic data" if measured.is_synthetic else "measured"
     aside = np.degrees(np.angle(measured.values / model))
     for axes, values, label in ((top, _decibels(measured.values), name), (bottom, phase + aside, None)):
+        if axes is bottom and measured.is_magnitude:
+            break
         axes.plot(measured.frequency_hz, values, ".", color=DATA_COLOUR, markersize=2.4, label=label)
 
 
@@ -271,6 +273,6 @@ def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
     return np.asarray(phase - 360 * np.round(phase[0] / 360))
 
 
-def _decibels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+def _decibels(values: Complex | Real) -> npt.NDArray[np.float64]:
     """Return ``20 log10(abs(values))``."""
     return np.asarray(20 * np.log10(np.abs(values)))

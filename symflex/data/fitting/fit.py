@@ -259,6 +259,9 @@ def _fit(
     has_base = any(base.tf for base in bases)
     is_lag_free = given.is_lag_free or given.is_lag_signed
     free = Free(given.is_gain_free, is_lag_free, given.is_delay_free, given.is_lag_signed)
+    if free.delay and any(one.is_magnitude for one in measured):
+        message = "a dead time leaves no trace in a magnitude without a phase"
+        raise UsageError(Diagnostic("SF902", message, None, "leave --delay out"))
     problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
@@ -267,7 +270,9 @@ def _fit(
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
             hint = "add damping to the base, or choose a --band without this frequency"
             raise FitError(Diagnostic("SF615", message, None, hint))
-    problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
+    problem = problem.at(
+        [_kept(line, wild_lines(line.omega, line.outline / line.base_at_lines)) for line in problem.lines]
+    )
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
     stages = Stages()
     candidate, problem, scores, reasons = _chosen(problem, given, most, stages)
@@ -355,7 +360,7 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
         every = line.every
         factor = candidate.refined.resonances.factor(r, every.observation.omega)
         model = every.observation(every.base * factor)
-        off = np.abs(model - every.measured.values) / line.deviation_of_every()
+        off = np.abs(every.rest(model)) / line.deviation_of_every()
         # What is larger than the noise everywhere is no matter of single lines.
         off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
         lines.append(_kept(every, np.flatnonzero(off > WILD)))

@@ -33,7 +33,7 @@ from scipy.linalg import block_diag
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
 from symflex.data.fitting.problem import FitProblem, FittedLines
-from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
+from symflex.data.fitting.resonances import Real, Resonances, Values, Whole
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""
@@ -72,7 +72,7 @@ class Refined:
 
     resonances: Resonances  # the parameters
     has_converged: bool  # false when the steps ran out
-    residuals: tuple[Complex, ...]  # per response, in units of the standard deviation where that is known
+    residuals: tuple[Values, ...]  # per response, in units of the standard deviation where that is known
     # shape (p, p): Of the packed parameters; None when the lines do not determine all of them.
     covariance: Real | None
     # What correlated neighbouring lines multiply the variance of a mean by; 1 for independent lines.
@@ -87,7 +87,7 @@ class Refined:
     @property
     def reduced(self) -> float:
         """The sum of squares per degree of freedom; 1 when the model is right and deviations are known."""
-        freedom = 2 * sum(r.size for r in self.residuals) - self.parameters
+        freedom = sum(_parts(r).size for r in self.residuals) - self.parameters
         return self.cost / freedom if freedom > 0 else float("nan")
 
 
@@ -120,6 +120,7 @@ def refine_directly(
 def _descend(
     problem: FitProblem, start: Resonances, kind: str, steps: int, tolerance: float
 ) -> tuple[Resonances, bool]:
+    start = _minimum_phase(problem, start)
     packed = start.pack(problem.free)
     if not packed.size:
         return start, True
@@ -130,21 +131,35 @@ def _descend(
         low[at["lag"]], high[at["lag"]] = -np.inf if problem.free.lag_sign else 0.0, np.inf
         low[at["zeta_z"]], high[at["zeta_z"]] = -np.inf, np.inf
 
-    def residual(vector: Real) -> list[Complex]:
+    def residual(vector: Real) -> list[Values]:
         return _residuals(problem, start.unpack(vector, problem.free), kind)
 
-    def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
+    def reduced(vector: Real, rest: list[Values]) -> tuple[Real, Real]:
         return _reduced(problem, start.unpack(vector, problem.free), rest, kind)
 
     solution, has_converged = search(
         residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance
     )
-    return start.unpack(solution, problem.free), has_converged
+    return _minimum_phase(problem, start.unpack(solution, problem.free)), has_converged
+
+
+def _minimum_phase(problem: FitProblem, modes: Resonances) -> Resonances:
+    """Return the function with zeros in the left half plane where magnitudes alone were measured."""
+    is_alone = np.array([line.parts == 1 for line in problem.lines])
+    if not is_alone.any():
+        return modes
+    other = modes.minimum_phase()
+    mixed = {
+        name: np.where(is_alone.reshape(-1, *[1] * (own.ndim - 1)), getattr(other, name), own)
+        for name in ("omega_z", "zeta_z", "real_z", "gain")
+        for own in (getattr(modes, name),)
+    }
+    return replace(modes, **mixed)
 
 
 def search(
-    residual: Callable[[Real], list[Complex]],
-    reduced: Callable[[Real, list[Complex]], tuple[Real, Real]],
+    residual: Callable[[Real], list[Values]],
+    reduced: Callable[[Real, list[Values]], tuple[Real, Real]],
     x: Real,
     limits: tuple[Real, Real],
     steps: int,
@@ -194,7 +209,7 @@ def search(
     return x, False
 
 
-def _cost(rest: list[Complex]) -> float:
+def _cost(rest: list[Values]) -> float:
     return float(sum(np.vdot(one, one).real for one in rest))
 
 
@@ -213,7 +228,7 @@ def _step(matrix: Real, right: Real, damped: Real) -> Real:
     return np.asarray(np.linalg.solve(upper[:size, :size], upper[:size, size]) / damped, np.float64)
 
 
-def _reduced(problem: FitProblem, modes: Resonances, rest: list[Complex], kind: str) -> tuple[Real, Real]:
+def _reduced(problem: FitProblem, modes: Resonances, rest: list[Values], kind: str) -> tuple[Real, Real]:
     """Return the linear equations of a step: a triangle for each response, shape (k, p), and their right."""
     size = modes.size(problem.free)
     rows, right = [], []
@@ -227,26 +242,32 @@ def _reduced(problem: FitProblem, modes: Resonances, rest: list[Complex], kind: 
     return np.concatenate(rows), np.concatenate(right)
 
 
-def _parts(values: Complex) -> Real:
-    return np.concatenate((values.real, values.imag))
+def _parts(values: Values) -> Real:
+    """Return real and imaginary parts, where there are such."""
+    return np.concatenate((values.real, values.imag)) if np.iscomplexobj(values) else values.real
 
 
-def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[Complex]:
+def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[Values]:
     pairs = [(problem.values(resonances, r), line) for r, line in enumerate(problem.lines)]
     if kind == "complex":
-        return [(model - line.measured.values) / _absolute(line) for model, line in pairs]
+        return [line.rest(model) / _absolute(line) for model, line in pairs]
+    ratios = [(model / line.measured.values, line) for model, line in pairs]
     return [
-        np.asarray(np.log(model / line.measured.values) / _capped(line.deviation), complex)
-        for model, line in pairs
+        np.log(ratio if line.parts > 1 else np.abs(ratio)) / _capped(line.deviation) for ratio, line in ratios
     ]
 
 
-def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> Iterator[Complex]:
+def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> Iterator[Values]:
     """Yield the derivatives of each response by the parameters it depends on."""
     for r, line in enumerate(problem.lines):
         model, slopes = problem.linearised(resonances, r)
-        scale = model * _capped(line.deviation) if kind == "logarithmic" else _absolute(line)
-        yield np.asarray(slopes / scale[:, None], np.complex128)
+        scale = model * _capped(line.deviation)
+        if kind != "logarithmic":
+            # The magnitude changes by what is in phase with the model.
+            turn = np.exp(1j * np.angle(model) * (line.parts == 1))
+            scale = np.asarray(_absolute(line) * turn, np.complex128)
+        scaled = np.asarray(slopes / scale[:, None], np.complex128)
+        yield scaled if line.parts > 1 else scaled.real
 
 
 def _capped(deviation: Real | None) -> Real:
@@ -263,10 +284,12 @@ def _judged(problem: FitProblem, modes: Resonances, *, has_converged: bool) -> R
     residuals = _residuals(problem, modes, kind)
     total = modes.size(problem.free)
     with np.errstate(all="ignore"):
-        sums = _Sums(total, sum(r.size for r in residuals), sum(float(np.vdot(r, r).real) for r in residuals))
+        sums = _Sums(total, problem.size, _cost(residuals))
         shares = _correlation(residuals, sums.power)
         for r, (line, slopes) in enumerate(zip(problem.lines, _slopes(problem, modes, kind), strict=True)):
-            score = score_covariance(line, line.base * modes.factor(r, line.observation.omega), slopes)
+            inside = line.base * modes.factor(r, line.observation.omega)
+            turn = 1 if line.parts > 1 else np.exp(1j * np.angle(problem.values(modes, r)))[:, None]
+            score = score_covariance(line, inside, slopes * turn)
             sums.add(modes.columns(r, problem.free), slopes, score, len(shares))
         covariance, correlation = _covariance(sums, shares)
     return Refined(modes, has_converged, tuple(residuals), covariance, correlation, total)
@@ -299,7 +322,9 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
             bends += [even * ratio**4, even * ratio**6, odd * ratio**3, odd * ratio**5]
         values, deviation = problem.values(modes, r), _absolute(line)
         bent = NEXT_TERM * np.column_stack(bends) * (values / deviation)[:, np.newaxis]
-        rest = (values - line.measured.values) / deviation
+        rest = line.rest(values) / deviation
+        if line.parts == 1:
+            bent = (bent / np.exp(1j * np.angle(values))[:, np.newaxis]).real.astype(np.complex128)
         normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
         gradient[columns] += (np.conj(slopes).T @ rest).real
         cross = np.zeros((size, len(bends)))
@@ -324,13 +349,13 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
 class _Sums:
     """Sums over lines that a covariance is made of; a response adds to those of its own parameters."""
 
-    def __init__(self, size: int, lines: int, power: float) -> None:
-        self.lines, self.power = lines, power
+    def __init__(self, size: int, values: int, power: float) -> None:
+        self.values, self.power = values, power
         self.normal: Real = np.zeros((size, size))
         self.score: Real | None = np.zeros((size, size))
         self.crossed: list[Real] = []
 
-    def add(self, columns: Whole, slopes: Complex, score: Real | None, lags: int) -> None:
+    def add(self, columns: Whole, slopes: Values, score: Real | None, lags: int) -> None:
         """Add the sums over the lines of one response."""
         at = np.ix_(columns, columns)
         self.normal[at] += (np.conj(slopes).T @ slopes).real
@@ -345,7 +370,7 @@ class _Sums:
             self.crossed[lag - 1][at] += cross + cross.T
 
 
-def _correlation(residuals: list[Complex], power: float) -> list[tuple[float, int]]:
+def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int]]:
     """Return the correlation of residuals 1, 2, ... lines apart, and of how many pairs it is a mean.
 
     It ends at the first that could be chance.
@@ -377,7 +402,7 @@ def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | No
     if not count:
         return np.zeros((0, 0)), 1.0
     size = np.sqrt(np.diag(sums.normal))
-    freedom = 2 * sums.lines - count
+    freedom = sums.values - count
     if not np.isfinite(sums.normal).all() or freedom <= 0:
         return None, 1.0
     size = np.where(size > 0, size, 1.0)

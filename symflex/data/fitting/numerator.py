@@ -124,7 +124,7 @@ class _System:
 
     def __init__(self, problem: FitProblem, response: int, poles: Complex, every: int = 1) -> None:
         line = problem.lines[response]
-        omega, self.values = line.omega[::every], line.ratio[::every]
+        omega, self.values, self.parts = line.omega[::every], line.ratio[::every], line.parts
         weight = 1 / np.abs(self.values)
         if line.deviation is not None:
             weight = weight / line.deviation[::every]
@@ -148,7 +148,7 @@ class _System:
 
     def bic(self, rest: Real, shapes: list[tuple[int, int]]) -> Real:
         """Return the BIC of sums of squares, one for each power of s and number of zeros."""
-        size = 2 * self.size
+        size = self.parts * self.size
         parameters = np.array([zeros + 1 for _, zeros in shapes])
         return np.asarray(size * np.log(rest / size + 1e-9) + parameters * np.log(size), np.float64)
 

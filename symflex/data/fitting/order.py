@@ -243,7 +243,7 @@ def chosen_order(
         best = _continued(problem, thin, by_order[score.order], tried, given.start, stages)
         status = "usable" if best.failure is None else "failed"
         if status == "usable" and score.order and modes is None:
-            is_weak = _is_weak(thin, best.refined) or not _is_founded(scores, score, criterion)
+            is_weak = _is_weak(thin, best.refined) or not _is_founded(thin, scores, score, criterion)
             status = "weak" if is_weak else status
         scores = [replace(s, status=status) if s.order == score.order else s for s in scores]
         if status == "usable":
@@ -300,10 +300,18 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
                 attempt(order)
 
 
-def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
-    """Return whether there is strong evidence for so many: one more may have found its place in the noise."""
-    fewer = [_value(s, criterion) for s in scores if s.order < score.order and s.status != "failed"]
-    return not fewer or _value(score, criterion) < min(fewer) - CLEAR
+def _is_founded(problem: FitProblem, scores: Sequence[Score], score: Score, criterion: str) -> bool:
+    """Return whether there is strong evidence for so many poles.
+
+    Noise looks like a resonance on some of the lines more often than on a given one, as many times as there
+    are lines (Sidak 1967): one more needs evidence against all of them.
+    """
+    chances = 2 * float(np.log(problem.count))
+    return all(
+        _value(score, criterion) < _value(s, criterion) - CLEAR - chances * (score.count > s.count)
+        for s in scores
+        if s.order < score.order and s.status != "failed"
+    )
 
 
 def _is_weak(problem: FitProblem, refined: Refined) -> bool:
@@ -393,8 +401,8 @@ def _nothing(problem: FitProblem) -> Candidate:
 
 def _merit(problem: FitProblem, refined: Refined, correlation: float = 1.0) -> float:
     """Return the BIC of a minimum, for fits of the same lines with other zeros; strange ones cost."""
-    size = 2 * problem.count / max(correlation, 1.0)
-    fit = size * np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE)
+    size = problem.size / max(correlation, 1.0)
+    fit = size * np.log(refined.cost / problem.size + NEGLIGIBLE)
     merit = float(fit + refined.parameters * np.log(size))
     modes = refined.resonances
     improper = 0 if problem.has_base else int(modes.is_improper.sum())
@@ -563,7 +571,7 @@ def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
     if reference is None:
         return 1.0
     spare = max(reference.parameters - refined.parameters, 1)
-    freedom = max(2 * problem.count - reference.parameters, 1)
+    freedom = max(problem.size - reference.parameters, 1)
     ratio = (refined.cost - reference.cost) / spare / (reference.cost / freedom)
     ratio /= max(refined.correlation, 1.0)
     return float(fdtrc(spare, freedom, ratio)) if ratio > 0 else 1.0
@@ -572,9 +580,9 @@ def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
 def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Score:
     """Return the criteria, with as many independent values as correlated lines are worth."""
     refined = candidate.refined
-    size = 2 * problem.count / max(correlation, 1.0)
+    size = problem.size / max(correlation, 1.0)
     parameters = refined.parameters
-    fit = size * float(np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE))
+    fit = size * float(np.log(refined.cost / problem.size + NEGLIGIBLE))
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
     bic = fit + parameters * float(np.log(size))

@@ -28,9 +28,9 @@ from scipy.signal import medfilt
 
 from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
 from symflex.data.fitting.problem import FitProblem, FittedLines
-from symflex.data.fitting.resonances import Complex, Real, Resonances
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Values
 
-Verdict = Literal["minimum", "undetermined", "nonminimum"]
+Verdict = Literal["minimum", "undetermined", "nonminimum", "assumed"]
 
 LIMIT_DEGREES = 10.0
 """Phases part beyond this, or beyond the noise where that is larger."""
@@ -74,7 +74,7 @@ class PhaseTest:
     magnitude_db: float  # root mean square of the magnitude's own misfit [dB]
     # ``minimum``: a minimum-phase function has magnitude and phase as measured. ``nonminimum``: none of this
     # order has. ``undetermined``: only one with a lag linear in frequency has, or none describes the
-    # magnitude, so that its phase says nothing.
+    # magnitude, so that its phase says nothing. ``assumed``: no phase was measured.
     verdict: Verdict
     # The minimum-phase function found by fitting magnitude and phase, where the magnitude alone left the
     # phase open and there is one.
@@ -92,6 +92,8 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
 
     Where they part, functions with zeros in the left half plane are fitted to magnitude and phase together.
     """
+    if problem.lines[response].measured.is_magnitude:
+        return replace(not_judged(problem, response, fitted), verdict="assumed")
     search = _PhaseSearch(problem, response, fitted)
     line = search.line
     alone, _ = search.found(search.mirrored, "magnitude")
@@ -145,7 +147,9 @@ class _PhaseSearch:
         self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
         self.weight: Real = 1 / np.hypot(self.noise, CAP)
         self.wanted: Real = np.log(np.abs(self.line.measured.values))
-        self.mirrored = _mirrored(fitted.one(response))
+        mirrored = fitted.one(response).minimum_phase()
+        zeta = np.maximum(mirrored.zeta_z, LOWEST_DAMPING)
+        self.mirrored = replace(mirrored, zeta_z=zeta, gain=fitted.one(response).gain)
 
     def level(self, model: Complex) -> Real:
         """Return the logarithm of the model's magnitude over the measured one."""
@@ -177,7 +181,7 @@ class _PhaseSearch:
             plain[damping] = np.exp(plain[damping])
             return start.unpack(plain[:-1] if kind == "lag" else plain, free)
 
-        def residual(vector: Real) -> list[Complex]:
+        def residual(vector: Real) -> list[Values]:
             model = self.single.values(resonances(vector), 0)
             level = (self.level(model) * self.weight).astype(np.complex128)
             if kind == "magnitude":
@@ -187,7 +191,7 @@ class _PhaseSearch:
             aside = np.angle(model / self.line.measured.values) * self.weight
             return [np.asarray(level + 1j * aside, np.complex128)]
 
-        def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
+        def reduced(vector: Real, rest: list[Values]) -> tuple[Real, Real]:
             now = resonances(vector)
             model, by = self.single.linearised(now, 0)
             by = by / model[:, None]
@@ -204,14 +208,6 @@ class _PhaseSearch:
             best, _ = search(residual, reduced, packed, (packed - EDGE, packed + EDGE), STEPS, ROUGH)
         lag = float(np.clip(best[-1], -MOST_LAG, MOST_LAG) / omega[-1]) if kind == "lag" else 0.0
         return resonances(best).ordered(), lag
-
-
-def _mirrored(fitted: Resonances) -> Resonances:
-    """Return the function with the same magnitude and all zeros in the left half plane."""
-    zeta = np.abs(fitted.zeta_z)
-    # Real zeros of opposite sign, mirrored, are an overdamped pair.
-    zeta = np.where(fitted.omega_z < 0, np.hypot(1, zeta), np.maximum(zeta, LOWEST_DAMPING))
-    return replace(fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta, real_z=np.abs(fitted.real_z))
 
 
 def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:

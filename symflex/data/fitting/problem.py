@@ -18,7 +18,7 @@ import numpy as np
 
 from symflex.data.fitting.lines import telling_lines, written_step
 from symflex.data.fitting.observation import Observation, observe
-from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
+from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Values, Whole
 from symflex.data.fitting.starts import generous_fit
 from symflex.data.measurement import MeasuredResponse
 
@@ -68,6 +68,30 @@ class FittedLines:
         return self.measured.values / self.base_at_lines
 
     @property
+    def parts(self) -> int:
+        """How many real numbers each line is: two, or a magnitude alone."""
+        return 1 if self.measured.is_magnitude else 2
+
+    @property
+    def outline(self) -> Complex:
+        """What was measured: without a phase where none was."""
+        values = self.measured.values
+        return values if self.parts > 1 else np.abs(values).astype(np.complex128)
+
+    def rest(self, model: Complex) -> Values:
+        """Return how far values of a model are off, real where magnitudes alone were measured."""
+        if self.measured.is_magnitude:
+            return np.asarray(np.abs(model) - np.abs(self.measured.values), np.float64)
+        return np.asarray(model - self.measured.values, np.complex128)
+
+    def rephased(self, model: Complex) -> FittedLines:
+        """Return magnitudes alone with the phase of a model: what it is off then is a magnitude too."""
+        if not self.measured.is_magnitude:
+            return self
+        turned = np.abs(self.measured.values) * np.exp(1j * np.angle(model))
+        return replace(self, measured=replace(self.measured, values=turned), whole=self.every)
+
+    @property
     def every(self) -> FittedLines:
         """All lines of the measurement."""
         return self.whole or self
@@ -106,10 +130,12 @@ class FitProblem:
     is_noise_estimated: bool = False
     # Of the estimate: how well a function without structure describes the lines.
     reference: StructurelessFit | None = None
-    count: int = field(init=False)
+    count: int = field(init=False)  # lines
+    size: int = field(init=False)  # real numbers that they are
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "count", sum(line.measured.values.size for line in self.lines))
+        object.__setattr__(self, "count", sum(line.omega.size for line in self.lines))
+        object.__setattr__(self, "size", sum(line.parts * line.omega.size for line in self.lines))
         if not self.delays:
             object.__setattr__(self, "delays", (0.0,) * len(self.lines))
 
@@ -132,6 +158,11 @@ class FitProblem:
     def band(self) -> tuple[float, float]:
         """The lowest and the highest frequency measured [rad/s]."""
         return min(float(x.omega[0]) for x in self.lines), max(float(x.omega[-1]) for x in self.lines)
+
+    def rephased(self, values: Sequence[Complex]) -> FitProblem:
+        """Return the problem whose magnitudes without a phase have that of these values."""
+        lines = (line.rephased(model) for line, model in zip(self.lines, values, strict=True))
+        return replace(self, lines=tuple(lines))
 
     def at(self, places: Sequence[Whole]) -> FitProblem:
         """Return the problem with some of the lines of each response."""
@@ -245,10 +276,10 @@ def with_rough_noise(problem: FitProblem) -> FitProblem:
         if line.deviation is not None or line.omega.size < FEWEST:
             lines.append(line)
             continue
-        x, y = line.omega, line.measured.values
+        x, y = line.omega, line.outline
         share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
         between = y[1:-1] - (1 - share) * y[:-2] - share * y[2:]
-        power = np.abs(between) ** 2 / (2 * (1 + share**2 + (1 - share) ** 2))
+        power = np.abs(between) ** 2 / (line.parts * (1 + share**2 + (1 - share) ** 2))
         size = np.abs(y)
         variance = _variance(np.pad(power, 1, mode="edge"), x, size)
         lines.append(replace(line, deviation=np.maximum(np.sqrt(variance) / size, LEAST)))
@@ -261,10 +292,10 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
     So far they are rough. ``count`` resonances are looked for, None when that is open. The poles of the
     function without structure are found on ``most_lines`` lines of each response, and its values on all.
     """
-    if all(line.measured.coherence is not None for line in problem.lines):
+    if all(line.measured.coherence is not None and line.parts > 1 for line in problem.lines):
         return problem
     thin = problem.thinned(most_lines)
-    size = 2 * thin.count
+    size = thin.size
     best: tuple[float, int, Complex] | None = None
     worse = 0
     for pairs in range(1 if count is None else count, MOST_PAIRS if count is None else count + 4):
@@ -274,7 +305,7 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
         rest = 0.0
         for v, line in zip(values, thin.lines, strict=True):
             scale = 1.0 if line.deviation is None else line.deviation
-            rest += float(np.sum(np.abs((v / line.measured.values - 1) / scale) ** 2))
+            rest += float(np.sum(np.abs(line.rest(v) / np.abs(line.measured.values) / scale) ** 2))
         score = size * np.log(max(rest, LEAST * size)) + parameters * np.log(size)
         if best is None or score < best[0]:
             best, worse = (float(score), pairs, poles), 0
@@ -285,22 +316,22 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
     if best is None:
         return problem
     values, parameters, _ = generous_fit(problem, best[1], best[2])
-    return estimated(problem, values, parameters)
+    return estimated(problem.rephased(values), values, parameters)
 
 
 def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> FitProblem:
     """Return the problem with deviations of what these values leave, and how well they describe the lines."""
-    freedom = max(1 - parameters / (2 * problem.count), 0.2)
+    freedom = max(1 - parameters / problem.size, 0.2)
     lines, cost = [], 0.0
     for model, line in zip(values, problem.lines, strict=True):
         deviation = line.deviation
         if deviation is None or line.measured.coherence is None:
-            power = np.abs(model - line.measured.values) ** 2 / 2
+            power = np.abs(line.rest(model)) ** 2 / line.parts
             variance = _variance(power, line.omega, np.abs(model), rounding(line, model)) / freedom
             size = np.abs(line.measured.values)
             deviation = np.maximum(np.sqrt(variance) / size, LEAST)
         lines.append(replace(line, deviation=deviation))
-        rest = np.abs(model - line.measured.values) / (deviation * np.abs(line.measured.values))
+        rest = np.abs(line.rest(model)) / (deviation * np.abs(line.measured.values))
         cost += float(np.sum(rest**2))
     return replace(
         problem, lines=tuple(lines), is_noise_estimated=True, reference=StructurelessFit(cost, parameters)

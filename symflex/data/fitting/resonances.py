@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
+Values = Complex | Real
 Whole = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
@@ -169,6 +170,14 @@ class Resonances:
             zeta_z=self.zeta_z[:, : omega_p.size],
             real_p=np.array(sorted(corners)[2 * n :]),
         ).ordered()
+
+    def minimum_phase(self) -> Resonances:
+        """Return the function with the same magnitude, a positive gain and no zeros on the right."""
+        zeta = np.abs(self.zeta_z)
+        # Real zeros of opposite sign, mirrored, are an overdamped pair.
+        zeta = np.where(self.omega_z < 0, np.hypot(1, zeta), zeta)
+        sizes = {name: np.abs(getattr(self, name)) for name in ("omega_z", "real_z", "gain")}
+        return replace(self, zeta_z=zeta, **sizes)
 
     def one(self, response: int) -> Resonances:
         """Return those of one response."""

@@ -57,6 +57,8 @@ SPARE = 2
 """Poles, or pairs of them, more than are looked for, which noise or a delay may take up."""
 GENEROUS = 10
 """Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
+REPHASED = 6
+"""Rounds in which magnitudes without a phase take that of the function fitted to them."""
 LARGEST_START = 0.3
 """Damping ratio beyond which a pole counts less and less as a resonance."""
 FREE_POWERS = (-2, -1, 0, 1, 2)
@@ -241,13 +243,16 @@ def generous_fit(
     Its poles are shared, and found unless they are given; each response has residues and powers of s of its
     own.
     """
-    if poles is None:
-        poles = relocated(problem, spread(*problem.band, 2 * pairs), GENEROUS)
-    values = []
-    for r, line in enumerate(problem.lines):
-        basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
-        solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
-        values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
+    is_given = poles is not None
+    poles = spread(*problem.band, 2 * pairs) if poles is None else poles
+    for _ in range(REPHASED if any(line.parts == 1 for line in problem.lines) else 1):
+        poles = poles if is_given else relocated(problem, poles, GENEROUS)
+        values = []
+        for r, line in enumerate(problem.lines):
+            basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
+            solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
+            values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
+        problem = problem.rephased(values)
     return values, 2 * pairs + len(values) * (2 * pairs + len(_powers(problem))), poles
 
 

@@ -13,6 +13,8 @@ from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 from symflex.print.text import INDENT, Passage, passages_text
 
 SCHEMA: Final = "symflex.fit/1"
+OPEN: Final = ("undetermined", "assumed")
+"""Verdicts that leave open whether a function is minimum phase."""
 ERROR_DIGITS: Final = 2
 STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
@@ -56,7 +58,9 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
         yield _shapes(shapes)
     misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
     residuals = [
-        f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB and {turn:.2g} degrees rms"
+        f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB"
+        + ("" if fit.measured[r].is_magnitude else f" and {turn:.2g} degrees")
+        + " rms"
         for r, (level, turn) in enumerate(misfits)
     ]
     yield Passage([*residuals, INDENT + _accuracy(fit)])
@@ -204,9 +208,9 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "real_zeros": [_real(modes.real_z[r], errors.real_z[r])] if np.isfinite(modes.real_z[r]) else [],
         "start": [{"omega_p": p, "zeta_p": x, "omega_z": _finite(z), "zeta_z": y} for p, x, z, y in begun],
         "residual_db": fit.misfit_db(r),
-        "residual_degrees": fit.misfit_degrees(r),
+        "residual_degrees": None if measured.is_magnitude else fit.misfit_degrees(r),
         "phase_test": {
-            "minimum_phase": None if test.verdict == "undetermined" else test.is_minimum_phase,
+            "minimum_phase": None if test.verdict in OPEN else test.is_minimum_phase,
             "verdict": test.verdict,
             "lag_s": test.lag_s,
             "magnitude_residual_db": test.magnitude_db,
@@ -320,6 +324,8 @@ def _accuracy(fit: ResonanceFit) -> str:
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
     own = " (the base with its own phase)" if fit.bases[r].path else ""
+    if test.verdict == "assumed":
+        return "magnitude only: minimum phase is assumed"
     if not test.bands and not test.is_minimum_phase:
         return "undetermined: noise hides the phase" if test.magnitude_db else "there was no time for it"
     if not test.bands:

@@ -285,7 +285,7 @@ def _responses(
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
             called, one.frequency_hz, one.values, one.coherence, averages, window, unit, is_synthetic,
-            notes, tuple(guesses),
+            notes, tuple(guesses), is_magnitude=one.is_magnitude,
         )  # fmt: skip
         responses.append(checked_response(response, name, lambda *_: None))
     return responses

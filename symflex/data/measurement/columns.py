@@ -173,6 +173,7 @@ class Assembled:
     coherence: Real | None
     unit: str
     columns: tuple[DataColumn, ...]  # frequency, value, coherence
+    is_magnitude: bool = False  # whether there is no phase
 
 
 @lru_cache(1000)
@@ -391,7 +392,8 @@ def assembled(
             if inverse:  # poles of the one are zeros of the other
                 guesses.append(f"'{label[:30]}' is the reciprocal of '{inverse.label[:30]}' and is left out")
             elif not any(np.array_equal(values, m.values, equal_nan=True) for m in same):
-                made.append(Assembled(label, lines, values, shares, unit, kept))
+                is_magnitude = not group.keys() & {"complex", "real", "phase"}
+                made.append(Assembled(label, lines, values, shares, unit, kept, is_magnitude))
     if not made:
         raise DataError(_missing(columns, file, header))
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
@@ -667,8 +669,7 @@ def _values(
         if "phase" in group:
             size, phase = _decided(group["magnitude"], group["phase"], lines, guesses, columns)
         else:
-            said = "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
-            guesses.append(said)
+            guesses.append("magnitude only: minimum phase is assumed")
             size = _plain_size(group.get("power") or group["magnitude"])
             phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)

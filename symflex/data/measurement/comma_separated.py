@@ -106,6 +106,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
         response = MeasuredResponse(
             called, one.frequency_hz, one.values, one.coherence, averages, window_of(told.get("window", "")),
             unit or one.unit, is_synthetic, comments, tuple(dict.fromkeys(guesses)),
+            is_magnitude=one.is_magnitude,
         )  # fmt: skip
         frequency, value, *_ = one.columns
         places = {"frequency": frequency.place, "value": value.place, "coherence": one.columns[-1].place}

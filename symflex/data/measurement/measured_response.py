@@ -46,6 +46,8 @@ class MeasuredResponse:
         What was assumed when the file was read, because it does not say so.
     is_record : bool
         True when it was estimated from a record in time.
+    is_magnitude : bool
+        True when no phase was measured: that of the values belongs to a minimum-phase function.
 
     Notes
     -----
@@ -69,6 +71,7 @@ class MeasuredResponse:
     notes: tuple[str, ...] = field(default=(), repr=False)
     guesses: tuple[str, ...] = field(default=(), repr=False)
     is_record: bool = field(default=False, repr=False)
+    is_magnitude: bool = field(default=False, repr=False)
 
     def __repr__(self) -> str:
         ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"
