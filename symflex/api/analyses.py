@@ -11,7 +11,17 @@ from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
 from symflex.api.plots import Plotted
 from symflex.api.response import FrequencyResponse, TimeResponse
-from symflex.api.root import Mode, PoleZeroMap, Residue, ResidueTable, Root, RootTable, plain_mode
+from symflex.api.root import (
+    Mode,
+    PoleZeroMap,
+    Residue,
+    ResidueTable,
+    Root,
+    RootTable,
+    Sensitivity,
+    SensitivityTable,
+    plain_mode,
+)
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions, band_ends, checked_digits, duration
@@ -19,6 +29,8 @@ from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from symflex import roots as roots_room
@@ -290,6 +302,42 @@ class Analyses(Plotted):
         region = region_of(RootsOptions(None, modes, mode, band))
         with budget_of(budget).besides().entered():
             return ResidueTable(Residue(r) for r in find_residues(self.bound, region, checked_digits(digits)))
+
+    def sensitivities(
+        self,
+        modes: int | None = None,
+        *,
+        parameters: Sequence[str] = (),
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> tuple[Sensitivity, ...]:
+        """Return how poles and zeros move with parameters, poles first.
+
+        Parameters
+        ----------
+        modes, mode, band, budget : optional
+            As for :meth:`poles`; the budget is for the search for the roots.
+        parameters : sequence of str
+            By default all parameters on which the function depends.
+        digits : int
+            Correct significant digits of every derivative.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter.
+        BudgetError
+            As for :meth:`poles`.
+        """
+        from symflex.analysis.sensitivity.sensitivity import sensitivities  # not needed for roots
+
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        model = self.bound.source.model
+        return SensitivityTable(
+            Sensitivity(m) for m in sensitivities(model, self.bound, located, parameters, digits)
+        )
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None

@@ -12,7 +12,6 @@ from symflex import pipeline
 from symflex.api.analyses import Analyses
 from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
-from symflex.api.root import Sensitivity, SensitivityTable
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes, refuse_attribute
 from symflex.errors import Diagnostic, UsageError, counted
@@ -31,7 +30,7 @@ from symflex.transfer import BoundNested, bind_nested
 from symflex.transfer.double_value import FIRST_BITS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     import numpy as np
     import sympy
@@ -438,42 +437,6 @@ class BoundTransferFunction(Toolboxes, Analyses):
         given = exact_values(u, len(exactly))
         response = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
         return face_of(TimeResponse, response)
-
-    def sensitivities(
-        self,
-        modes: int | None = None,
-        *,
-        parameters: Sequence[str] = (),
-        mode: int | None = None,
-        band: tuple[float, float] | None = None,
-        digits: int = 15,
-        budget: float | None = None,
-    ) -> tuple[Sensitivity, ...]:
-        """Return how poles and zeros move with parameters, poles first.
-
-        Parameters
-        ----------
-        modes, mode, band, budget : optional
-            As for :meth:`poles`; the budget is for the search for the roots.
-        parameters : sequence of str
-            By default all parameters on which the function depends.
-        digits : int
-            Correct significant digits of every derivative.
-
-        Raises
-        ------
-        UsageError
-            SF902 for an unknown parameter.
-        BudgetError
-            As for :meth:`poles`.
-        """
-        from symflex.analysis.sensitivity.sensitivity import sensitivities  # not needed for roots
-
-        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        model = self.bound.source.model
-        return SensitivityTable(
-            Sensitivity(m) for m in sensitivities(model, self.bound, located, parameters, digits)
-        )
 
     def explain_zeros(
         self,
