@@ -35,6 +35,8 @@ WITH_ROOTS = (
     "stability of a loop",
     "a value at another s",
     "a response at omega <= 0",
+    "a response in time",
+    "a step response",
 )
 """What is available with roots of s."""
 LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
@@ -122,7 +124,7 @@ def check_causal(model: object, what: str) -> None:
     """
     if getattr(model, "root", None) is not None and what not in WITH_ROOTS:
         message = f"{what} is not available yet for models with roots of s, such as sqrt(s)"
-        hint = "formulas, frequency responses, poles, zeros, stable gains and code are"
+        hint = "formulas, frequency responses, responses in time, poles, zeros, stable gains and code are"
         raise ModelError(Diagnostic("SF910", message, None, hint))
     unit = getattr(model, "imaginary", None)
     if unit is None:

@@ -201,5 +201,5 @@ def _delays(bound: AnyBoundFunction) -> list[float]:
     for kernel in bound.kernels.kernels:
         if kernel.function == "exp":
             delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
-            delays.append(abs(float(at_centre(delay).real)))
+            delays.append(abs(float(at_centre(delay).real)) ** bound.sheets)
     return delays

@@ -150,15 +150,15 @@ def find_step_info(
 ) -> StepInfo | None:
     """Return the properties of a step response, from poles of about so many digits, or from a known sum.
 
-    None where it does not come to rest, or at 0, where poles cannot be told apart, with waves in a loop with
-    a delay, and with those whose modes are not bounded, as of large networks. With waves, numbers are as
-    sharp as the modes left out allow.
+    None where it does not come to rest, or at 0, where poles cannot be told apart, with a root of s, with
+    waves in a loop with a delay, and with those whose modes are not bounded, as of large networks. With
+    waves, numbers are as sharp as the modes left out allow.
     """
     check_causal(bound.source.model, "a step response")
     if isinstance(bound, BoundNested):
         return None
     bound = without_lengths_of_zero(bound)
-    if bound.is_zero:
+    if bound.is_zero or bound.sheets > 1:
         return None
     if bound.is_distributed:
         return _of_modes(bound, modes)
