@@ -16,6 +16,9 @@ OPTIONAL: Final = {
     "pyuff": ("SF902", "reading and writing universal files needs {}", "pip install pyuff"),
     "xarray": ("SF914", f"a labelled dataset {_LACKING}", "pip install 'symflex[sweep]'"),
     "pyarrow": ("SF914", f"Parquet {_LACKING}", "pip install 'symflex[sweep]'"),
+    "openpyxl": ("SF914", f"a workbook {_LACKING}", "pip install 'symflex[files]'"),
+    "h5py": ("SF914", f"an HDF5 file {_LACKING}", "pip install 'symflex[files]'"),
+    "nptdms": ("SF914", f"a .tdms file {_LACKING}", "pip install 'symflex[files]'"),
     "distributed": ("SF914", f"a cluster {_LACKING}", "pip install 'symflex[sweep]'"),
 }
 """Error code, message and how to install, by package."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import zlib
 from collections.abc import Callable, Mapping, Sequence
@@ -13,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.measurement.array_files import (
+    DEEPEST,
     ClassName,
     NewerFileError,
     read_archive,
@@ -32,6 +34,7 @@ from symflex.data.measurement.columns import (
     names_of,
     unit_by_round_ends,
 )
+from symflex.data.measurement.isolated import read_isolated
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,
@@ -42,7 +45,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.text_table import number
+from symflex.data.measurement.text_table import MAX_CELLS, number
 from symflex.errors import DataError, Diagnostic, UsageError
 
 Array = npt.NDArray[Any]
@@ -95,10 +98,63 @@ def _octave_variables(data: bytes) -> Arrays:
     return variables
 
 
+def _json_variables(data: bytes) -> Arrays:
+    """Return the arrays of an object, ``run.H``, ``runs(2).H``; a list of objects is a table of their keys.
+
+    Text such as ``1+2j`` is a complex number, as is a pair of numbers where values are due. ValueError for no
+    JSON, or one nested too deeply; OverflowError for too many values.
+    """
+    if data.count(b",") + 2 * data.count(b"[") + 4 * data.count(b"{") > MAX_CELLS:
+        raise OverflowError
+    found: dict[str, Array] = {}
+
+    def walk(value: object, path: str, depth: int) -> None:
+        require(depth <= DEEPEST, "it is nested too deeply")
+        if isinstance(value, list) and any(isinstance(x, dict) for x in value):
+            rows = [x if isinstance(x, dict) else {} for x in value]
+            keys = dict.fromkeys(key for x in rows for key in x)
+            if any(isinstance(y, list | dict) for x in rows for y in x.values()):
+                value = {f"({i})": x for i, x in enumerate(rows, 1)}
+            elif len(keys) * len(rows) > MAX_CELLS:
+                raise OverflowError
+            else:
+                value = {key: [x.get(key) for x in rows] for key in keys}
+        if not isinstance(value, dict):
+            found[path or "array"] = _json_array(value, path.rpartition(".")[2].lower())
+            return
+        for key, inner in value.items():
+            walk(inner, f"{path}{key}" if key.startswith("(") or not path else f"{path}.{key}", depth + 1)
+
+    try:
+        walk(json.loads(data), "", 0)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    return {key: array for key, array in found.items() if array.dtype.kind in "fciubU"}
+
+
+def _json_array(value: object, key: str) -> Array:
+    if not isinstance(value, list):
+        return np.array(value)
+    cells = [np.nan if x is None else x for x in value]
+    if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
+        require(len(cells) * max(texts) <= MAX_BYTES // 4, f"{key[:40]} is a list of long texts")
+        numbers = [number(x) if isinstance(x, str) else x for x in cells]
+        cells = cells if None in numbers else numbers
+    array = np.array(cells)
+    is_pair = array.ndim == 2 and array.shape[1] == 2 and array.dtype.kind in "fi"  # noqa: PLR2004
+    return array[:, 0] + 1j * array[:, 1] if is_pair and _meaning(key).kind == "complex" else array
+
+
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
     ".npz": ("a numpy archive (.npz)", lambda data: read_archive(data, MAX_BYTES, MAX_RESPONSES)),
     ".npy": ("a numpy array (.npy)", lambda data: read_array("array", data)),
     ".mat": ("a MATLAB file (.mat)", lambda data: read_variables(data, MAX_BYTES)),
+    **dict.fromkeys((".h5", ".hdf5"), ("an HDF5 file", lambda data: read_isolated("h5py", data, MAX_BYTES))),
+    ".tdms": ("a .tdms file", lambda data: read_isolated("nptdms", data, MAX_BYTES)),
+    ".json": ("JSON of arrays", _json_variables),
+    **dict.fromkeys(
+        (".xlsx", ".xlsm"), ("a workbook", lambda data: read_isolated("openpyxl", data, MAX_BYTES))
+    ),
     "octave": ("a text file of Octave", _octave_variables),
 }
 """What files of arrays are, and how they are read, by the end of their names."""
@@ -112,15 +168,16 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
     kind, read = _FILES["octave" if data.startswith(OCTAVE) else suffix]
     try:
         arrays = read(data)
-    except NewerFileError:
-        message = f"'{name}' is a MATLAB file of version 7.3"
-        hint = "in MATLAB: load('FILE.mat'), then save('FILE.mat', '-v7')"
-        raise DataError(Diagnostic("SF601", message, None, hint)) from None
+    except NewerFileError:  # from version 7.3 on they are HDF5
+        return arrays_in(name, data, ".h5")
     except (ValueError, zlib.error) as error:
         reason = str(error).splitlines()[0][:100] if str(error) else type(error).__name__
         raise DataError(Diagnostic("SF601", f"'{name}' is not {kind}: {reason}")) from None
-    except OverflowError:
-        raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_BYTES} bytes of data")) from None
+    except OverflowError as error:
+        message = (
+            f"'{name}': {error}" if error.args else f"'{name}' holds more than {MAX_BYTES} bytes of data"
+        )
+        raise DataError(Diagnostic("SF607", message)) from None
     if suffix != ".mat":
         return arrays
     objects = ((k, a.item()) for k, a in arrays.items() if a.dtype.kind == "O" and a.size and k)

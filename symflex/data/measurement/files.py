@@ -16,9 +16,10 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import format_of, read_arrays
+from symflex.data.measurement.arrays import arrays_in, format_of, read_arrays
 from symflex.data.measurement.comma_separated import read_columns
 from symflex.data.measurement.estimate import Estimate, responses_of
+from symflex.data.measurement.input_signal import ARRAYS
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
 from symflex.data.measurement.record import read_record
 from symflex.data.measurement.touchstone import read_touchstone
@@ -33,10 +34,12 @@ from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.errors.optional import installed
 from symflex.model.spec.read import read_file
 
+WORKBOOKS: Final = (".xlsx", ".xlsm")
 READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, ...]]] = {
     **dict.fromkeys((".csv", ".txt", ".dat", ".tsv", ".frd", ".zma"), read_columns),
     **dict.fromkeys((".s1p", ".s2p"), read_touchstone),
-    **dict.fromkeys((".npz", ".npy", ".mat"), read_arrays),
+    **dict.fromkeys(ARRAYS, read_arrays),
+    **dict.fromkeys(WORKBOOKS, read_columns),
     **dict.fromkeys((".uff", ".unv", ".uf"), read_universal_file),
 }
 """Readers by the end of a file's name.
@@ -45,11 +48,8 @@ Each takes what messages call the file, its bytes, a name, and what ``--columns`
 endings are read as text in columns where they are text.
 """
 SAVE_AS: Final = {
-    **dict.fromkeys((".xlsx", ".xls", ".ods"), "save the sheet as .csv"),
-    ".tdms": "export the channels as text, or read them with nptdms and save them with numpy.savez",
-    **dict.fromkeys((".h5", ".hdf5"), "save the arrays with numpy.savez"),
+    **dict.fromkeys((".xls", ".ods"), "save the sheet as .xlsx or .csv"),
     **dict.fromkeys((".s3p", ".s4p"), "save two of its ports as .s2p"),
-    ".json": "save the responses as text in columns, or with numpy.savez",
     ".wav": "symflex reads frequency responses, not time series",
     ".toml": "this is a specification, not measured data",
 }
@@ -97,9 +97,7 @@ def read_measurement(
     if suffix in SAVE_AS:
         message = f"'{name}': data files end in {', '.join(READERS)}"
         raise DataError(Diagnostic("SF606", message, None, SAVE_AS[suffix]))
-    data = read_file(name, MAX_BYTES)
-    if len(data) > MAX_BYTES:
-        raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
+    data = _contents(name)
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
     suffix = format_of(name, data)
@@ -120,11 +118,20 @@ def read_measurement(
         raise DataError(Diagnostic("SF606", message)) from None
 
 
+def _contents(name: str) -> bytes:
+    """Return the bytes of a file; of a workbook, the text of its fullest sheet."""
+    data = read_file(name, MAX_BYTES)
+    if len(data) > MAX_BYTES:
+        raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
+    suffix = Path(name).suffix.lower()
+    return arrays_in(name, data, suffix)[""].tobytes() if suffix in WORKBOOKS else data
+
+
 def responses_in_time(
     path: str | Path, columns: str = "", estimate: Estimate | None = None
 ) -> tuple[MeasuredResponse, ...] | None:
     """Return the responses of a record in time, ``None`` if the columns of a file do not say time."""
-    data = read_file(os.fspath(path), MAX_BYTES)
+    data = _contents(os.fspath(path))
     record = read_record(os.fspath(path), data, Path(path).stem, columns)
     return None if record is None else responses_of(record, estimate or Estimate())
 

@@ -30,7 +30,7 @@ from symflex.errors import DataError, Diagnostic
 from symflex.model.spec.read import read_file
 
 MAX_BYTES: Final = 50_000_000
-ARRAYS: Final = (".npz", ".npy", ".mat")
+ARRAYS: Final = (".npz", ".npy", ".mat", ".h5", ".hdf5", ".tdms", ".json")
 ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)
 """Ends of the names of files that are inputs."""
 _UNITS: Final = {

@@ -289,8 +289,7 @@ def test_an_object_of_matlab_is_named_with_the_commands_that_unpack_it(tmp_path)
 
 def test_what_is_no_data_file_says_what_to_do(tmp_path):
     for name, said in (
-        ("a.xlsx", "save the sheet as .csv"),
-        ("a.tdms", "nptdms"),
+        ("a.xls", "save the sheet as .xlsx or .csv"),
         ("a.xyz", "not a text table"),
     ):
         (tmp_path / name).write_text("nothing here\n")

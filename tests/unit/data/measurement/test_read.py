@@ -284,5 +284,5 @@ def test_files_that_are_none(write, tmp_path):
         (tmp_path / "folder.csv").mkdir()
         read_measurement(tmp_path / "folder.csv")
     with pytest.raises(DataError) as caught:
-        read_measurement(write("a.xlsx", PLAIN))
+        read_measurement(write("a.xls", PLAIN))
     assert caught.value.diagnostics[0].code == "SF606"
