@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import exp, rect
 from itertools import product
-from math import cos, inf, log, pi, sin, sqrt
+from math import cos, pi, sin
 from random import Random
 
 import numpy as np
@@ -57,17 +57,6 @@ def test_passing_one_root_adds_a_whole_turn():
         assert abs(above - below - 2 * arb.pi()) < 1e-4, angle
 
 
-def test_passing_one_of_two_close_roots_adds_one_turn_and_both_two():
-    for apart in (1e-2, 1e-1):
-        near, far = 3 * rect(1, 0.4), (3 + apart) * rect(1, 0.4 + apart)
-        within, between, beyond = (
-            polynomial(near, far).turn(arb(radius)) for radius in (3 - apart, 3 + apart / 2, 3 + 2 * apart)
-        )
-        # All but what they are seen to turn by from either side.
-        assert abs(between - within - 2 * arb.pi()) < 3, apart
-        assert 2 < (beyond - within) / arb.pi() < 4, apart
-
-
 def test_a_root_on_the_arc_and_a_function_that_is_zero_are_refused():
     zero = ArcSum((term(1, 0, {0: 1}), term(1, 0, {0: -1})))
     for refused in (*(polynomial(2 * rect(1, where)) for where in (0.0, 0.3, pi / 4)), zero):
@@ -84,40 +73,12 @@ def test_a_root_beside_the_arc_adds_no_turn():
         assert abs(polynomial(root).turn(arb(radius)) - turned) < 1e-9, angle
 
 
-def test_no_exponential_turns_more_than_once_up_to_the_reach():
-    for terms, reach in [
-        ([(2j, 0)], pi),
-        ([(0, -3)], sqrt(2 * pi / 3)),
-        ([(1, 0), (4, 0), (-2, 0)], pi / 2),
-        ([(0, 0)], inf),
-        ([(0, 0), (1, 1)], (sqrt(1 + 8 * pi) - 1) / 2),
-    ]:
-        # abs(p) r + abs(q) r^2 = 2 pi for the fastest.
-        found = ArcSum(tuple(term(p, q, {0: 1}) for p, q in terms)).reach
-        assert found == pytest.approx(reach, rel=1e-12), terms
-
-
 SUMS = [
     # sinh(x) sin(x), cosh(2x) - cos(2x), x cosh(x) cos(x) + exp(x)
     {(1 + 1j, 0): {0: 1}, (1 - 1j, 0): {0: -1}, (-1 + 1j, 0): {0: -1}, (-1 - 1j, 0): {0: 1}},
     {(2, 0): {0: 1}, (-2, 0): {0: 1}, (2j, 0): {0: -1}, (-2j, 0): {0: -1}},
     {(1 + 1j, 0): {1: 1}, (1 - 1j, 0): {1: 1}, (1, 0): {0: 2}, (-1 + 1j, 0): {1: 1}, (-1 - 1j, 0): {1: 1}},
 ]
-
-
-def test_the_largest_terms_tell_the_turn_but_for_one():
-    for terms in SUMS:
-        # Next to the ends of an arc, where several are equally large, the argument may go either way.
-        found = ArcSum(tuple(term(p, q, powers) for (p, q), powers in terms.items()))
-        for radius in (30.5, 411.3):
-            assert abs(found.turn(arb(radius)) - found.estimate(radius)) < 2 * pi, terms
-
-
-def test_the_turn_of_a_power_is_estimated_exactly():
-    assert ArcSum((term(0, 0, {3: 2j}),)).estimate(10.0) == 3 * pi / 4
-    # A coefficient may have any size and sign: the one that is largest at the start counts there.
-    both = ArcSum((term(1, 0, {0: 1}), term(0, 0, {2: -1e9})))
-    assert both.estimate(5.0) == pytest.approx(pi / 2, abs=0.4)
 
 
 def weighed(terms, largest, power, x):
@@ -187,14 +148,6 @@ def drawn(seed, *, squares=0.4):
     ]
 
 
-def logarithms(terms, radius, t):
-    """Return ln of the highest power of each term at shares t of the arc, its turns included."""
-    angle = pi / 4 * np.asarray(t, float)
-    x = radius * np.exp(1j * angle)
-    highest = [(p, q, max(powers), powers[max(powers)]) for p, q, powers in terms]
-    return np.array([p * x + q * x**2 + n * (log(radius) + 1j * angle) + np.log(c) for p, q, n, c in highest])
-
-
 def sampled_turn(terms, radius):
     x = radius * np.exp(1j * pi / 4 * np.linspace(0, 1, 40_001))
     exponents = [p * x + q * x**2 for p, q, _ in terms]
@@ -205,11 +158,6 @@ def sampled_turn(terms, radius):
     )
     angles = np.unwrap(np.angle(total))
     return angles[-1] - angles[0]
-
-
-def arc_of(terms, radius):
-    summed = ArcSum(tuple(term(*each) for each in terms))
-    return _Arc(summed.terms, summed._sizes, arb(radius))
 
 
 def test_any_sum_turns_as_samples_of_it_do():
@@ -259,44 +207,3 @@ def test_the_turn_on_a_long_arc_takes_no_longer():
     turn = ArcSum(tuple(term(p, 0, {0: c}) for p, c in rates.items())).turn(radius)
     assert abs(turn - 2 * radius / arb(2).sqrt()) < arb.pi() / 2
     assert turn.rad() < 1e-6
-
-
-def test_an_estimate_is_the_turn_of_the_largest_terms_next_to_the_ends():
-    for seed in range(40):
-        terms, radius = drawn(seed), 5.0
-        aside = 0.3 / (1 + radius) / (pi / 4)
-        ends = [max(logarithms(terms, radius, t), key=lambda z: z.real).imag for t in (aside, 1 - aside)]
-        found = ArcSum(tuple(term(*each) for each in terms)).estimate(radius)
-        assert found == pytest.approx(ends[1] - ends[0], abs=1e-9), seed
-
-
-def test_the_largest_term_is_that_of_the_largest_size():
-    for seed in range(40):
-        terms = drawn(seed)
-        arc = arc_of(terms, 0.4)
-        for t in (0.0, 0.3, 0.8, 1.0):
-            assert arc._largest_at(t) == np.argmax(logarithms(terms, 0.4, t).real), seed
-
-
-def test_layers_end_where_the_tangents_of_all_others_have_fallen_behind():
-    for seed in range(40):
-        terms, radius, start, end = drawn(seed), 30.0, 0.2, 0.9
-        arc = arc_of(terms, radius)
-        largest = arc._largest_at((start + end) / 2)
-
-        def behind(t, terms=terms, radius=radius, largest=largest):
-            sizes = logarithms(terms, radius, t).real
-            others = np.arange(len(terms)) != largest
-            return (sizes - sizes[largest])[others]
-
-        depths, tiny = [], 1e-5
-        for place, inward in ((start, 1), (end, -1)):
-            fall = -inward * (behind(place + tiny) - behind(place - tiny)) / (2 * tiny)
-            missing = log(4.0 * len(terms)) + behind(place)
-            wanted = [
-                (1.1 * m / f if f > 0 else end - start) for m, f in zip(missing, fall, strict=True) if m > 0
-            ]
-            depths.append(max(wanted, default=0.0))
-        assert arc._between_layers(start, end, largest) == pytest.approx(
-            (start + depths[0], end - depths[1]), rel=1e-5
-        ), seed

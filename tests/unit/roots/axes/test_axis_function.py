@@ -5,23 +5,19 @@ from __future__ import annotations
 from math import inf, pi, sqrt
 
 import mpmath
-import numpy as np
 import pytest
 from flint import arb
 from mpmath import mp, mpf
 
 from symflex.algebra.exponential_sum import AxisWave
-from symflex.balls import bits_for_digits, precision
+from symflex.balls import precision
 from symflex.roots.axes.axis_function import (
-    CLOSER,
     FLOAT_BITS,
     IMAGINARY,
     REAL,
     AxisFunction,
     AxisNewton,
     Enclosures,
-    _level,
-    _products,
     bits_of,
     bracketed,
     changes_sign,
@@ -106,29 +102,6 @@ def test_values_of_a_ball_are_in_the_ball_of_values():
             assert value.rad() < 100 * abs(slope).upper() * ball.rad(), t
 
 
-def test_samples_in_doubles_are_scaled_alike():
-    t = np.array([float(text) for text in TIMES])
-    values, slopes, sizes = every_kind().sampled(t)
-    for i, text in enumerate(TIMES):
-        x = mpf(text)
-        scale = mpmath.exp(max(0, 2 * P * x - Q * x * x))
-        value, slope = (mpf(each) for each in value_and_slope(text))
-        assert values[i] == pytest.approx(float(value / scale), rel=1e-12)
-        assert slopes[i] == pytest.approx(float(slope / scale), rel=1e-12)
-        assert sizes[i] == pytest.approx(float(sum(map(abs, terms(x))) / scale), rel=1e-12)
-
-
-def test_s_is_the_square_of_t_or_twice_that_and_the_fastest_phase_has_the_largest_derivative():
-    for axis, frequency in [(REAL, 9.0), (IMAGINARY, 18.0)]:
-        # s = t^2, and s = ((1 + j) t)^2.
-        source = polynomial(1, axis=axis)
-        assert source.natural_frequency(3.0) == frequency, axis
-        assert source.at_frequency(frequency) == 3.0, axis
-    # Phases p t, q t^2, p t - q t^2 and none: 1.25, t, abs(1.25 - t).
-    source = every_kind()
-    assert [source.fastest(t) for t in (0.5, 3.0)] == [1.25, 3.0]
-
-
 def decay():
     return AxisFunction((AxisWave((-1,), (0,), {0: {(): 1}}, {}),), REAL, Enclosures(64, (), (arb(1),), (1,)))
 
@@ -141,16 +114,6 @@ def test_what_has_decayed_is_a_ball_that_holds_it():
         assert later.contains(arb(-129).exp())
         assert later.contains(0)
         assert later.rad() < 1e-38
-
-
-def test_products_of_exponentials_are_known_by_their_factors():
-    growths = [(-1, 0), (0, -1), (-2, 0), (1, -3), (-1, -1), (-3, 0), (0, -3)]
-    products = _products(growths)
-    assert [product is None for product in products] == [True, True, False, True, False, False, False]
-    for growth, product in zip(growths, products, strict=True):
-        if product is not None:
-            one, other = (growths[i] for i in product)
-            assert (one[0] + other[0], one[1] + other[1]) == growth
 
 
 # --------------------------------------------------------------------- roots of polynomials in t, known
@@ -211,18 +174,6 @@ def test_signs_are_opposite_about_one_root():
         assert changes_sign(polynomial(6, -5, 1), low, high) is changes
 
 
-def test_newton_steps_between_two_places_end_at_the_root():
-    for sign in (1, -1):
-        for low, high, root in ((0.5, 2.9, 2), (2.1, 30.0, 3), (0.0, 2.0001, 2)):
-            source = polynomial(6 * sign, -5 * sign, sign)
-            assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSER), sign
-    # t^7 - 1 from 1e-3 to 2e3: from the middle Newton's are short, and from next to 0 one leads far away.
-    assert bracketed(polynomial(-1, 0, 0, 0, 0, 0, 0, 1), 1e-3, 2e3) == pytest.approx(1, rel=10 * CLOSER)
-    # t^3 - 5 t^2 + 7 t - 1, stationary at 1 and at 7/3; its only root between 0 and 2 lies below 1.
-    (root,) = (float(r.real) for r in np.roots([1, -5, 7, -1]) if abs(r.imag) < 1e-9 and 0 < r.real < 1)
-    assert bracketed(polynomial(-1, 7, -5, 1), 0.0, 2.0) == pytest.approx(root, rel=10 * CLOSER)
-
-
 # ------------------------------------------------------------------- functions given by their formulas
 
 
@@ -270,13 +221,6 @@ def test_where_doubles_do_not_reach_nothing_is_known():
     assert source.asked == []
 
 
-def test_no_more_precision_is_asked_for_than_the_digits_take():
-    source = Real(lambda t: t.cos(), lambda t: -t.sin())
-    AxisNewton(50).frequency(source, pi / 2)
-    assert max(source.asked) <= bits_of(50) < bits_for_digits(52) + 200
-    assert min(source.asked) >= 53
-
-
 def test_a_value_not_told_from_zero_has_no_sign():
     assert not changes_sign(Real(lambda t: (t - 1) * (t - 3), lambda t: 2 * t - 4), 1.0, 2.0)
     assert not changes_sign(Real(lambda t: arb(0, 1), lambda t: arb(1)), 1.0, 2.0)
@@ -297,10 +241,3 @@ def test_a_root_between_two_places_of_opposite_sign_is_met():
                 lambda t, f=value, sign=sign: sign * f(t), lambda t, f=slope, sign=sign: sign * f(t)
             )
             assert bracketed(source, low, high) == pytest.approx(root, rel=1e-11), sign
-
-
-def test_precisions_are_few_and_enough():
-    for bits, most in [(10, 900), (64, 900), (65, 900), (700, 900), (880, 900), (1000, 900)]:
-        level = _level(bits, most)
-        assert min(bits, most) <= level <= most
-        assert len({_level(k, most) for k in range(1, 1000)}) < 12, bits

@@ -14,16 +14,13 @@ from mpmath import cos, findroot, mp, mpf, sin, sinh, sqrt, tan, tanh
 from symflex.roots import Modes
 from symflex.roots.axes.axis_scan import (
     LONGEST,
-    MOST,
     _changes_sign,
-    _crossing,
-    _dips,
     _pieces,
     _secants,
     _step_by_step,
     sign_changes,
 )
-from symflex.roots.counting.winding import RootOnPathError, Winding
+from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed_models import ROD, SLIDING_FREE, bound
 from tests.unit.roots.stand_ins import poles_by
@@ -195,28 +192,6 @@ def test_every_change_of_sign_is_met_once_in_order():
         assert ray.angles == {0.3}, rate
 
 
-def test_steps_are_as_long_as_an_exponent_allows_and_a_sample_that_is_a_root_is_refused():
-    for fastest, step in [(0.0, LONGEST), (1.0, LONGEST), (50.0, 0.02)]:
-        ray = Ray(lambda x: 1.0, lambda x: 0.0, fastest=fastest)
-        assert list(_step_by_step(ray, 1.0, 2.0, 0.0)) == [], fastest
-        assert np.diff(ray.places)[:-1] == pytest.approx([step] * (len(ray.places) - 2)), fastest
-        assert (ray.places[0], ray.places[-1]) == (1.0, 2.0), fastest
-        # Every sample is charged to the budget.
-        assert ray.spent == len(ray.places), fastest
-    with pytest.raises(RootOnPathError):
-        list(_step_by_step(parabola(1.0, 9.0), 1.0, 2.0, 0.0))
-
-
-def test_the_place_of_a_change_is_between_its_ends_by_their_sizes_or_at_an_end_beyond_doubles():
-    # A straight line is met exactly.
-    for a, b in ((-1.0, 3.0), (-3.0, 1.0), (-2.0, 2.0)):
-        assert float(_crossing(10.0, log(abs(a)), 14.0, log(abs(b)))) == pytest.approx(
-            10.0 + 4 * abs(a) / (abs(a) + abs(b))
-        )
-    for above, place in [(2 * MOST, 1.0), (-2 * MOST, 2.0)]:
-        assert float(_crossing(1.0, 0.0, 2.0, above)) == pytest.approx(place)
-
-
 def test_two_roots_in_one_step_are_met_by_its_slopes():
     for roots, count in [
         ((0.4, 0.6), 2),
@@ -236,70 +211,6 @@ def test_two_roots_in_one_step_are_met_by_its_slopes():
         ]
         assert len(found) == count, roots
         assert all(any(a < r < b for r in roots) for a, b in found), roots
-
-
-def test_a_step_that_need_not_be_cut_is_one_piece():
-    # A root; falling at both ends; rising; away from zero at both ends.
-    assert parabola(0.4, 3.0).pieces(0.0, 1.0) == [(0.0, 1.0)]
-    for value, slope in (
-        (lambda x: 3 - x, lambda x: -1.0),
-        (lambda x: 3 + x, lambda x: 1.0),
-        (lambda x: 3 + x - x * x, lambda x: 1 - 2 * x),
-    ):
-        ray = Ray(value, slope)
-        assert ray.pieces(0.0, 1.0) == [(0.0, 1.0)]
-        assert ray.places == []
-
-
-def test_a_step_towards_zero_is_halved_three_times_on_the_side_of_the_dip():
-    for lowest, cuts in [
-        (0.1, [0.5, 0.25, 0.125]),
-        (0.2, [0.5, 0.25, 0.125]),
-        (0.3, [0.5, 0.25, 0.375]),
-        (0.45, [0.5, 0.25, 0.375]),
-        (0.6, [0.5, 0.75, 0.625]),
-        (0.7, [0.5, 0.75, 0.625]),
-        (0.9, [0.5, 0.75, 0.875]),
-    ]:
-        # A dip that does not reach zero.
-        ray = Ray(lambda x, dip=lowest: (x - dip) ** 2 + 1e-4, lambda x, dip=lowest: 2 * (x - dip))
-        pieces = ray.pieces(0.0, 1.0)
-        assert ray.places == cuts, lowest
-        ends = sorted([0.0, 1.0, *cuts])
-        assert pieces == list(pairwise(ends)), lowest
-
-
-def test_a_sign_changes_where_the_argument_turns_by_an_odd_number_of_half_turns():
-    for turns, power, changes in [
-        (1, 1, True),
-        (-1, 1, True),
-        (0, 1, False),
-        (2, 1, False),
-        (3, 1, True),
-        (0.98, 1, True),
-        (0.96, 1, False),
-        (1.04, 1, False),
-        (2, 2, True),
-        (1, 2, False),
-        (4, 2, False),
-    ]:
-        first, last = SimpleNamespace(log=2 + 0.4j), SimpleNamespace(log=5 + 0.4j + 1j * pi * turns)
-        assert _changes_sign(SimpleNamespace(function=SimpleNamespace(power=power)), first, last) is changes
-
-
-def test_dips_are_lowest_places_without_a_change_of_sign():
-    for size, signs, dips in [
-        ([3, 2, 1, 2, 3], [1, 1, 1, 1, 1], [2]),
-        ([3, 2, 1, 2, 3], [1, 1, 1, -1, -1], []),
-        ([3, 2, 1, 2, 3], [1, 1, -1, -1, -1], []),
-        ([3, 2, 1, 1, 3], [1, 1, 1, 1, 1], [2]),
-        ([1, 2, 3, 2, 1], [1, 1, 1, 1, 1], []),
-        ([3, 1, 3, 1, 3], [1, 1, 1, 1, 1], [1, 3]),
-        ([3, 1, 3, 1, 3], [-1, 1, 1, 1, 1], [3]),
-        ([1, 1, 1, 1, 1], [1, 1, 1, 1, 1], []),
-    ]:
-        changes = np.diff(signs) != 0
-        assert _dips(np.array(size, float), changes) == dips
 
 
 def test_secants_close_in_on_a_change_of_sign():
@@ -323,18 +234,6 @@ def test_secants_close_in_on_a_change_of_sign():
         (found,) = _secants(SimpleNamespace(sampled=sampled), 4, ends, 0.3)
         assert found == pytest.approx(root, abs=3e-3 * (high - low))
         assert asked == [(0.3, [4])] * (2 + 4), root
-
-
-def test_without_sums_in_doubles_a_ray_is_searched_step_by_step():
-    ray = sine(7.0)
-    found = sign_changes(ray, 0.1, 1.0, pi / 2)
-    assert [z.real for z in found] == pytest.approx([pi / 7, 2 * pi / 7], abs=0.03)
-    assert {z.imag for z in found} == {pi / 2}
-    # A hair beside the imaginary axis, and on the real one.
-    assert ray.angles == {pi / 2 - 1e-13}
-    ray = sine(7.0)
-    assert {z.imag for z in sign_changes(ray, 0.1, 1.0, 0.0)} == ray.angles == {0.0}
-    assert exp(found[0].real) > 1
 
 
 class Grid(Ray):
@@ -370,12 +269,6 @@ def test_on_grids_every_change_of_sign_is_met_once_and_closely():
         # Neighbours are as close as an exponent allows, and what is sampled at once is bounded.
         assert np.diff(ray.grids[0]).max() <= min(LONGEST, 1 / rate) * (1 + 1e-9)
         assert max(len(grid) for grid in ray.grids) <= 4096 + 3, rate
-
-
-def test_factors_of_the_denominator_are_not_sampled():
-    ray = Grid(np.sin, np.cos, fastest=1.0, exponents=(-1, 2, 1))
-    assert on_grid(ray, 2.0, 4.0) == pytest.approx([pi, pi], abs=1e-3)
-    assert ray.numbers == {(1, 2), (1,), (2,)}
 
 
 def test_where_doubles_do_not_tell_balls_are_asked():

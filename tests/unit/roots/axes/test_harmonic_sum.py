@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
-from math import log, pi, sqrt
+from math import log, sqrt
 
 import mpmath
 import pytest
@@ -124,12 +124,6 @@ def test_a_growing_exponential_turns_forward():
         assert float(function.turn(log(9))) == pytest.approx(turned), argument
 
 
-def test_each_factor_stands_by_itself_on_an_axis():
-    function = function_of((BENT, 1), (WAVE, 2))
-    waves = [len(function.on_axis(i, REAL).waves) for i in (0, 1)]
-    assert waves == [3, 2]
-
-
 def test_turns_of_factors_add_up_by_their_exponents_from_the_real_to_the_imaginary_axis():
     for radius in [3.2, 60.7]:
         alone = [function_of((each, 1)).turn(log(radius)) for each in (BENT, WAVE)]
@@ -141,22 +135,6 @@ def test_turns_of_factors_add_up_by_their_exponents_from_the_real_to_the_imagina
         radius = mpmath.exp(z)
         turned = mpmath.arg((9 * (1j * radius) ** 2 + 9) / (9 * radius**2 + 9))
         assert abs(abs(function.turn(z)) - abs(turned)) < 1e-9
-
-
-def test_estimates_add_up_by_exponents_and_are_off_by_less_than_a_turn_each():
-    z = 6.3
-    function = function_of((BENT, 2), (WAVE, 1))
-    parts = [function_of((each, 1)).estimate(z) for each in (BENT, WAVE)]
-    assert function.estimate(z) == pytest.approx(2 * parts[0] + parts[1], rel=1e-12)
-    assert abs(function.turn(z) - function.estimate(z)) < 3 * 2 * pi
-
-
-def test_the_first_frequency_is_that_of_one_turn_of_the_fastest_exponential():
-    # abs(1 + j) 1.25 x = 2 pi, and 0.5 x^2 = 2 pi; s is x^2.
-    assert function_of((BENT, 1)).first_frequency == pytest.approx((2 * pi / (sqrt(2) * 1.25)) ** 2)
-    assert function_of((WAVE, 1)).first_frequency == pytest.approx(4 * pi)
-    assert function_of((BENT, 1), (WAVE, 1)).first_frequency == pytest.approx(4 * pi)
-    assert function_of((POWER, 1)).first_frequency == 1.0
 
 
 def kernel_function(text):

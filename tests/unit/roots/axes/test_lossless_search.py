@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, log, pi
+from math import exp, log
 
 import mpmath
 import pytest
@@ -11,12 +11,12 @@ from flint import acb, arb
 from mpmath import mp, mpf
 
 from symflex.balls import precision
-from symflex.roots import Mode, Modes
-from symflex.roots.axes.axis_function import IMAGINARY, REAL
+from symflex.roots import Mode
+from symflex.roots.axes.axis_function import IMAGINARY
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.winding import RootOnPathError
-from tests.unit.roots.distributed_models import FREE, SLIDING_FREE, bound
 from tests.unit.roots.distributed_models import ROD as ROD_WITH_A_MASS
+from tests.unit.roots.distributed_models import bound
 from tests.unit.roots.lossless_functions import RATES, function_of
 from tests.unit.roots.stand_ins import poles_by
 
@@ -96,15 +96,6 @@ def test_roots_on_the_real_axis_are_modes_too():
     assert (other.is_real, other.on_imaginary_axis, other.im > 0, other.re == 0) == (False, True, True, True)
 
 
-def test_modes_of_a_polynomial_end_and_a_denominator_has_none():
-    roots, reached = search((PAIR, 1), (REAL_PAIR, 2)).lowest(9)
-    assert sorted((root.multiplicity, root.is_real) for root in roots) == [(1, False), (2, True)]
-    assert exp(reached) > 9
-    alone = search((PAIR, -1))
-    assert alone.lowest(3) == ([], alone.smallest())
-    assert [root.is_real for root in search((PAIR, -1), (REAL_PAIR, 1)).lowest(3)[0]] == [True]
-
-
 def test_a_circle_about_0_holds_both_roots_of_every_mode_below_and_passes_through_none():
     for n in [1, 2, 7, 30]:
         found = search((CLAMPED, 1), order=2)
@@ -172,22 +163,6 @@ def test_a_scan_finds_modes_or_all_up_to_a_radius_and_says_whether_they_are_all(
     assert clamped(20) < exp(found.reached) < clamped(21)
 
 
-def test_before_a_scan_nothing_is_known_or_sought_far_below_the_first_frequency():
-    found = search((CLAMPED, 1), order=2)
-    assert (found.roots, found.reached, found.missing, found.excluded, found.holes) == (
-        [],
-        -inf,
-        0,
-        set(),
-        (),
-    )
-    assert (found.is_even, found.left) == (True, pi / 2)
-    assert found.passing(3.0) == 3.0
-    found = search((CLAMPED, 1), order=2)
-    assert found.smallest() == pytest.approx(log(found.function.first_frequency) - 30)
-    assert found.smallest() < log(clamped(1)) - 25
-
-
 def test_a_mode_by_its_number_is_that_one_counted_by_multiplicity_on_both_axes():
     for number in [1, 2, 3, 10, 4000]:
         root = search((CLAMPED, 1), order=2).numbered(number)
@@ -198,13 +173,6 @@ def test_a_mode_by_its_number_is_that_one_counted_by_multiplicity_on_both_axes()
         root = search((PAIR, 1), (REAL_PAIR, 2), (ROD, 1)).numbered(number)
         every = sorted([(2, 1), (3, 2), (3, 2), (float(rod(1)), 1)])
         assert (float(root.natural_frequency()), root.multiplicity) == pytest.approx(every[number - 1])
-
-
-def test_factors_are_searched_on_the_axis_where_they_are_real():
-    for axis, count in [(REAL, 3), (IMAGINARY, 2)]:
-        # exp(p x) is real on the real axis only, and a denominator has no roots.
-        growing = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sinh"),)))
-        assert len(search((CLAMPED, 1), (PAIR, 1), (growing, 1), (REAL_PAIR, -1))._factors_on(axis)) == count
 
 
 def test_a_root_is_proved_where_a_guess_is_close_and_nowhere_else():
@@ -218,16 +186,6 @@ def test_a_root_is_proved_where_a_guess_is_close_and_nowhere_else():
 
 
 # ------------------------------------------------------------------------ whole models
-
-
-def test_modes_by_number_are_those_of_the_list():
-    for text in (ROD_WITH_A_MASS, FREE, SLIDING_FREE):
-        source = bound(text, 0)
-        listed = [root for root in poles_by("lossless", source, Modes(6), DIGITS) if root.im > 0]
-        assert len(listed) == 6
-        for number, root in enumerate(listed, 1):
-            alone = [root for root in poles_by("lossless", source, Mode(number), DIGITS) if root.im > 0]
-            assert [r.decimal(15).im for r in alone] == [root.decimal(15).im], number
 
 
 def test_a_very_high_mode_of_a_rod_with_a_tip_mass():

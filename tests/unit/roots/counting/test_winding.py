@@ -14,15 +14,11 @@ from symflex.balls import precision
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding, LogarithmicLine, _angle, _whole
-from symflex.roots.counting.local_series import BLURRED, MOST, LocalSeries, SeriesSteps, _followed
+from symflex.roots.counting.local_series import BLURRED, LocalSeries, SeriesSteps, _followed
 from symflex.roots.counting.winding import (
-    FORGETTING,
-    GOAL,
-    NEARER,
     Cell,
     RootOnPathError,
     Winding,
-    continuous_step,
     total_turn,
 )
 from symflex.roots.functions.kernel_function import ROOM, Sample, angle, deviation
@@ -77,36 +73,6 @@ def test_steps_cover_the_path_once_and_none_is_taken_that_may_have_turned_by_mor
     total_turn(change, 0.125, 1e-6)
     assert all(end - start <= 0.125 for start, end, short in steps if short)
     assert steps[0][2]
-
-
-def test_steps_grow_where_nothing_turns_and_shrink_where_much_does():
-    change, steps = spiral(1, bound=lambda start, end: (80 if 0.4 < end < 0.6 else 0.5) * (end - start))
-    total_turn(change, 0.01, 1e-6)
-    lengths = {start: end - start for start, end, short in steps if short}
-    inside = [length for start, length in lengths.items() if 0.42 < start < 0.58]
-    assert max(inside) <= ROOM / 80 + 1e-9
-    assert max(lengths.values()) > 4 * max(inside)
-    # A step grows by at most a half, and so many are needed to cover the path.
-    taken = sorted(lengths.values())
-    assert all(b <= 1.5 * a + 1e-12 for a, b in pairwise(taken) if b > a)
-    assert len(steps) < 120
-
-
-def test_after_a_step_that_was_too_long_one_aims_at_the_goal_and_those_after_it_grow_by_little():
-    for off in [1.7, 2.0, 2.25]:
-        change, steps = spiral(1, bound=lambda start, end, off=off: off * (end - start) / 0.25)
-        total_turn(change, 0.25, 1e-6)
-        (_, first, is_first_short), (_, second, is_second_short) = steps[:2]
-        assert (first, is_first_short, is_second_short) == (0.25, False, True), off
-        assert second == pytest.approx(0.25 * GOAL / off)
-    change, steps = spiral(1, bound=lambda start, end: 2.0 if end - start > 0.3 else 0.01)
-    total_turn(change, 0.4, 1e-6)
-    assert [short for _, _, short in steps[:4]] == [False, True, True, True]
-    bounds = [NEARER * 0.4 * FORGETTING**n for n in (1, 2)]
-    assert [end - start for start, end, _ in steps[2:4]] == pytest.approx(bounds)
-    change, steps = spiral(1, bound=lambda start, end: 0.01)
-    total_turn(change, 0.3, 1e-6)
-    assert [end for _, end, _ in steps] == pytest.approx([0.3, 0.75, 1])
 
 
 def test_a_root_on_the_path_ends_in_steps_that_are_too_short():
@@ -231,17 +197,6 @@ def test_a_disc_about_0_holds_as_many_roots_as_were_put_there():
         assert found == expected, (name, radius)
 
 
-def test_an_edge_followed_before_is_followed_back_by_the_same_turn():
-    function = Followed(PRODUCTS["double"])
-    winding = CertifiedWinding(function)
-    there = winding.certified_turn(1j, complex(2, 1))
-    evaluations = len(function.levels)
-    back = winding.certified_turn(complex(2, 1), 1j)
-    assert len(function.levels) == evaluations
-    assert there.overlaps(-back)
-    assert not float(there) == pytest.approx(0, abs=0.1)
-
-
 def test_a_turn_is_the_change_of_the_argument():
     for start, end in [(0j, 2 + 0j), (0.3 + 0.2j, 1 + 2j), (2 + 3j, -1 + 0.5j), (1j, 3j)]:
         function = Followed((((9, (-5, 8)), 2), (((0, 30),), -1)))
@@ -276,7 +231,6 @@ class Made(Followed):
             return self.make(own, s, bits) if self.make else own
 
 
-FAR = (((100,), 1),)
 BESIDE = (((-18,), 1),)
 """Seen from 2, at 20."""
 
@@ -299,22 +253,6 @@ def test_a_power_series_tells_how_far_a_step_turns():
         else:
             # The disc holds the root: the argument may wind.
             assert bound > ROOM, radius
-
-
-def test_a_series_serves_the_next_step_too_where_that_lies_well_within():
-    function = Made(FAR)
-    steps = SeriesSteps(function)
-    bound, _ = steps.change(acb(2), arb(1), acb(1), acb(3), 64)
-    first = len(function.asked)
-    # A function as large as its bound takes few values.
-    assert bound <= ROOM
-    assert first < MOST / 3
-    bound, turn = steps.change(acb(2.25), arb(0.25), acb(2), acb(2.5), 64)
-    assert len(function.asked) == first
-    assert bound <= ROOM
-    assert turn.contains(0)
-    steps.change(acb(30), arb(1), acb(29), acb(31), 64)
-    assert len(function.asked) > first
 
 
 def steep():
@@ -389,16 +327,6 @@ def test_a_step_reaches_as_far_as_its_middle_may_lie_off():
         steps = SeriesSteps(Followed(((((arb(2) + off, 0),), 1),)))
         bound, _ = steps.change(acb(arb(2, 0.5), 0), arb(0.5), acb(2), acb(2), 64)
         assert (bound <= ROOM) is is_told, off
-
-
-def test_a_step_that_its_own_series_does_not_tell_needs_no_second_one():
-    function = Made(((((arb("2.5"), 0),), 1),))
-    steps = SeriesSteps(function)
-    step = (acb(2), arb(1), acb(1), acb(3), 64)
-    assert steps.change(*step)[0] > ROOM
-    first = len(function.asked)
-    assert steps.change(*step)[0] > ROOM
-    assert len(function.asked) == first
 
 
 def test_what_a_product_of_series_is_cut_off_by_is_bounded_by_cauchys_estimate():
@@ -519,18 +447,6 @@ def test_series_help_where_steps_are_too_long_for_exponentials():
         assert function.levels or not tries_series, is_analytic
 
 
-def test_series_are_tried_where_exponentials_say_far_too_little():
-    class Function(Exponentials):
-        def turn_of_exponentials(self, ball, start, end, bits):
-            self.levels.append(end)
-            return super().turn_of_exponentials(ball, start, end, bits)
-
-    # By exponentials alone the boundary, some 20 long, would take more than ten thousand steps.
-    function = Function(PRODUCTS["double"], longest=1e-3)
-    assert CertifiedWinding(function).count(CELL) == in_cell(function)
-    assert len(function.levels) < 2000
-
-
 def test_series_serve_alone_where_no_step_is_short_enough_for_exponentials():
     @dataclass(frozen=True, eq=False)
     class Hopeless(Followed):
@@ -603,15 +519,6 @@ def test_the_precision_is_raised_where_a_factor_is_lost_and_the_path_ends_where_
 # ----------------------------------------------------------------------------------- cells and samples
 
 
-def test_a_cell_has_four_edges_counterclockwise():
-    corners = [complex(1, 2), complex(3, 2), complex(3, 5), complex(1, 5)]
-    edges = Cell(1, 3, 2, 5).edges
-    assert {e[0] for e in edges} == set(corners)
-    area = sum(a.real * b.imag - b.real * a.imag for a, b in edges) / 2
-    assert area == 6
-    assert all(a[1] == b[0] for a, b in zip(edges, [*edges[1:], edges[0]], strict=True))
-
-
 def test_a_cell_has_a_centre_and_a_size_and_is_cut_across_its_longer_side():
     assert (Cell(1, 3, 2, 5).centre, Cell(1, 3, 2, 5).size, Cell(0, 7, 2, 5).size) == (2 + 3.5j, 3, 7)
     for cell, parts in [
@@ -645,23 +552,6 @@ def test_what_is_left_around_a_hole_is_the_cell_without_it():
             for y in range(1, 30, 2):
                 z = complex(x / 10 + 0.01, y / 10 + 0.01)
                 assert sum(part.holds(z) for part in left) == (not hole.holds(z)), (hole, z)
-
-
-def test_a_step_is_told_where_slopes_agree_with_values():
-    for start, end, step, turned in [
-        (Sample(0j, 1j), Sample(0.5j, 1j), 0.5, 0.5),
-        # The logarithm jumps by a turn where the function crosses the negative real axis.
-        (Sample(3j, 1j), Sample(3.5j - 2j * pi, 1j), 0.5, 0.5),
-        (Sample(-3j, -1j), Sample(-3.5j + 2j * pi, -1j), 0.5, -0.5),
-        (Sample(0j, 1j), Sample(0.79j, 1j), 0.5, 0.79),
-        (Sample(0j, 1j), Sample(0.81j, 1j), 0.5, None),
-        (Sample(0j, 0j), Sample(0.31 + 0j, 0j), 0.5, None),
-        (Sample(0j, 1j), Sample(1j, 4.9j), 0.5, None),
-        (Sample(0j, -1.9 + 0j), Sample(0j, 1.9 + 0j), 0.5, 0.0),
-        (Sample(0j, -2.1 + 0j), Sample(0j, 2.1 + 0j), 0.5, None),
-    ]:
-        found = continuous_step(start, end, step)
-        assert found == (None if turned is None else pytest.approx(turned)), (start, end)
 
 
 def test_within_the_smallest_radius_are_only_roots_at_0_and_it_stays_away_from_holes():
@@ -705,10 +595,3 @@ def test_work_has_an_end_where_no_time_is_given():
     winding = Winding(Followed(PRODUCTS["simple"]))
     code, _, hint = refused(lambda: winding.turn(0j, complex(0, 3e6)))
     assert (code, hint) == ("SF505", FEWER)
-
-
-def test_a_sample_at_a_root_says_so_each_time():
-    winding = Winding(Followed(((((1, 0),), 1),)))
-    for _ in range(2):
-        with pytest.raises(RootOnPathError):
-            winding.sample(0j)

@@ -20,7 +20,6 @@ from symflex.errors import BudgetError, ModelError
 from symflex.roots import Band, Budget, Mode, Modes, Rectangle
 from symflex.roots.counting import winding
 from symflex.roots.distributed.side import Proof, Side
-from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SEARCHES
 from symflex.roots.locate import locate
 from symflex.roots.root import overlap
 from tests.unit.roots.distributed_models import (
@@ -31,12 +30,10 @@ from tests.unit.roots.distributed_models import (
     LINE,
     ON_A_FOUNDATION,
     PARAMETERS,
-    PINNED_IN_THE_MIDDLE,
-    ROD,
     SLIDING_FREE,
     bound,
 )
-from tests.unit.roots.stand_ins import poles_by, side
+from tests.unit.roots.stand_ins import poles_by
 
 DIGITS = 40
 
@@ -94,20 +91,6 @@ def test_tip_zeros_of_the_sliding_free_beam_are_real_pairs_where_cos_q_cosh_q_va
     assert all(root.is_real for root in zeros)
 
 
-def test_a_rod_with_a_tip_mass_solves_x_tan_x_equals_mu():
-    x = [findroot(lambda x: x * tan(x) - 2, n * pi + 1 / (n + mpf(1))) for n in range(4)]
-    agree(upper(found(ROD, Modes(4)).poles), [mpc(0, each) for each in x])
-
-
-def test_poles_of_a_kelvin_voigt_beam_solve_a_quadratic_per_mode():
-    eta = mpf("0.004")
-    result = found(KELVIN_VOIGT, Modes(2))
-    omega = [(n * pi) ** 2 for n in (1, 2)]
-    agree(upper(result.poles), [-eta * w**2 / 2 + mpc(0, w * sqrt(1 - (eta * w / 2) ** 2)) for w in omega])
-    # They accumulate far away, at -1/eta.
-    assert result.excluded == ()
-
-
 @pytest.mark.slow
 def test_where_kelvin_voigt_poles_accumulate_a_neighbourhood_is_left_out_and_all_others_are_found():
     eta, expected = mpf("0.004"), []
@@ -125,27 +108,6 @@ def test_where_kelvin_voigt_poles_accumulate_a_neighbourhood_is_left_out_and_all
     (part,) = result.excluded
     assert (part.re, part.im) == pytest.approx((-250, 0))
     assert part.radius == pytest.approx(250 * abs(cmath.exp(0.05 + 0.05j) - 1))
-
-
-def test_poles_of_a_delay_loop_are_branches_of_lambert_s_function():
-    expected = sorted((2 * mpmath.lambertw(-1, k) for k in range(4)), key=abs)
-    result = found(DELAY_LOOP, Modes(4))
-    agree(upper(result.poles), expected)
-    assert result.zeros == ()
-
-
-def test_the_middle_of_a_symmetric_beam_hides_every_other_mode():
-    # Pinned-pinned: s = j (n pi)^2; the middle is a node of the even modes.
-    result = found(PINNED_IN_THE_MIDDLE, Modes(3))
-    agree(upper(result.poles), [mpc(0, (n * pi) ** 2) for n in (1, 3, 5)])
-    agree(upper([h.root for h in result.hidden]), [mpc(0, (n * pi) ** 2) for n in (2, 4)])
-
-
-def test_a_free_beam_has_a_double_pole_at_the_origin_beside_its_modes_on_the_axis():
-    poles = found(FREE, Modes(2)).poles
-    assert [root.multiplicity for root in poles if root.is_zero] == [2]
-    assert len(upper(poles)) == 2
-    assert all(root.on_imaginary_axis and root.damping_ratio() in (0.0, None) for root in poles)
 
 
 def test_a_band_holds_what_lies_between_its_limits_and_a_rectangle_one_of_a_pair():
@@ -188,16 +150,6 @@ def test_a_search_beyond_its_budget_says_what_it_found(monkeypatch):
     assert re.search(r"takes too long; \d+ modes were found up to .* Hz", result.certificate.reason)
 
 
-def test_no_time_is_said_to_be_over_and_keeps_what_was_found():
-    times = iter([0.0] * 400 + [10.0] * 100_000)
-    region = Modes(30)
-    source = bound(DELAY_LOOP)
-    with Budget(5, clock=lambda: next(times)).entered():
-        result = locate(source, region, 12)
-    assert result.certificate.is_exceeded
-    assert "the time budget is used up" in result.certificate.reason
-
-
 def test_a_million_modes_are_refused_at_once():
     with pytest.raises(BudgetError, match="SF505"):
         found(SLIDING_FREE, Modes(10**6))
@@ -238,22 +190,6 @@ def poles_of(region, engine):
     return poles_by(engine, bound(SLIDING_FREE, 0), region, DIGITS)
 
 
-def test_every_engine_finds_the_sliding_free_beam_s_poles():
-    for engine in SEARCHES:
-        poles = [root for root in poles_of(Modes(2), engine) if root.im > 0]
-        assert len(poles) == 2
-        assert all(agrees(root, sliding_free(n)) for n, root in enumerate(poles, 1)), engine
-        assert all(root.on_imaginary_axis and root.certified for root in poles), engine
-
-
-def test_what_has_losses_or_delays_is_left_to_the_next_engine():
-    for text in [KELVIN_VOIGT, DELAY_LOOP]:
-        one = side(text)
-        assert one.engine == GUESS_AND_PROVE, text
-        with pytest.raises(TypeError, match=r"^not for the engine lossless$"):
-            side(text, engines=(LOSSLESS,))
-
-
 def test_two_hundred_modes_are_complete_and_on_the_axis():
     poles = [root for root in poles_of(Modes(200), "lossless") if root.im > 0]
     assert len(poles) == 200
@@ -266,18 +202,6 @@ def test_a_mode_is_found_by_its_number():
         upper, lower = poles_of(Mode(number), "lossless")
         assert agrees(upper, sliding_free(number))
         assert lower.im < 0, number
-
-
-def test_the_map_of_one_mode_holds_nothing_else():
-    found = locate(bound(SLIDING_FREE, 0), Mode(7), 20)
-    assert found.certificate.certified
-    assert (len(found.poles), len(found.zeros), found.hidden) == (2, 2, ())
-
-
-def test_a_mode_by_number_of_a_lossy_system_is_the_same_as_in_the_list():
-    source = bound(KELVIN_VOIGT, 0)
-    second = locate(source, Mode(2), 15).poles
-    assert [r.decimal(12) for r in second] == [r.decimal(12) for r in locate(source, Modes(2), 15).poles[2:4]]
 
 
 def test_a_mode_beyond_the_last_is_none():

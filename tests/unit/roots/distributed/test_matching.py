@@ -10,17 +10,12 @@ from math import inf, log
 
 import pytest
 
-from symflex import pipeline
-from symflex.errors import BudgetError
-from symflex.roots import Band, Mode, Modes, Rectangle
+from symflex.roots import Rectangle
 from symflex.roots.counting.winding import Cell
 from symflex.roots.locate import (
-    MATCHING_ROUNDS,
     _chosen,
     _exclusion,
-    _find,
     _match,
-    default_region,
     degenerate_points,
 )
 from tests.unit.roots.distributed_models import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
@@ -78,77 +73,12 @@ def test_what_is_shared_is_certified_where_both_are():
         assert [r.certified for r in _match(*sides)] == [one and other]
 
 
-def test_modes_are_asked_for_until_enough_are_left():
-    poles, zeros = StandIn([root(-1, 2)], reached=2.0, modes=2), StandIn([root(-1, 2)], reached=3.0, modes=1)
-    # After the first match nothing is shared any more.
-    assert places(_find((poles, zeros), Modes(2))) == []
-    assert poles.asked[:2] == [(2, -inf), (0, 3.0)]
-    assert poles.asked[2][0] == 2 + 1
-    assert zeros.asked == poles.asked
-
-
-class Sharing(StandIn):
-    """A side that finds the same root in every round."""
-
-    def extend(self, modes, radius=-inf):
-        super().extend(modes, radius)
-        self.roots = [root(-1, 2)]
-
-
-def test_so_many_modes_are_lacking_that_it_is_given_up():
-    poles, zeros = Sharing([], modes=1), Sharing([], modes=1)
-    with pytest.raises(
-        BudgetError, match=r"SF505.*: too many poles and zeros coincide to identify the modes"
-    ) as e:
-        _find((poles, zeros), Modes(3))
-    assert e.value.diagnostics[0].hint == "ask for a band, which shows those that do not"
-    assert [modes for modes, _ in poles.asked if modes] == [3 + 2 * k for k in range(MATCHING_ROUNDS)]
-
-
-def test_zeros_may_be_fewer_than_modes_asked_for():
-    shared = _find((Sharing([], modes=3), Sharing([], modes=0)), Modes(3))
-    assert places(shared) == [(-1, 2, 1)]
-
-
-def test_modes_left_that_are_enough_are_not_asked_for_again():
-    for modes in (3, 4):
-        sides = Sharing([], modes=modes), Sharing([], modes=modes)
-        assert places(_find(sides, Modes(3))) == [(-1, 2, 1)]
-        assert [asked for asked, _ in sides[0].asked] == [3, 0], modes
-
-
-def test_a_region_is_searched_once_on_both_sides():
-    poles, zeros = StandIn([root(-1, 2)]), StandIn([root(-1, 2)])
-    region = Band(Fraction(1), Fraction(2))
-    assert places(_find((poles, zeros), region)) == [(-1, 2, 1)]
-    assert poles.searched == zeros.searched == [region]
-    alone = StandIn([root(-1, 2)])
-    assert _find((alone,), region) == []
-    assert places(alone.roots) == [(-1, 2, 1)]
-
-
 FIVE = [root(0, 0, 2), root(0, 4), root(0, -4), root(-7, 0, 2), root(0, 9), root(0, -9)]
-
-
-def test_the_lowest_modes_come_with_their_mirror_images_and_a_numbered_one_with_all_that_was_found():
-    for count, upto in [(0, 1), (1, 3), (2, 4), (3, 4), (4, 6), (9, 6)]:
-        assert places(_chosen(FIVE[::-1], Modes(count))) == places(FIVE[:upto])
-    assert sorted(places(_chosen(FIVE, Mode(3)))) == sorted(places(FIVE))
 
 
 def test_of_a_rectangle_what_lies_outside_is_left_out_and_what_lies_on_it_marked():
     found = _chosen(FIVE, Rectangle(Fraction(-5), Fraction(5), Fraction(-4), Fraction(9, 2)))
     assert [(float(r.im), r.on_boundary) for r in found] == [(0, False), (4, False), (-4, True)]
-
-
-def test_without_a_region_the_models_own_is_searched():
-    for analysis, region in [
-        ("", Modes(5)),
-        ("[analysis]\nmodes = 3", Modes(3)),
-        ('[analysis]\nband = ["1 Hz", "9 Hz"]', Band(Fraction(1), Fraction(9))),
-    ]:
-        model = pipeline.loads(ROD + analysis)
-        assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region, analysis
 
 
 def test_wavenumbers_vanish_where_their_law_does():

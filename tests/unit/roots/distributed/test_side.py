@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import exp, inf, log, pi
 from types import SimpleNamespace
 
@@ -12,9 +11,8 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
-from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
-from symflex.roots import Band, Modes, Rectangle
+from symflex.roots import Modes
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.distributed import proof
 from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Proof, roots_at_zero, turns_about_zero
@@ -22,11 +20,10 @@ from symflex.roots.distributed.side import Side, accumulation_points, require_lo
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.locate import locate
 from symflex.roots.plane.search import MODES_LIMIT
-from symflex.roots.problem import polynomial_in_s
 from symflex.roots.root import are_apart, groups
 from symflex.transfer.of_model import derive_bound
 from tests.unit.refusals import refusal
-from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
+from tests.unit.roots.distributed_models import FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 
 LUMPED = """
@@ -43,12 +40,6 @@ def rod(n):
     )
 
 
-def delays(count):
-    """Return the lowest roots of s + 2 exp(-s/2), 2 W_k(-1)."""
-    every = [2 * complex(mpmath.lambertw(-1, k)) for k in range(-9, 10)]
-    return sorted((s for s in every if s.imag >= 0), key=abs)[:count]
-
-
 ENGINES = [LOSSLESS, GUESS_AND_PROVE, SUBDIVISION]
 
 
@@ -57,32 +48,6 @@ def three_modes(engine):
     one = side(ROD, engines=(engine,))
     one.extend(3)
     return one
-
-
-def test_modes_found_are_those_of_the_closed_form_and_one_met_twice_is_no_proof():
-    for engine in ENGINES:
-        found = three_modes(engine)
-        sizes = sorted(float(r.im) for r in found.roots if r.im > 0)
-        assert sizes == pytest.approx([rod(n) for n in (1, 2, 3)]), engine
-        assert all(r.on_imaginary_axis and r.multiplicity == 1 for r in found.roots), engine
-        assert found.prove(Modes(3)) == Proof(6, 6), engine
-        assert (found.modes, found.missing) == (3, 0), engine
-        assert rod(3) < mpmath.exp(found.reached) < rod(4), engine
-        found._located.append(found._located[0])
-        found._known = None
-        assert found.counted() == Proof(7, 7, TOUCHING), engine
-
-
-def test_a_search_anew_that_is_broken_off_is_recalled_to_the_one_that_found_the_modes():
-    one = side(ROD, engines=(GUESS_AND_PROVE, SUBDIVISION))
-    one.extend(3)
-    before = (one.modes, one.reached, one.engine)
-    one._known = Proof(20, 12)
-    with pytest.raises(BudgetError), Budget(seconds=0).entered():
-        one.prove(Modes(3))
-    assert one.engine == SUBDIVISION
-    one.recall()
-    assert (one.modes, one.reached, one.engine) == before
 
 
 def test_a_root_taken_away_is_missed_and_one_too_many_is_noticed():
@@ -112,83 +77,9 @@ def test_a_root_on_the_circle_is_no_proof():
     assert one.counted() == Proof(0, 0, UNPROVED)
 
 
-def test_a_count_is_kept_until_other_roots_are_set_and_nothing_is_proved_before_a_search():
-    one = side(ROD)
-    one.extend(2)
-    assert one.counted() is one.counted()
-    one._set([])
-    assert one.counted() == Proof(4, 0)
-    assert side(ROD).counted() == Proof(0, 0, "nothing was searched")
-
-
 def test_a_proof_is_complete_when_all_counted_are_found_and_nothing_speaks_against_it():
     for given, is_complete in [((3, 3), True), ((3, 2), False), ((3, 3, "why"), False)]:
         assert Proof(*given).is_complete is is_complete
-
-
-def test_roots_of_a_delay_are_lamberts():
-    for engine in (GUESS_AND_PROVE, SUBDIVISION):
-        one = side(DELAY_LOOP, engines=(engine,))
-        one.extend(4)
-        found = sorted((complex(r.re, r.im) for r in one.roots if r.im >= 0), key=abs)
-        assert found[:4] == pytest.approx(delays(4)), engine
-        assert one.prove(Modes(4)).is_complete, engine
-
-
-def test_a_rectangle_holds_the_roots_that_lie_in_it():
-    for engine in [GUESS_AND_PROVE, SUBDIVISION]:
-        one = side(DELAY_LOOP, engines=(engine,))
-        region = Rectangle(Fraction(-8), Fraction(-3), Fraction(5), Fraction(30))
-        one.search(region)
-        assert one.prove(region).is_complete, engine
-        inside = [s for s in delays(9) if -8 < s.real < -3 and 5 < s.imag < 30]
-        assert len(inside) == 2, engine
-        known = [complex(r.re, r.im) for r in one.roots]
-        assert all(min(abs(s - each) for each in known) < 1e-9 for s in inside), engine
-
-
-def test_a_band_holds_the_modes_between_its_ends():
-    region = Band(Fraction(1, 2), Fraction(3, 2))
-    expected = [rod(n) for n in range(1, 9) if pi < rod(n) < 3 * pi]
-    for engine in ENGINES:
-        one = side(ROD, engines=(engine, SUBDIVISION))
-        one.search(region)
-        assert one.prove(region).is_complete, engine
-        sizes = [float(r.im) for r in one.roots if r.im > 0]
-        assert [x for x in sorted(sizes) if pi < x < 3 * pi] == pytest.approx(expected), engine
-        # The engine asked first proved it.
-        assert one.engine == engine
-
-
-def test_a_band_from_0_holds_all_modes_below_its_end_and_the_poles_at_0():
-    region = Band(Fraction(0), Fraction(5))
-    for engine in (LOSSLESS, GUESS_AND_PROVE):
-        one = side(FREE, engines=(engine, SUBDIVISION))
-        one.search(region)
-        # 22.4 rad/s (Blevins 1979), both signs, and two poles at 0
-        assert one.prove(region).is_complete, engine
-        assert sorted(round(float(r.im), 1) for r in one.roots if 0 < r.im < 10 * pi) == [22.4]
-        assert one.engine == engine
-        assert sum(r.multiplicity for r in one.roots if r.is_zero) == 2, engine
-
-
-def test_a_free_beam_has_a_double_pole_at_0_that_is_counted():
-    one = side(FREE)
-    one.extend(2)
-    (zero,) = (r for r in one.roots if r.is_zero)
-    assert zero.multiplicity == 2
-    assert one.prove(Modes(2)) == Proof(6, 6)
-    # Without it the count is not met.
-    one._located.remove(zero)
-    one._known = None
-    assert not one.counted().is_complete
-
-
-def test_a_mode_by_number_is_that_one():
-    for n, engine in [(1, LOSSLESS), (4, LOSSLESS), (2, GUESS_AND_PROVE)]:
-        one = side(ROD, engines=(engine,))
-        assert float(one.numbered(n).im) == pytest.approx(rod(n))
-        assert [abs(float(r.im)) for r in one.roots] == pytest.approx([rod(n)] * 2)
 
 
 def test_a_polynomial_has_all_its_roots_at_once():
@@ -308,12 +199,6 @@ def test_values_along_a_taper_that_no_memory_holds_are_refused():
     assert refusal(locate, field("w'' = x*s^40*w"), Modes(11), 45) == "BudgetError SF504"
 
 
-def test_a_factor_without_kernels_is_a_polynomial_in_s():
-    source = bound(ROD)
-    s = source.ratio.ring.context.gen(0)
-    assert polynomial_in_s(source, 3 * s**2 - 5).integers() == (-5, 0, 3)
-
-
 # ------------------------------------------------------------------- proofs that lack something, one by one
 
 
@@ -347,20 +232,6 @@ def test_inside_of_a_ring_no_roots_are_left_unseen():
     assert one.counted() == Proof(4, 4)
     one._innermost, one._known = one._domain.low, None
     assert one.counted() == Proof(4, 4, UNPROVED)
-
-
-def test_roots_of_a_polynomial_factor_are_those_of_the_polynomial():
-    # (s + 1)(s + 4)(s + 2 D)
-    text = """
-symflex = 1
-blocks.D = { type = "delay", T = 0.5 }
-inputs.u = {}
-outputs.y = "u/((s + 1)*(s + 4)*(s + 2*D))"
-"""
-    one = side(text, engines=(GUESS_AND_PROVE,))
-    one.extend(3)
-    assert sorted(float(r.re) for r in one.roots if r.re.is_exact()) == [-4, -1]
-    assert one.prove(Modes(3)).is_complete
 
 
 class Circles:

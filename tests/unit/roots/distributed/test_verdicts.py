@@ -237,51 +237,11 @@ def test_roots_accumulate_right_of_the_axis_where_a_hole_begins_there(searching)
         assert searching(side) == RightHalfPlane((), unproved), right
 
 
-def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
-    side = Half(0)
-    searching(side, tails=(0.5,))
-    assert side.counted_to == [pytest.approx(0.5 * 1.01)]
-    side = Half(0, exponents=(1, -1, 2, 1))
-    assert searching(side, tails=(7.0, 9.0, 8.0)) == RightHalfPlane(())
-    assert side.counted_to == [pytest.approx(9 * 1.01)]
-
-
-def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching):
-    for reached in [0.0, 29.0]:
-        side = Half(0)
-        found = searching(side, reached=reached, tails=ENDLESS)
-        assert found == RightHalfPlane((), "poles have no end", 30.0), reached
-        assert side.counted_to == [pytest.approx(30 * 1.01)], reached
-
-
-def test_where_all_roots_are_known_none_is_counted_again(searching):
-    for tails, unproved in [(ENDLESS, ("poles have no end", 40.0)), (ENDING, ())]:
-        side = Half(0)
-        assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), *unproved)
-        assert side.counted_to == [], tails
-
-
 def test_where_some_are_missing_the_half_disc_is_searched(searching):
     again = Half(0, roots=(LEFT, RIGHT, TWICE), proof=Proof(3, 3))
     assert searching(Half(3), [RIGHT], again=again) == RightHalfPlane((RIGHT, TWICE))
     (region,) = again.searched
     assert (region.re_low, region.re_high, region.im_low, region.im_high) == (0, 7, -7, 7)
-
-
-def test_where_they_are_not_found_it_is_said_why(searching):
-    for proof, unproved in [
-        (Proof(3, 1, "two were not found"), "two were not found"),
-        (Proof(3, 1), NOT_COUNTED),
-    ]:
-        again = Half(0, roots=(RIGHT,), proof=proof)
-        assert searching(Half(3), again=again) == RightHalfPlane((RIGHT,), unproved), proof
-
-
-def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching):
-    for reached in [0.0, 20.0]:
-        again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
-        found = searching(Half(3), reached=reached, tails=ENDLESS, again=again)
-        assert found == RightHalfPlane((RIGHT,), "poles have no end", reached), reached
 
 
 def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching):
@@ -296,15 +256,6 @@ def test_a_budget_spent_by_the_count_is_said(searching):
     assert found == RightHalfPlane((RIGHT,), "poles have no end", 20.0)
 
 
-def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
-    for count, said in [
-        (3, "3 are counted, but not all are found: the budget is spent"),
-        (RootOnPathError(), "the budget is spent"),
-    ]:
-        again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
-        assert searching(Half(count), [RIGHT], again=again) == RightHalfPlane((RIGHT,), said)
-
-
 def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_they_end(searching):
     side, again = Half(9, is_even=True), Half(0, roots=(RIGHT, ON, LEFT))
     found = searching(side, [ON], reached=20.0, tails=ENDLESS, again=again)
@@ -314,15 +265,6 @@ def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_t
     found = searching(Half(9, is_even=True), [ON, LEFT], reached=31.0, tails=ENDLESS)
     assert found == RightHalfPlane((ON, LEFT), "poles have no end", 31.0)
     assert searching(Half(1, is_even=True), [RIGHT]) == RightHalfPlane((RIGHT,))
-
-
-def test_a_budget_spent_beyond_what_was_asked_for_says_how_far_all_is_known(searching):
-    class Spent(Half):
-        def search(self, region):
-            raise SPENT
-
-    found = searching(Half(0, is_even=True), [ON], reached=20.0, tails=ENDLESS, again=Spent(0))
-    assert found == RightHalfPlane((ON,), "poles have no end", 20.0)
 
 
 def test_distributed_parts_that_nothing_sees_are_not_said_to_be_stable():

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-from types import SimpleNamespace
 
 import mpmath
-import numpy as np
 import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
-from symflex.algebra import Dispersion
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
 from symflex.balls import expansion, precision
-from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]
@@ -180,61 +177,3 @@ def test_powers_of_hyperbolic_functions_are_multiplied_out():
         (1, 2, {3: 1, 1: -1, -1: -1, -3: 1}),
     ]:
         assert spread(even, odd) == expected
-
-
-# ----------------------------------------------------------------------------------------------- in doubles
-
-
-def test_samples_in_doubles_are_those_of_mpmath():
-    for made, exact in models():
-        with precision(64):
-            sums = DoubleSums(made.values)
-        radii = np.array([0.7, 2.0, 5.5])
-        for angle in (0.0, 1.1, np.pi / 2 - 0.01):
-            order = list(reversed(range(len(made.sums))))
-            for i, sample in zip(order, sums.sampled(np.log(radii), angle, order), strict=True):
-                for k, radius in enumerate(radii):
-                    s = acb(radius * np.exp(1j * angle))
-                    expected = exact(complex(s))[i]
-                    assert sample.size[k] == pytest.approx(float(mpmath.log(abs(expected))), abs=1e-9)
-                    assert np.exp(1j * sample.phase[k]) == pytest.approx(
-                        complex(expected / abs(expected)), abs=1e-9
-                    )
-                    with precision(64):
-                        place = made.values.at(s)
-                        parts = [
-                            abs(complex(c) * (1 if e is None else complex(e.exp())))
-                            for c, e in zip(
-                                made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True
-                            )
-                        ]
-                    assert sample.share[k] == pytest.approx(float(abs(expected)) / sum(parts), rel=1e-6)
-
-
-def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels_if_there_are_any():
-    with precision(64):
-        of_beam, of_rod, of_delay = (DoubleSums(make().values) for make in (beam, rod, delay))
-    # cosh^3 sin^2 cos and sin^3 sinh^3 of q = sqrt(s/2): abs(3 + 3 j) abs(q)
-    assert of_beam.fastest(complex(np.log(32.0))) == pytest.approx(4 * 3 * np.sqrt(2))
-    assert of_rod.fastest(np.log(32.0) + 1j) == pytest.approx(3 * 32)
-    assert of_delay.fastest(complex(np.log(32.0))) == pytest.approx(3 * 16)
-    with precision(64):
-        sums = DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: [s + 3]).values)
-    assert sums.fastest(1 + 0j) == 0.0
-    assert DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: []).values).fastest(1 + 0j) == 0.0
-
-
-def test_wavenumbers_in_doubles_solve_their_equations():
-    for kind, c, names in [
-        ("wave", [3 - 2j], "a"),
-        ("bending", [5 + 1j], "a"),
-        ("pair", [3 + 1j, 0, -7 + 2j], "ab"),
-    ]:
-        law = SimpleNamespace(kind=kind, wavenumbers=tuple(names))
-        found = Dispersion.roots(law, [np.array([each], dtype=complex) for each in c], np.sqrt)
-        assert list(found) == list(names), (kind, c)
-        # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
-        for (q,) in found.values():
-            rest = {"wave": q**2 + c[0], "bending": 4 * q**4 - c[0], "pair": q**4 + c[-1] * q**2 + c[0]}[kind]
-            assert abs(rest) < 1e-12, (kind, c)
-        assert len({complex(np.round(q[0] ** 2, 9)) for q in found.values()}) == len(names), (kind, c)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-from math import log, pi
 
 import mpmath
 import pytest
@@ -17,8 +16,6 @@ from symflex.errors import ModelError, UncertifiedError
 from symflex.roots.functions.kernel_function import (
     KernelFactors,
     KernelFunction,
-    _parity,
-    _spectral_size,
     has_kernels,
     split_off_kernels,
 )
@@ -144,15 +141,6 @@ def test_slopes_are_those_of_the_closed_form_but_for_one_whole_number():
             assert over == pytest.approx(there, abs=1e-9), (name, s)
 
 
-def test_logarithms_are_those_of_values():
-    for (name, function, _), s in product(models(), PLACES):
-        sample = function.at_point(acb(s))
-        value = complex(number(function.value(acb(s), BITS)))
-        assert sample.log.real == pytest.approx(log(abs(value))), (name, s)
-        turned = sample.log.imag - complex(mpmath.log(value)).imag
-        assert turned / (2 * pi) == pytest.approx(round(turned / (2 * pi)), abs=1e-9), (name, s)
-
-
 def test_factors_multiply_to_the_value():
     s = acb(2, 3)
     for name, function, _ in models():
@@ -214,31 +202,6 @@ def test_without_losses_and_delays_roots_mirror_each_other_in_both_axes():
         (KELVIN_VOIGT, False),
     ]:
         assert function_of(text).is_even is is_even
-
-
-def test_the_largest_argument_and_the_fastest_exponent_are_known_on_every_ray():
-    for text, s, reach in [
-        (ROD, 7.0, 7.0),
-        (DELAY_LOOP, 7.0, 3.5),
-        (ON_A_FOUNDATION, 7.0, 50**0.5),
-        (FREE, 8.0, 2.0),
-    ]:
-        # s l/c, s T, sqrt(s^2 + 1), sqrt(s/2)
-        function = function_of(text)
-        assert function.reach(s) == pytest.approx(reach)
-        assert function.frequency_of(reach) == pytest.approx(s)
-    for text, z, fastest in [
-        (ROD, log(7) + 1j, 7.0),
-        (DELAY_LOOP, log(7) + 1j, 3.5),
-        (ON_A_FOUNDATION, log(7) + 0j, 50**0.5),
-    ]:
-        assert function_of(text).fastest(z) == pytest.approx(fastest)
-
-    class InBalls(KernelFunction):
-        in_doubles = None
-
-    source = bound(ROD)
-    assert InBalls(source, source.den).fastest(log(7) + 1j) == pytest.approx(7)
 
 
 def test_polynomials_in_kernels_are_evaluated_as_they_stand_on_the_branch_of_a_place_nearby():
@@ -341,42 +304,6 @@ def test_a_root_has_no_logarithm():
     exact = KernelFunction(source, source.den * source.den.polynomial(source.ratio.ring, s - 3))
     assert exact.at_point(acb(3)) is None
     assert exact.at_point(acb(3.5)) is not None
-
-
-def test_simple_samples_count_every_root_once():
-    source = bound(DELAY_LOOP)
-    function = KernelFunction(source, source.den**3)
-    once = KernelFunction(source, source.den).at_logarithm(0.3 + 1j)
-    whole, simple = (function.at_logarithm(0.3 + 1j, is_simple=each) for each in (False, True))
-    assert whole.slope == pytest.approx(3 * once.slope)
-    assert simple.slope == pytest.approx(once.slope)
-    assert simple.log.real == pytest.approx(once.log.real)
-
-
-def test_work_grows_with_every_value_and_with_their_precision():
-    function = function_of(ROD)
-    steps = []
-    for bits in (64, 128, 1280):
-        before = function.work
-        function.value(acb(1), bits)
-        steps.append(function.work - before)
-    assert steps[0] == steps[1] > 0
-    assert steps[2] == 10 * steps[1]
-
-
-def test_powers_of_s_are_even_or_odd_or_neither():
-    s = bound(ROD).ratio.ring.context.gen(0)
-    assert [_parity(p) for p in (s**2 + 1, s**3 - s, s + 1, s**0 * 5)] == [0, 1, None, 0]
-
-
-def test_the_largest_root_is_about_as_large_as_a_coefficients_root():
-    for coefficients, size in [
-        ([acb(0), acb(-16)], 16),
-        ([acb(27), acb(0), acb(0)], 3),
-        ([acb(1), acb(100j)], 100),
-    ]:
-        # The coefficient of the power order - k, to the power 1/k.
-        assert float(_spectral_size(coefficients).real) == pytest.approx(size)
 
 
 def test_factors_are_those_with_kernels_and_those_with_s_alone():

@@ -3,32 +3,20 @@
 from __future__ import annotations
 
 from cmath import phase
-from math import exp, inf, log, pi
+from math import exp, log, pi
 
 import pytest
 from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.balls import precision
-from symflex.budget import Budget
-from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.plane.search import RootSearch
 from tests.unit.roots.distributed_models import DELAY_LOOP, bound
 
 DIGITS = 15
-
-
-class Told:
-    """Remembers what progress was reported."""
-
-    def __init__(self):
-        self.said = []
-
-    def report(self, done, text):
-        self.said.append((done, text))
 
 
 def search(make, holes=(), kind=Winding):
@@ -152,52 +140,6 @@ def test_modes_are_found_outwards_until_there_are_enough_or_to_a_radius():
     assert one.reached >= log(3.5)
 
 
-def test_modes_located_are_reported_and_a_scan_for_more_than_there_are_ends():
-    told = Told()
-    with Budget(progress=told).entered():
-        search(even).extend(3)
-    assert told.said
-    assert all(text == f"{round(3 * done)} of 3 modes located" for done, text in told.said)
-    told = Told()
-    one = search(lambda s: [(4 * s**2 + 25, 1)])
-    with Budget(progress=told).entered():
-        assert one.scan(2, -inf, lambda: True) is True
-    assert one.reached == inf
-    assert {text for _, text in told.said} == {"0 of 2 modes located", "1 of 2 modes located"}
-
-
-def test_roots_on_both_axes_are_scanned_and_met_once():
-    one = search(lambda s: [(4 * s**2 + 25, 1), (s**2 - 9, 1), (s**2 + 49, 2)])
-    asked = []
-
-    def is_complete():
-        asked.append(sorted(abs(s) for s in values(one.roots)))
-        return True
-
-    assert one.scan(3, -inf, is_complete) is True
-    assert asked[-1][:2] == pytest.approx([2.5, 3])
-    assert sum(root.multiplicity for root in one.roots) == 4
-    assert one.reached >= log(7)
-    assert [root.multiplicity for root in one.roots if root.im > 5] == [2]
-    one = search(lambda s: [(s**2 + 4, 1), (s**2 - 9, 1), (s**2 + 49, 1), (s**2 - 900, 1)])
-    found = one.on_axes(log(1), log(10))
-    assert values(found) == pytest.approx([2j, 3, 7j])
-
-
-def test_a_scan_says_whether_these_are_all():
-    for complete in [True, False]:
-        assert search(even).scan(1, log(9), lambda complete=complete: complete) is complete
-
-
-def test_a_scan_along_axes_without_roots_ends_soon():
-    # The roots of s^4 + 64 are +-2 +- 2j: none lies on an axis.
-    one = search(lambda s: [(s**4 + 64, 1)])
-    asked = []
-    assert one.scan(1, -inf, lambda: bool(asked.append(one.reached))) is False
-    assert len(asked) == 1
-    assert log(8) < asked[0] < log(100)
-
-
 HOLE = Cell(log(2) - 0.05, log(2) + 0.3, 1.8, 2.3)
 """About -1 + 2j, at ln 2.236 and 2.03 rad."""
 
@@ -222,27 +164,7 @@ def test_circles_pass_by_one_hole_and_the_next():
         assert search(mixed, holes=holes).passing(HOLE.low) == pytest.approx(other.high + 0.03)
 
 
-def test_where_no_circle_passes_it_is_said_where():
-    class Blocked(Winding):
-        def count(self, cell):
-            raise RootOnPathError
-
-    one = search(mixed, kind=Winding)
-    one._winding = Blocked(one.function)
-    with pytest.raises(BudgetError, match=r"SF505.*: roots do not separate near 2 rad/s") as failed:
-        one._ring(log(1), log(2))
-    assert failed.value.diagnostics[0].hint == "ask for a band that ends elsewhere"
-    # A ring that was asked for has one that was not found.
-    found = one.ring(log(1), log(2))
-    assert (found.roots, found.missing, found.cell) == ((), 1, None)
-
-
 # ----------------------------------------------------------------- roots that cuts do not tell apart, by hand
-
-
-def cell_about(place, size):
-    z = log(place)
-    return Cell(z - size / 2, z + size / 2, -size / 2, size / 2)
 
 
 def shared(s):
@@ -257,20 +179,3 @@ def close(apart):
 def contained(roots, *expected):
     with precision(600):
         return [sum(bool(root.enclosure().contains(acb(value))) for root in roots) for value in expected]
-
-
-def test_the_only_root_in_a_circle_is_found_from_beside_it():
-    (found,) = search(mixed)._about(acb(4 + 1e-9), 1)
-    assert contained([found], arb(4)) == [1]
-    assert (found.multiplicity, found.certified, found.is_real) == (1, True, True)
-    assert found.re.rad() < 1e-12
-    for place in [3.9, 1.0]:
-        assert search(mixed)._about(acb(place), 1) is None
-
-
-def test_a_cell_with_fewer_roots_than_none_has_lost_some():
-    for count, power, lost in [(-2, 1, 2), (-4, 2, 2), (-1, 2, 1)]:
-        # Where poles lie, which an entire function has not.
-        one = search(mixed)
-        one.function.power = power
-        assert one._separate(cell_about(4, 0.1), count) == ([], lost)

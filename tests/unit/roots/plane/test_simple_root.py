@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise, product
+from itertools import product
 
-import pytest
 from flint import acb, arb
 
 from symflex.balls import precision
 from symflex.roots.plane.local_roots import (
     BOX_SHARE,
-    LEAST_BITS,
-    PATIENCE,
     SMALLER,
-    Box,
     _box,
     _is_alone,
-    nearest_factor,
     prove_simple,
 )
 from tests.unit.roots.known_functions import KnownFunction
@@ -175,30 +170,6 @@ def test_another_factor_is_off_the_box_only_where_it_outweighs_its_slope_to_the_
         assert (root is not None and root.certified) is certified, distance
 
 
-def test_a_box_is_drawn_at_the_share_of_the_bits_and_keeps_its_size():
-    seen = []
-
-    def step(reach):
-        seen.append(float(reach))
-        return acb(0)
-
-    prove_simple(Told(((((2, 3),), 1),), step=step), acb(2, 3), 1)
-    assert seen[0] == pytest.approx(abs(2 + 3j) * 2 ** (-BOX_SHARE * LEAST_BITS), rel=1e-6)
-    bits = 200
-    box = _box(KnownFunction(((((2, 3),), 1),)), acb(2, 3), (64, bits), None, even=False)
-    assert isinstance(box, Box)
-    assert float(box.reach) == pytest.approx(abs(2 + 3j) * 2 ** (-BOX_SHARE * bits), rel=1e-9)
-    assert box.touching == ()
-
-
-def test_the_nearest_factor_is_that_of_the_smallest_newton_step():
-    ball = acb
-    factors = [(ball(4), ball(2), 1), (ball(3), ball(3), 2), (ball(1), ball(0), 1), (ball(1), ball(9), -1)]
-    assert nearest_factor(factors) == 1
-    assert nearest_factor([*factors, (ball(0), ball(1), 1)]) == 4
-    assert nearest_factor([(ball(1), ball(0), 1)]) == 0
-
-
 def test_the_factor_asked_for_is_proved_and_no_pole():
     function = KnownFunction((((1,), 2), ((5,), 3)))
     root = prove_simple(function, acb(arb("1.5")), 10, factor=1)
@@ -241,22 +212,6 @@ class Watched(KnownFunction):
     def enclosed_about(self, ball, centre, bits):
         self.boxes.append((ball, centre))
         return super().enclosed_about(ball, centre, bits)
-
-
-def test_the_first_precision_suffices_for_the_digits_asked_for():
-    for place, digits in product([(2, 3), (-4, 0), (0, 5)], [1, 20, 100]):
-        # One box is drawn: Newton's image is small enough the first time.
-        function = Watched((((place, (11, 1)), 1),))
-        prove_simple(function, near(acb(*place)), digits)
-        assert len(function.boxes) == 1, (place, digits)
-
-
-def test_newtons_steps_begin_with_the_bits_asked_for():
-    for first_bits in [64, 128, 500]:
-        function = Watched(((((2, 3),), 1),))
-        prove_simple(function, near(acb(2, 3)), 100, first_bits=first_bits)
-        assert function.levels[0] == first_bits
-        assert all(later <= 2 * earlier for earlier, later in pairwise(function.levels)), first_bits
 
 
 def test_what_symmetry_proves_to_be_zero_is_zero_whatever_newtons_image_is():
@@ -320,25 +275,3 @@ def test_a_box_about_a_root_said_to_lie_on_an_axis_mirrors_itself():
         assert axis == 0, turned
         for each in (ball, centre):
             assert (each.real if turned else each.imag).mid() == 0
-
-
-def test_steps_of_unknown_sign_or_without_a_slope_ask_for_more_digits():
-    class Blurred(KnownFunction):
-        def enclosed(self, s, bits):
-            blur = acb(arb(0, 1e-9), arb(0, 1e-9)) if bits < 120 else acb(0)
-            return [(v + blur, d, e) for v, d, e in super().enclosed(s, bits)]
-
-    class Unknown(KnownFunction):
-        def enclosed(self, s, bits):
-            return [(v, acb(0) if bits < 90 else d, e) for v, d, e in super().enclosed(s, bits)]
-
-    for kind in (Blurred, Unknown):
-        root = prove_simple(kind(((((2, 3),), 1),)), near(acb(2, 3)), 10)
-        assert (root.certified, holds(root, acb(2, 3))) == (True, True), kind
-
-
-def test_steps_that_converge_like_those_to_a_double_root_are_given_up():
-    # One bit a step: some twenty at the first precision, and no more than the patience at the next one.
-    function = Watched((((1, 1, -3), 1),))
-    assert prove_simple(function, acb(arb("1.125")), 10) is None
-    assert len(function.levels) < 30 + PATIENCE

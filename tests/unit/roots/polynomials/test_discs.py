@@ -6,21 +6,15 @@ from fractions import Fraction
 from itertools import combinations
 from random import Random
 
-import pytest
 from flint import acb, acb_poly, arb
 
 from symflex.balls import precision
-from symflex.budget import Budget
 from symflex.roots.polynomials.discs import (
-    CENTRE_STEPS,
-    NEWTON_STEPS,
     Disc,
     LevelPolynomial,
     complete,
     connected,
     groups,
-    is_symmetric,
-    middle_of,
     overlapping_pairs,
     propose_by_durand_kerner,
     with_mirrors,
@@ -107,48 +101,9 @@ def nothing(centre):
     return arb(0)
 
 
-def test_a_newton_disc_is_as_many_times_the_step_as_there_are_roots():
-    # s^4 - 16 at 10: a step of 2.496, and the nearest root 8 away.
-    disc = LevelPolynomial.of(acb_poly([-16, 0, 0, 0, 1])).polish(acb(10), lambda centre: arb(20))
-    assert (disc.centre, float(disc.radius)) == (acb(10), pytest.approx(4 * 2.496))
-
-
-def test_a_polished_disc_is_as_small_as_wanted_or_as_digits_allow():
-    for start in [2.2, -3.2, 0.4, 1.1 + 1.7j, 1.2 + 2.3j]:
-        roots = [2, -3, 1 + 2j, 1 - 2j, Fraction(1, 3)]
-        with precision(300):
-            exact = [
-                acb(arb(r.numerator) / r.denominator) if isinstance(r, Fraction) else acb(r) for r in roots
-            ]
-            for goal in (lambda centre: arb(10) ** -30, nothing):
-                disc = monic(*exact).polish(acb(start), goal)
-                assert disc.radius < arb(10) ** (-30 if goal is not nothing else -70), start
-                assert sum(bool(abs(root - disc.centre) <= disc.radius) for root in exact) == 1, start
-                assert disc.is_real is (complex(start).imag == 0)
-
-
 def test_a_guess_where_the_slope_vanishes_is_left_unproved():
     disc = monic(1, -1).polish(acb(0), nothing)
     assert (disc.centre, disc.radius.is_finite()) == (acb(0), False)
-
-
-def test_polishing_and_looking_for_a_centre_spend_their_budget_and_end():
-    class Counted(Budget):
-        spent = 0
-
-        def spend(self):
-            self.spent += 1
-
-    with precision(10000):
-        budget = Counted()
-        with budget.entered():
-            LevelPolynomial.of(acb_poly([-2, 0, 1])).polish(acb(10) ** 900, nothing)
-        assert budget.spent == NEWTON_STEPS
-    with precision(30000):
-        budget = Counted()
-        with budget.entered():
-            LevelPolynomial.of(acb_poly([-2, 0, 0, 1])).surround(acb(10) ** 4000, 1)
-        assert budget.spent == CENTRE_STEPS
 
 
 def test_pairs_are_those_whose_exact_distance_is_not_more_than_both_radii():
@@ -216,19 +171,6 @@ def test_roots_are_listed_in_the_closed_upper_half_plane_if_they_separate():
     assert propose_by_durand_kerner(acb_poly([1, -2, 1])) is None
     # No real polynomial: i and 2i have no mirror images.
     assert propose_by_durand_kerner(acb_poly([-2, acb(0, -3), 1])) is None
-
-
-def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself():
-    for centres, middle, symmetric in [
-        ([acb(1, 2), acb(1, 4)], acb(1, 3), False),
-        ([acb(1, 2), acb(3, -2)], acb(2, 0), False),
-        ([acb(1, 2), acb(1, -2), acb(4, 1)], acb(2), True),
-        ([acb(1, 2), acb(4), acb(1, 1)], acb(2), True),
-    ]:
-        discs = [Disc(c, arb(1)) for c in centres]
-        assert is_symmetric(discs) is symmetric, (centres, middle)
-        assert middle_of(discs) == middle
-        assert middle_of(discs).imag == middle.imag
 
 
 def test_pellets_disc_is_for_every_polynomial_in_the_balls_of_its_coefficients():

@@ -66,26 +66,6 @@ def test_guesses_that_do_not_lead_to_all_roots_are_passed_on_to_the_next_engine(
         assert asked[0] == asked_too[0] == 4, wrong
 
 
-def test_engines_are_asked_once_and_what_they_led_to_is_refined():
-    propose, asked = proposing(1.01, -1.99, -3 + 3.9j)
-    every = isolated(propose, digits=60)
-    assert len(asked) == 1
-    assert all(holds_each_once(discs, ROOTS) for discs in every)
-
-
-def test_two_roots_closer_than_the_first_precision_are_taken_apart():
-    # (s - 1)(s - 1 - 1e-40), times 1e40
-    propose, _ = proposing(1, 1.0000001)
-    close = [10**40 + 1, -(2 * 10**40 + 1), 10**40]
-    discs = isolated(propose, coefficients=close, digits=5)[-1]
-    assert [disc.count for disc in discs] == [1, 1]
-    with precision(500):
-        tiny = arb(10) ** -40
-        assert holds_each_once(discs, (acb(1), acb(1 + tiny)))
-        one, other = discs
-        assert abs(one.centre - other.centre) > one.radius + other.radius
-
-
 def test_where_roots_do_not_separate_it_is_said_at_which_precision_and_why():
     for polynomial, bits, hint in [
         (
@@ -115,11 +95,6 @@ def test_a_hidden_double_root_comes_out_as_one_disc_of_two():
     assert [disc.count for disc in discs] == [2]
     with precision(4000):
         assert abs(discs[0].centre - arb.pi()) <= discs[0].radius < 1e-8
-
-
-def test_the_first_precision_grows_with_digits_and_degree():
-    # 10 digits take 33.2 bits and 16 to spare.
-    assert first_bits(PolynomialInS.from_integers(COEFFICIENTS), 10) == 34 + 16 + 2 * 4 + 64
 
 
 def test_an_error_is_small_against_the_smaller_part_of_a_root():

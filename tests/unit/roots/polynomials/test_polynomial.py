@@ -11,7 +11,6 @@ from flint import acb, arb, fmpq
 
 from symflex.balls import precision
 from symflex.roots import PolynomialInS, Root, RootProblem
-from symflex.roots.engines import proposers_for
 from symflex.roots.polynomial_roots import (
     _conjugates,
     _hull,
@@ -22,7 +21,7 @@ from symflex.roots.polynomial_roots import (
     find_polynomial_roots,
     in_order,
 )
-from symflex.roots.polynomials.discs import Disc, propose_by_durand_kerner
+from symflex.roots.polynomials.discs import Disc
 from symflex.roots.problem import SquareFreePart
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
@@ -220,13 +219,6 @@ def test_roots_whose_frequencies_are_not_told_apart_stand_by_their_real_parts():
             assert in_order(start) == (lower, left, axis), size
 
 
-def test_the_engine_of_small_degrees_comes_second_for_larger_ones_and_then_not_at_all():
-    for degree, places in [(1, 0), (12, 0), (13, 1), (64, 1), (65, None), (200, None)]:
-        engines = proposers_for(degree)
-        found = engines.index(propose_by_durand_kerner) if propose_by_durand_kerner in engines else None
-        assert (found, len(engines)) == (places, 1 if places is None else 2), degree
-
-
 def test_digits_that_are_none_are_refused():
     with pytest.raises(ValueError, match="digits must be at least 1, not 0"):
         find_polynomial_roots(RootProblem(()), 0)
@@ -253,15 +245,3 @@ def test_roots_at_zero_are_one_root_with_both_marks():
     assert (zero.multiplicity, zero.on_imaginary_axis, zero.is_real) == (4, True, True)
     assert zero.re == zero.im == 0
     assert (other.multiplicity, other.is_real) == (2, True)
-
-
-def test_an_engine_given_is_the_one_that_is_asked():
-    asked = []
-
-    def propose(polynomial):
-        asked.append(polynomial)
-        return propose_by_durand_kerner(polynomial)
-
-    found = find_polynomial_roots(product_of(((1, -7, 30), 1)), 10, (propose,))
-    assert len(asked) >= 1
-    assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]
