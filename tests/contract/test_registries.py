@@ -81,18 +81,13 @@ def test_every_block_but_that_of_a_model_is_registered_and_has_a_smallest_model(
 @cache
 def damped_mass():
     text = """symflex = 1
-[parameters]
-m = "2 kg"
-b = "1 N*s/m"
-k = "8 N/m"
+parameters = { m = "2 kg", b = "1 N*s/m", k = "8 N/m" }
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 mass = { type = "mass", at = "x", m = "m" }
 loss = { type = "damper", between = ["x", "ground"], b = "b" }
 hold = { type = "spring", between = ["x", "ground"], k = "k" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """
     return pipeline.derive_all(pipeline.loads(text))[0]
 
@@ -100,17 +95,10 @@ X = "x"
 @cache
 def clamped_rod():
     text = """symflex = 1
-[parameters]
-E = "2 Pa"
-A = "3 m^2"
-rho = "5 kg/m^3"
-l = "0.5 m"
-[elements]
-rod = { type = "rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", l = "l" }
-[inputs]
-F = { force = "q" }
-[outputs]
-X = "q"
+parameters = { E = "2 Pa", A = "3 m^2", rho = "5 kg/m^3", l = "0.5 m" }
+elements.rod = { type = "rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", l = "l" }
+inputs.F = { force = "q" }
+outputs.X = "q"
 """
     return pipeline.derive_all(pipeline.loads(text))[0]
 

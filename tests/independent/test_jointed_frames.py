@@ -16,6 +16,7 @@ from tests.independent.plane_frames import Member, freedoms, pinned, response, s
 WALL = mpf("0.06") ** 2 - mpf("0.052") ** 2, (mpf("0.06") ** 4 - mpf("0.052") ** 4) / 12
 ETA = mpf("5e-6")
 HEAD = """
+definitions = { A = "b^2 - (b - 2*t)^2", I = "(b^4 - (b - 2*t)^4)/12" }
 [parameters]
 E = "70 GPa"
 rho = "2700 kg/m^3"
@@ -29,9 +30,6 @@ k_2 = "15 kN*m/rad"
 m = "6 kg"
 J = "0.01 kg*m^2"
 eta = "5 us"
-[definitions]
-A = "b^2 - (b - 2*t)^2"
-I = "(b^4 - (b - 2*t)^4)/12"
 """
 LINKS = """
 shoulder = { type = "pin", at = "a" }

@@ -111,23 +111,14 @@ def test_a_uniform_section_written_with_x_is_the_uniform_beam():
 
 FIELD = """
 symflex = 1
-[parameters]
-E = "200 GPa"
-rho = "7800 kg/m^3"
-h = "40 mm"
-l = "1 m"
-c = 0.75
-[definitions]
-I_0 = "h^4/12"
-A_0 = "h^2"
+parameters = { E = "200 GPa", rho = "7800 kg/m^3", h = "40 mm", l = "1 m", c = 0.75 }
+definitions = { I_0 = "h^4/12", A_0 = "h^2" }
+inputs.F = { unit = "N" }
+outputs.y = "w(l)"
 [fields.w]
 domain = ["0", "l"]
 equation = "(E*I_0*(1 - c*x/l)^4*w'')'' + rho*A_0*(1 - c*x/l)^2*s^2*w = 0"
 conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "(E*I_0*(1 - c*x/l)^4*w'')'(l) = -F"]
-[inputs]
-F = { unit = "N" }
-[outputs]
-y = "w(l)"
 """
 
 
@@ -146,21 +137,13 @@ def test_the_square_section_benchmark_is_certified():
 
 EXPONENTIAL = """
 symflex = 1
-[parameters]
-E = "200 GPa"
-I = "1 cm^4"
-rho = "7800 kg/m^3"
-A = "1 cm^2"
-l = "1 m"
-a = "0.5 1/m"
+parameters = { E = "200 GPa", I = "1 cm^4", rho = "7800 kg/m^3", A = "1 cm^2", l = "1 m", a = "0.5 1/m" }
+inputs.F = { unit = "N" }
+outputs.y = "w(l)"
 [fields.w]
 domain = ["0", "l"]
 equation = "E*I*(w'''' - 4*a*w''' + 4*a^2*w'') + rho*A*s^2*w = 0"
 conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*w'''(l) = -F"]
-[inputs]
-F = { unit = "N" }
-[outputs]
-y = "w(l)"
 """
 
 

@@ -93,14 +93,12 @@ def test_the_determinant_of_a_rod_is_a_hyperbolic_cosine():
 
 KELVIN_VOIGT = """
 symflex = 1
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 bar  = { type = "beam", between = ["ground", "x"], E = "1 Pa", I = "1 m^4", rho = "1 kg/m^3", A = "1 m^2", l = "1 m", eta = "0.001 s" }
 tip  = { type = "mass", at = "x", m = "0.3 kg" }
 loss = { type = "damper", between = ["x", "ground"], b = "0.7 N*s/m" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """  # noqa: E501
 
 

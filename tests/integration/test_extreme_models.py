@@ -29,23 +29,15 @@ X = "tip"
 {analysis}
 """
 DELAY = """symflex = 1
-[parameters]
-T = "{T}"
-K = "300 N/m"
-m = "2 kg"
-b = "3 N*s/m"
-[blocks]
-D = {{ type = "delay", T = "T" }}
+parameters = {{ T = "{T}", K = "300 N/m", m = "2 kg", b = "3 N*s/m" }}
+blocks.D = {{ type = "delay", T = "T" }}
+inputs.r = {{}}
+outputs.X = "x"
+analysis.band = ["0.1 Hz", "100 Hz"]
 [elements]
 car   = {{ type = "mass", at = "x", m = "m" }}
 air   = {{ type = "damper", between = ["x", "ground"], b = "b" }}
 drive = {{ type = "force_source", at = "x", f = "K*(r - D*x)" }}
-[inputs]
-r = {{}}
-[outputs]
-X = "x"
-[analysis]
-band = ["0.1 Hz", "100 Hz"]
 """
 POWER = """symflex = 1
 parameters = { a = "3 1/s" }

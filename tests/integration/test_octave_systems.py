@@ -17,24 +17,14 @@ pytestmark = pytest.mark.needs_tool("octave")
 # m x'' + b x' + k x = F, by hand: X/F = 1/(m s^2 + b s + k), poles of 2 s^2 + 8 s + 6 at -1 and -3.
 OSCILLATOR = """
 symflex = 1
-[parameters]
-m = "2 kg"
-b = "8 N*s/m"
-k = "6 N/m"
-T = "4 ms"
-num = "5 m/s"
+parameters = { m = "2 kg", b = "8 N*s/m", k = "6 N/m", T = "4 ms", num = "5 m/s" }
+inputs.F = { force = "x" }
+blocks.late = { type = "delay", T = "T" }
+outputs = { X = "x", Y = "num*late*x", W = "late*x - x" }
 [elements]
 body = { type = "mass", at = "x", m = "m" }
 loss = { type = "damper", between = ["x", "ground"], b = "b" }
 wall = { type = "spring", between = ["x", "ground"], k = "k" }
-[inputs]
-F = { force = "x" }
-[blocks]
-late = { type = "delay", T = "T" }
-[outputs]
-X = "x"
-Y = "num*late*x"
-W = "late*x - x"
 """
 KEEPERS = {
     "tf": "function v = tf(num, den)\n  v.kind = 'tf'; v.num = num; v.den = den;\nend\n",

@@ -70,6 +70,8 @@ def test_a_chain_of_masses_tends_to_the_rod_at_second_order():
 # A beam ten times as long as deep.
 PARAMETERS = """
 symflex = 1
+inputs.F = { force = "tip" }
+outputs = { y = "tip", theta = "tip.theta" }
 [parameters]
 E = "70 GPa"
 I = "67500 mm^4"
@@ -78,11 +80,6 @@ A = "900 mm^2"
 l = "0.3 m"
 G = "26 GPa"
 kappa = 0.85
-[inputs]
-F = { force = "tip" }
-[outputs]
-y = "tip"
-theta = "tip.theta"
 [elements]
 """
 SLOW = 1500.0
@@ -131,6 +128,8 @@ def test_theories_of_beams_tend_to_each_other_at_first_order(full, plain):
 
 STRING = """
 symflex = 1
+inputs.F = { force = "q" }
+outputs.y = "q"
 [parameters]
 N = "180 N"
 rho = "7850 kg/m^3"
@@ -138,10 +137,6 @@ A = "1.2 mm^2"
 l = "0.65 m"
 E = "200 GPa"
 I = "1e-6 mm^4"
-[inputs]
-F = { force = "q" }
-[outputs]
-y = "q"
 [elements]
 """
 

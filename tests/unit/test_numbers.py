@@ -37,8 +37,7 @@ def test_a_parameter_without_value_is_missed_only_where_it_occurs():
 parameters = { m = "2 kg", c = {} }
 inputs = { F = { force = "x" }, u = {} }
 outputs = { X = "x", Y = "c*u" }
-[elements]
-body = { type = "mass", at = "x", m = "m" }
+elements.body = { type = "mass", at = "x", m = "m" }
 """)
     assert pipeline.derive_bound(model, [("X", "F")])[0](2.0) == pytest.approx(1 / 8)
     with pytest.raises(ModelError, match="SF229"):
@@ -65,12 +64,11 @@ parameters = { m = "2 kg", k = "8 kN/m" }
 definitions = { w_n = "sqrt(k/m)" }
 inputs = { u = {} }
 outputs = { x = "x" }
+blocks.N = { type = "resonance", omega_p = "2*w_n", zeta_p = 1, omega_z = "w_n", zeta_z = 0 }
 [elements]
 M = { type = "mass", at = "x", m = "m" }
 K = { type = "spring", between = ["x", "ground"], k = "k" }
 f = { type = "force_source", at = "x", f = "N*u" }
-[blocks]
-N = { type = "resonance", omega_p = "2*w_n", zeta_p = 1, omega_z = "w_n", zeta_z = 0 }
 """)
     for bound in (
         pipeline.bind(pipeline.derive_all(model)[0]),
@@ -87,7 +85,6 @@ def test_a_coefficient_list_takes_quantities():
     model = pipeline.loads("""symflex = 1
 inputs = { u = {} }
 outputs = { y = "B*u" }
-[blocks]
-B = { type = "tf", num = 1, den = [1, "2 1/s"] }
+blocks.B = { type = "tf", num = 1, den = [1, "2 1/s"] }
 """)
     assert pipeline.derive_bound(model, [("y", "u")])[0](0.0) == pytest.approx(0.5)

@@ -9,25 +9,18 @@ from symflex import pipeline
 # Clamped at one end, driven at the other: X/F = tanh(s)/s, and 1/cosh(s) of it arrives at the wall.
 CLAMPED_ROD = """
 symflex = 1
+inputs.F = { force = "x" }
+outputs = { X = "x", V = "s*x", F_wall = "bar.f" }
 [elements]
 bar = { type = "rod", between = ["x", "ground"], E = "1 N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-V = "s*x"
-F_wall = "bar.f"
 """
 
 # Free at both ends: Y/F = 1/(s*sinh(s)).
 FREE_ROD = """
 symflex = 1
-[elements]
-bar = { type = "rod", between = ["x", "y"], E = "1 N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
-[inputs]
-F = { force = "x" }
-[outputs]
-Y = "y"
+elements.bar = { type = "rod", between = ["x", "y"], E = "1 N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
+inputs.F = { force = "x" }
+outputs.Y = "y"
 """
 
 

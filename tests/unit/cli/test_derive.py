@@ -95,7 +95,6 @@ MIXED = """symflex = 1
 parameters = { E = "70 GPa", A = "1 cm^2", rho = "2700 kg/m^3", l = "1 m", m = "2 kg" }
 inputs     = { F = { force = "q" }, G = { force = "x" } }
 outputs    = { Q = "q", X = "x" }
-
 [elements]
 rod = { type = "rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", l = "l" }
 car = { type = "mass", at = "x", m = "m" }

@@ -21,8 +21,7 @@ symflex = 1
 parameters = { EI = {}, m = {}, l = {} }
 inputs = { F = { force = "a.y" } }
 outputs = { Y = "a.y" }
-[elements]
-bar = { type = "beam", between = ["a", "ground"], E = "EI", I = "1", rho = "m", A = "1", l = "l" }
+elements.bar = { type = "beam", between = ["a", "ground"], E = "EI", I = "1", rho = "m", A = "1", l = "l" }
 """
 
 

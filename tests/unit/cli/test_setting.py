@@ -36,25 +36,19 @@ expr = "1/(m*s^2 + b*s + k + K)"
 band = ["0.1 Hz", "10 Hz"]
 """
 DISC = """symflex = 1
-[parameters]
-J = { unit = "kg*m^2" }
+parameters.J = { unit = "kg*m^2" }
+inputs.T = { torque = "phi" }
+outputs.Phi = "phi"
 [elements]
 disc = { type = "inertia", at = "phi", J = "J" }
 twist = { type = "torsion_spring", between = ["phi", "ground"], k = 9 }
-[inputs]
-T = { torque = "phi" }
-[outputs]
-Phi = "phi"
 """
 ROD = """symflex = 1
-[parameters]
-l = "1 m"
+parameters.l = "1 m"
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 bar = { type = "rod", between = ["ground", "x"], E = "210 GPa", A = "1 mm^2", rho = "7800 kg/m^3", l = "l" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """
 
 

@@ -2,19 +2,12 @@ from __future__ import annotations
 
 BEAM = """
 symflex = 1
-[parameters]
-E = 1
-I = 1
-rho = 1
-A = 1
-l = "1 m"
+parameters = { E = 1, I = 1, rho = 1, A = 1, l = "1 m" }
+inputs.F = { force = "q" }
+outputs.X = "q"
 [elements]
 base = { type = "fixed", at = "p" }
 arm  = { type = "beam", between = ["p", "q"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
-[inputs]
-F = { force = "q" }
-[outputs]
-X = "q"
 """
 
 

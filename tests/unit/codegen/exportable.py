@@ -44,58 +44,37 @@ X = "q"
 """
 
 DELAY = """symflex = 1
-[parameters]
-m = "2 kg"
-k = "300 N/m"
-g = "5 N*s/m"
-T_s = "5 ms"
-[blocks]
-D = { type = "delay", T = "T_s" }
+parameters = { m = "2 kg", k = "300 N/m", g = "5 N*s/m", T_s = "5 ms" }
+blocks.D = { type = "delay", T = "T_s" }
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 body = { type = "mass", at = "x", m = "m" }
 spring = { type = "spring", between = ["x", "ground"], k = "k" }
 feedback = { type = "force_source", at = "x", f = "-g*D*s*x" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """
 
 # Wavenumbers without a formula: sums over characteristic roots, power series, means over a circle.
 PIPE = """symflex = 1
-[parameters]
-EI = "100 N*m^2"
-m = "3 kg/m"
-m_f = "1 kg/m"
-U = "5 m/s"
-l = "2 m"
+parameters = { EI = "100 N*m^2", m = "3 kg/m", m_f = "1 kg/m", U = "5 m/s", l = "2 m" }
+inputs.p = { unit = "N/m" }
+outputs.Y = "w(l/2)"
+analysis.band = ["0.1 Hz", "20 Hz"]
 [fields.w]
 domain = ["0", "l"]
 equation = "EI*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + m*s^2*w = p"
 conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w''(l) = 0"]
-[inputs]
-p = { unit = "N/m" }
-[outputs]
-Y = "w(l/2)"
-[analysis]
-band = ["0.1 Hz", "20 Hz"]
 """
 
 # Roots that are equal at every s.
 MASSLESS = """symflex = 1
-[parameters]
-EI = "4e-3 N*m^2"
-N = "1 N"
-m = "0.1 kg"
-l = "1 m"
+parameters = { EI = "4e-3 N*m^2", N = "1 N", m = "0.1 kg", l = "1 m" }
+inputs.F = { unit = "N" }
+outputs.Y = "w(l)"
 [fields.w]
 domain = ["0", "l"]
 equation = "EI*w'''' - N*w'' = 0"
 conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) - N*w'(l) = m*s^2*w(l) - F"]
-[inputs]
-F = { unit = "N" }
-[outputs]
-Y = "w(l)"
 """
 
 

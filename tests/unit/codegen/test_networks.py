@@ -84,6 +84,8 @@ def test_a_numpy_module_has_the_responses_of_boundary_value_problems(seed):
 
 
 SPANS = """symflex = 1
+inputs.F = { force = "d" }
+outputs.Y = "second.y(0.65 m)"
 [parameters]
 E = "210 GPa"
 I = "4e-8 m^4"
@@ -99,10 +101,6 @@ middle = { type = "pin", at = "b" }
 second = { type = "beam", between = ["b", "c"], E = "E", I = "I", A = "A", rho = "rho", l = "l_2" }
 right = { type = "pin", at = "c" }
 third = { type = "beam", between = ["c", "d"], E = "E", I = "I", A = "A", rho = "rho", l = "l_3" }
-[inputs]
-F = { force = "d" }
-[outputs]
-Y = "second.y(0.65 m)"
 """
 
 
@@ -201,21 +199,14 @@ def test_the_error_over_the_band_is_measured_and_said():
 STEEL = 'E = "E", I = "I", A = "A", rho = "rho"'
 FRAME = f"""
 symflex = 1
-[parameters]
-E = "210 GPa"
-I = "1e-8 m^4"
-A = "1e-4 m^2"
-rho = "7800 kg/m^3"
-alpha = "50 deg"
+parameters = {{ E = "210 GPa", I = "1e-8 m^4", A = "1e-4 m^2", rho = "7800 kg/m^3", alpha = "50 deg" }}
+inputs.F = {{ force = "p.x" }}
+outputs.Y = "r.y"
 [elements]
 left  = {{ type = "frame", between = ["ground", "p"], {STEEL}, l = "0.5 m", angle = "90 deg" }}
 top   = {{ type = "frame", between = ["p", "q"], {STEEL}, l = "0.4 m", angle = "30 deg" }}
 right = {{ type = "frame", between = ["q", "ground"], {STEEL}, l = "0.6 m", angle = "-alpha" }}
 boom  = {{ type = "frame", between = ["q", "r"], {STEEL}, l = "0.3 m" }}
-[inputs]
-F = {{ force = "p.x" }}
-[outputs]
-Y = "r.y"
 """
 
 

@@ -38,6 +38,8 @@ Both = "r + 2*x"
 TWO_SPANS = """
 symflex = 1
 parameters = { EI = { unit = "N*m^2" }, rhoA = { unit = "kg/m" }, l = "1 m", x_F = "0.4 m" }
+inputs.F = { unit = "N" }
+outputs = { Y = "w_2(l/2)", Slope = "w_2'(l)" }
 [fields.w_1]
 domain     = ["0", "x_F"]
 equation   = "EI*w_1'''' + rhoA*s^2*w_1 = 0"
@@ -47,11 +49,6 @@ domain     = ["x_F", "l"]
 equation   = "EI*w_2'''' + rhoA*s^2*w_2 = 0"
 conditions = ["w_2(x_F) = w_1(x_F)", "w_2'(x_F) = w_1'(x_F)", "w_2''(x_F) = w_1''(x_F)",
               "EI*(w_2'''(x_F) - w_1'''(x_F)) = F", "w_2(l) = 0", "w_2''(l) = 0"]
-[inputs]
-F = { unit = "N" }
-[outputs]
-Y = "w_2(l/2)"
-Slope = "w_2'(l)"
 """
 
 

@@ -29,13 +29,11 @@ def test_a_slanted_member_is_as_long_as_a_level_one():
     text = f"""
 symflex = 1
 parameters = {{ E = "210 GPa" }}
+inputs.F = {{ force = "q.y" }}
+outputs.Y = "q.y"
 [elements]
 level   = {{ type = "frame", between = ["ground", "p"], {member} }}
 slanted = {{ type = "frame", between = ["p", "q"], angle = "30 deg", {member} }}
-[inputs]
-F = {{ force = "q.y" }}
-[outputs]
-Y = "q.y"
 """
     drawing = drawing_of(pipeline.loads(text))
     level, slanted = (place(drawing, "element", n) for n in ("level", "slanted"))
@@ -59,6 +57,8 @@ def test_springs_turn_about_joints_and_a_cart_rolls_below_its_pole():
     text = f"""
 symflex = 1
 parameters = {{ E = "210 GPa", k = "10 N*m/rad", M = "2 kg" }}
+inputs.F = {{ force = "c.x" }}
+outputs.Y = "tip.y"
 [elements]
 cart  = {{ type = "mass", at = "c.x", m = "M" }}
 rail  = {{ type = "fixed", at = "c.y" }}
@@ -67,10 +67,6 @@ pole  = {{ type = "frame", between = ["p", "q"], angle = "90 deg", {member} }}
 knee  = {{ type = "pin", between = ["q", "r"] }}
 coil  = {{ type = "torsion_spring", between = ["q.theta", "r.theta"], k = "k" }}
 arm   = {{ type = "frame", between = ["r", "tip"], {member} }}
-[inputs]
-F = {{ force = "c.x" }}
-[outputs]
-Y = "tip.y"
 """
     drawing = drawing_of(pipeline.loads(text))
     pole, cart, rail, hinge, knee, coil = (
@@ -85,13 +81,11 @@ Y = "tip.y"
 def test_what_a_frame_shares_with_a_row_beside_it_is_named_in_both():
     text = """
 symflex = 1
+inputs.V = { voltage = "v" }
+outputs.Y = "q.y"
 [elements]
 post  = { type = "frame", between = ["ground", "q"], E = "70 GPa", I = 1e-9, A = 1e-4, rho = 2700, l = 0.5 }
 motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "q.theta", k_t = 1 }
-[inputs]
-V = { voltage = "v" }
-[outputs]
-Y = "q.y"
 """
     model = pipeline.loads(text)
     drawing = drawing_of(model)

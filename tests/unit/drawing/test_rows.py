@@ -13,23 +13,20 @@ from tests.unit.drawing.geometry_checks import faults, place
 CHAIN = """
 symflex = 1
 parameters = { m_1 = "60 kg", m_2 = "20 kg", k = "95 kN/m", b = "40 N*s/m" }
+inputs.F = { force = "y" }
+outputs = { X = "x", V = "s*y", Stroke = "y - x", Pull = "drive.f" }
 [elements]
 first  = { type = "mass", at = "x", m = "m_1" }
 second = { type = "mass", at = "y", m = "m_2" }
 wall   = { type = "spring", between = ["ground", "x"], k = "k" }
 drive  = { type = "spring", between = ["x", "y"], k = "k" }
 loss   = { type = "damper", between = ["x", "y"], b = "b" }
-[inputs]
-F = { force = "y" }
-[outputs]
-X = "x"
-V = "s*y"
-Stroke = "y - x"
-Pull = "drive.f"
 """
 CIRCUIT = """
 symflex = 1
 parameters = { R = "1 ohm", L = "1 mH", C = "1 uF", k = "0.1 N*m/A", J = "1e-4 kg*m^2", n = "0.2" }
+inputs.V = { voltage = "v" }
+outputs = { Psi = "psi", I = "motor.i" }
 [elements]
 choke = { type = "inductor", between = ["v", "w"], L = "L" }
 store = { type = "capacitor", between = ["w", "ground"], C = "C" }
@@ -38,28 +35,22 @@ rotor = { type = "inertia", at = "phi", J = "J" }
 gear  = { type = "transformer", from = "phi", to = "psi", ratio = "n" }
 load  = { type = "inertia", at = "psi", J = "J" }
 drag  = { type = "rotary_damper", between = ["phi", "ground"], b = "1e-3 N*m*s/rad" }
-[inputs]
-V = { voltage = "v" }
-[outputs]
-Psi = "psi"
-I = "motor.i"
 """
 BEAM = """
 symflex = 1
 parameters = { E = "70 GPa", I = "1e-9 m^4", rho = 2700, A = 1e-4, l = "0.8 m", m = "1 kg", k = "1 N/m" }
+inputs.F = { force = "a" }
+outputs = { Y = "b", Middle = "bar.y(l/2)" }
 [elements]
 guide = { type = "slider", at = "a" }
 bar   = { type = "beam", between = ["a", "b"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
 load  = { type = "mass", at = "b", m = "m" }
 bed   = { type = "spring", between = ["b", "ground"], k = "k" }
-[inputs]
-F = { force = "a" }
-[outputs]
-Y = "b"
-Middle = "bar.y(l/2)"
 """
 RING = """
 symflex = 1
+inputs = { F = { force = "y" }, z_0 = { force = ["x", "z"] } }
+outputs.X = "x"
 [elements]
 a = { type = "mass", at = "x", m = "1 kg" }
 b = { type = "mass", at = "y", m = "1 kg" }
@@ -69,11 +60,6 @@ ab = { type = "spring", between = ["x", "y"], k = "1 N/m" }
 bc = { type = "spring", between = ["y", "z"], k = "2 N/m" }
 ca = { type = "spring", between = ["z", "x"], k = "3 N/m" }
 hold = { type = "damper", between = ["y", "ground"], b = "1 N*s/m" }
-[inputs]
-F = { force = "y" }
-z_0 = { force = ["x", "z"] }
-[outputs]
-X = "x"
 """
 MODELS = {"chain": CHAIN, "circuit": CIRCUIT, "beam": BEAM, "ring": RING}
 
@@ -158,12 +144,9 @@ def test_a_follower_is_fed_back_round_its_amplifier():
     drawn = drawing_of(
         pipeline.loads("""
 symflex = 1
-[elements]
-o = { type = "op_amp", inputs = ["p", "o"], out = "o" }
-[inputs]
-V = { voltage = "p" }
-[outputs]
-U = "o"
+elements.o = { type = "op_amp", inputs = ["p", "o"], out = "o" }
+inputs.V = { voltage = "p" }
+outputs.U = "o"
 """)
     ).items
     triangle = next(i.strokes[0] for i in drawn if i.kind == "element" and i.name == "o")
@@ -177,15 +160,13 @@ def test_wires_of_a_gear_lead_to_the_shafts_of_its_discs():
     drawn = drawing_of(
         pipeline.loads("""
 symflex = 1
+inputs.T = { torque = "s1" }
+outputs.C = "c"
 [elements]
 a = { type = "inertia", at = "s1", J = 1 }
 b = { type = "inertia", at = "c", J = 2 }
 d = { type = "inertia", at = "r", J = 3 }
 g = { type = "planetary_gear", sun = "s1", ring = "r", carrier = "c", rho = 2.5 }
-[inputs]
-T = { torque = "s1" }
-[outputs]
-C = "c"
 """)
     ).items
     wires = [s.points for i in drawn if i.kind == "wire" and i.name == "g" for s in i.strokes]

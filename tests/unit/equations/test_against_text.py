@@ -63,10 +63,8 @@ symflex = 1
 parameters = { N = "2 N", mu = "3 kg/m", l = "1 m" }
 inputs.F = { unit = "N" }
 outputs.y = "w(l)"
-[fields.w]
-domain = ["0", "l"]
-equation = "N*w'' = mu*s^2*w"
-conditions = ["w(0) = 0", "N*w'(l) = F"]
+[fields]
+w = { domain = ["0", "l"], equation = "N*w'' = mu*s^2*w", conditions = ["w(0) = 0", "N*w'(l) = F"] }
 """
 
 

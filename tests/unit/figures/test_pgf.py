@@ -21,18 +21,14 @@ from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
 
 SPEC = """symflex = 1
 title = "Two masses"
+inputs.F = { force = "x" }
+outputs = { X = "x", Y = "y" }
+analysis.band = ["0.2 Hz", "5 Hz"]
 [elements]
 a = { type = "mass", at = "x", m = "1 kg" }
 b = { type = "mass", at = "y", m = "1 kg" }
 k = { type = "spring", between = ["x", "y"], k = "50 N/m" }
 d = { type = "damper", between = ["x", "y"], b = "0.1 N*s/m" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-Y = "y"
-[analysis]
-band = ["0.2 Hz", "5 Hz"]
 """
 NUMBER = r"-?[0-9.]+"
 POINT = rf"pgfqpoint\{{{NUMBER}in\}}\{{{NUMBER}in\}}"

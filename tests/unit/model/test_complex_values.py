@@ -181,13 +181,11 @@ Y = "r"
 def test_loss_factors_stay_loss_factors_beside_real_filters():
     spring = """
 symflex = 1
+inputs.F = { force = "x" }
+outputs.X = "25*x/((s + 3 - 4*j)*(s + 3 + 4*j))"
 [elements]
 a = { type = "mass", at = "x", m = 2 }
 k = { type = "spring", between = ["x", "ground"], k = 800, eta_s = 0.1 }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "25*x/((s + 3 - 4*j)*(s + 3 + 4*j))"
 """
     defined = {
         "parameters": {"eta": "0.1"},

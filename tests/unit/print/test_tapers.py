@@ -15,17 +15,10 @@ from symflex.print.text import derive_text
 ROD = """
 symflex = 1
 parameters = {E = {}, A_0 = {}, rho = {}, l = {}, Z_1 = {}}
-[elements.bar]
-type = "rod"
-between = ["ground", "tip"]
-E = "E"
-A = "A_0*(1 - x/(2*l))"
-rho = "rho"
-l = "l"
-[inputs]
-F = {force = "tip"}
-[outputs]
-u = "tip"
+inputs.F = {force = "tip"}
+outputs.u = "tip"
+[elements]
+bar = { type = "rod", between = ["ground", "tip"], E = "E", A = "A_0*(1 - x/(2*l))", rho = "rho", l = "l" }
 """
 
 
@@ -57,14 +50,10 @@ def test_latex_and_json_hold_the_same_lines(rod):
 STRING = """
 symflex = 1
 parameters = {{rhoA = {{}}, N = {{}}, l = {{}}, {extra} = {{}}}}
-[fields.w]
-domain = ["0", "l"]
-equation = "{equation}"
-conditions = [{conditions}]
-[inputs]
-u = {{}}
-[outputs]
-y = "{extra}*w({end})"
+inputs.u = {{}}
+outputs.y = "{extra}*w({end})"
+[fields]
+w = {{ domain = ["0", "l"], equation = "{equation}", conditions = [{conditions}] }}
 """
 HANGING = {"equation": "(rhoA*N*(l - x)*w')' = rhoA*s^2*w", "conditions": '"w(0) = u"', "end": "l"}
 THICK = {"equation": "N*w'' = rhoA*(1 + x/l)*s^2*w", "conditions": '"w(0) = 0", "w\'(l) = u"', "end": "l"}

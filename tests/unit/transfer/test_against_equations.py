@@ -20,6 +20,8 @@ from tests.house.repository import ROOT
 
 DERIVATIONS = sorted(p for p in (ROOT / "derivations").rglob("*.toml") if p.name != "claims.toml")
 CANTILEVER = """symflex = 1
+inputs.F = { force = "tip" }
+outputs.Y = "tip"
 [elements.arm]
 type = "beam"
 between = ["ground", "tip"]
@@ -28,10 +30,6 @@ I = "3 m^4"
 rho = "5 kg/m^3"
 A = "7 m^2"
 l = "1 m"
-[inputs]
-F = { force = "tip" }
-[outputs]
-Y = "tip"
 """
 
 
@@ -74,12 +72,10 @@ def test_taylor_steps_follow_a_law_that_varies():
     found = solution(
         """symflex = 1
 parameters = { a = "1 m^2", l = "1 m" }
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 horn = { type = "rod", between = ["ground", "x"], E = "1 Pa", rho = "1 kg/m^3", A = "a*exp(2*x/l)", l = "l" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """,
         (3, -2),
         192,
