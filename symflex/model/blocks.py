@@ -31,7 +31,7 @@ from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import read_entries, signed_number
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue, StringValue, TableValue, parse_with_recovery, read
+from symflex.model.spec import ArrayValue, NumberValue, StringValue, TableValue, parse_with_recovery, read
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -199,23 +199,22 @@ def _matrix(
 ) -> tuple[tuple[str, Expression], ...] | None:
     """Return the entries of a matrix of ``ss``, ``A[1][2]``; ``size`` is that of A, 0 if it is not known."""
     size = len(items_of(value)) if name == "A" else size
-    if not size and name != "A":
-        return None  # A is wrong, and told so
     shape = {"A": (size, size), "B": (size, 1), "C": (1, size), "D": (1, 1)}[name]
-    rows = matrix_rows(reader, value, where, shape)
-    if rows is None:
-        return None
+    # Where A is wrong, and told so, nothing fits.
+    rows = matrix_rows(reader, value, where, shape) if size or name == "A" else None
+    if rows is None or name == "D":
+        return None if rows is None else (("D", rows[0][0]),)
     if name == "A":
         return tuple((f"A[{i}][{j}]", x) for i, row in enumerate(rows, 1) for j, x in enumerate(row, 1))
-    entries = [x for row in rows for x in row]
-    return tuple(("D" if name == "D" else f"{name}[{i}]", x) for i, x in enumerate(entries, 1))
+    return tuple((f"{name}[{i}]", x) for i, x in enumerate((x for row in rows for x in row), 1))
 
 
 def has_ports(value: Value) -> bool:
     """Tell whether a block is an ``ss`` that lists what goes in and comes out."""
-    kind = value.get("type") if isinstance(value, TableValue) else None
-    is_matrix = kind is not None and isinstance(kind.value, StringValue) and kind.value.text.value == "ss"
-    return is_matrix and isinstance(value, TableValue) and bool(value.get("from") or value.get("to"))
+    if not isinstance(value, TableValue) or not (value.get("from") or value.get("to")):
+        return False
+    kind = value.get("type")
+    return kind is not None and isinstance(kind.value, StringValue) and kind.value.text.value == "ss"
 
 
 def items_of(value: Value) -> tuple[Value, ...]:
@@ -228,32 +227,33 @@ def matrix_rows(
 ) -> list[list[Expression]] | None:
     """Return a matrix of so many rows and columns.
 
-    A column or row may be written as one array, and what has one entry as that.
+    A column or row may be written as one array, what has one entry as that, and a matrix of zeros as 0.
     """
     rows = [items_of(row) for row in items_of(value)]
-    is_state = where.startswith("A ")
-    if is_state and len(rows) > EXPONENT_LIMIT:
+    if len(rows) > EXPONENT_LIMIT:
         message = f"{where} has {len(rows)} rows; at most {EXPONENT_LIMIT} are allowed"
         reader.note("SF103", message, value.span, "write its equations in [equations]")
         return None
+    if isinstance(value, NumberValue) and not value.value:
+        rows = [(value,) * wanted[1]] * wanted[0]
     entries = [x for row in rows for x in row]
-    is_flat = all(len(row) == 1 for row in rows) and not is_state
-    shape = (len(rows), len(rows[0]) if rows else 0)
-    is_whole = bool(entries) and all(len(row) == shape[1] for row in rows)
-    fits = shape == wanted or (is_flat and len(entries) == max(wanted) and min(wanted) == 1)
-    if not is_whole or not fits:
-        shape_found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
-        shape_found = f"{len(entries)} entries" if is_flat else shape_found
-        sizes = "square" if is_state else f"{wanted[0]} x {wanted[1]}"
+    is_flat = all(len(row) == 1 for row in rows) and not where.startswith("A ")
+    columns = {len(row) for row in rows}
+    fits = columns == {wanted[1]} and len(rows) == wanted[0]
+    if not entries or not (fits or (is_flat and len(entries) == max(wanted) and min(wanted) == 1)):
+        found = (
+            f"{len(rows)} x {min(columns)}" if entries and len(columns) == 1 else "rows of several lengths"
+        )
+        found = f"{len(entries)} entries" if is_flat else found
+        size = "square" if where.startswith("A ") and found[0] == "r" else f"{wanted[0]} x {wanted[1]}"
         hint = 'several inputs and outputs are listed: from = ["u_1", "u_2"], to = ["y_1", "y_2"]'
-        hint_here = None if is_state or is_flat else hint
-        reader.note("SF206", f"{where} must be {sizes}, found {shape_found}", value.span, hint_here)
+        hint_here = None if where.startswith("A ") or is_flat else hint
+        reader.note("SF206", f"{where} must be {size}, found {found}", value.span, hint_here)
         return None
-    read = [reader.expression(x, where) for x in entries]
-    if any(x is None for x in read):
+    read = [x for x in (reader.expression(x, where) for x in entries) if x is not None]
+    if len(read) < len(entries):
         return None
-    whole = [x for x in read if x is not None]
-    return [whole[i : i + wanted[1]] for i in range(0, len(whole), wanted[1])]
+    return [read[i : i + wanted[1]] for i in range(0, len(read), wanted[1])]
 
 
 def _term(coefficient: Expression, degree: int) -> Expression:

@@ -35,7 +35,7 @@ from symflex.expressions import (
 from symflex.model.blocks import has_ports, items_of, matrix_rows
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import Signal
-from symflex.model.spec import NumberValue, TableValue
+from symflex.model.spec import TableValue
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -139,16 +139,11 @@ def _read_ports(
         reader.expression(x, f"from of {what}", quantities=False) for x in items_of(given["from"].value)
     ]
     outputs = reader.strings(given["to"], f"to of {what}")
-    order = len(items_of(given["A"].value))
-    states: tuple[Text, ...] | None
-    states = tuple(Text(f"{entry.key}_x_{i + 1}", entry.key_span) for i in range(order))
+    numbers = range(1, len(items_of(given["A"].value)) + 1)
+    states: tuple[Text, ...] | None = tuple(Text(f"{entry.key}_x_{i}", entry.key_span) for i in numbers)
     if "states" in given:
         states = reader.strings(given["states"], f"states of {what}")
     if outputs is None or states is None:
-        return []
-    if len(states) != order:
-        message = f"states of {what} are {counted(len(states), 'name')}, A has {counted(order, 'row')}"
-        reader.note("SF206", message, given["states"].value.span)
         return []
     is_good = None not in sources
     for text in (*states, *outputs):
@@ -159,15 +154,18 @@ def _read_ports(
             reader.note(problem[0], problem[1].replace("an unknown", "a signal"), text.span, problem[2])
             is_good = False
         signals.add(text.value)
-    shapes = {"A": (order, order), "B": (order, len(sources)), "C": (len(outputs), order)}
-    through = given.get("D")
-    is_direct = through and not (isinstance(through.value, NumberValue) and not through.value.value)
-    shapes |= {"D": (len(outputs), len(sources))} if is_direct else {}
+    order, count = len(numbers), len(sources)
+    sizes = {
+        "A": (len(states),) * 2,
+        "B": (order, count),
+        "C": (len(outputs), order),
+        "D": (len(outputs), count),
+    }
     a, b, c, d = (
-        matrix_rows(reader, given[k].value, f"{k} of {what}", shapes[k])
-        if k in shapes
-        else [[number(0)] * len(sources)] * len(outputs)
-        for k in "ABCD"
+        matrix_rows(reader, given[k].value, f"{k} of {what}", size)
+        if k in given
+        else [[number(0)] * count] * len(outputs)
+        for k, size in sizes.items()
     )
     if not is_good or a is None or b is None or c is None or d is None:
         return []
@@ -177,9 +175,11 @@ def _read_ports(
         sum_of(_times(x, name) for x, name in zip((*left, *right), columns, strict=True))
         for left, right in zip((*a, *c), (*b, *d), strict=True)
     ]
-    sides = zip(moving, sums[:order], strict=True)
-    equations = [Equation(Product((Name(LAPLACE), x)), total, span=x.span) for x, total in sides]
-    read = [*equations, *(replace(x, span=y.span) for x, y in zip(sums[order:], outputs, strict=True))]
+    read: list[Expression] = [
+        Equation(Product((Name(LAPLACE), x)), total, span=x.span)
+        for x, total in zip(moving, sums, strict=False)
+    ]
+    read += [replace(total, span=y.span) for total, y in zip(sums[order:], outputs, strict=True)]
     return [Signal(x.value, e, x.span) for x, e in zip((*states, *outputs), read, strict=True)]
 
 

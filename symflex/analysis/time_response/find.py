@@ -217,7 +217,7 @@ def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> Sa
 def _answer(asked: Asked) -> Sampled:
     """Return what the first way finds that answers, and why those before it do not."""
     refused: dict[str, list[str]] = {}
-    for way in WAYS if asked.bound.sheets == 1 else ROOT_WAYS:
+    for way in WAYS:
         plan = way.applies(asked)
         try:
             answer = plan if isinstance(plan, Refused) else plan()
@@ -229,9 +229,6 @@ def _answer(asked: Asked) -> Sampled:
         if answer.reason:
             refused.setdefault(answer.reason, []).append(way.name)
         spend()
-    if asked.bound.sheets > 1:
-        message = f"the response of {asked.bound.name} in time is not available: {'; '.join(refused)}"
-        raise ModelError(Diagnostic("SF910", message, None, "frequency responses, poles and zeros are"))
     message = f"poles of {asked.bound.name} cannot be told apart: its response is not known"
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
 
@@ -293,6 +290,9 @@ def _by_estimate(asked: Asked) -> Plan | Refused:
 
 
 WAYS = (
+    Way(
+        "hyperbolas", lambda asked: Refused() if asked.bound.sheets == 1 else partial(along_hyperbolas, asked)
+    ),
     Way("partial fractions", _by_partial_fractions),
     Way("echoes", _by_echoes),
     Way("settled echoes", _by_settling),
@@ -302,8 +302,6 @@ WAYS = (
     Way("estimated modes", _by_estimate),
 )
 """All ways, in the order in which they are asked: exact ones first, then those that take the least time."""
-ROOT_WAYS = (Way("hyperbolas", lambda asked: partial(along_hyperbolas, asked)),)
-"""The ways of functions with a root of s."""
 
 
 def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:

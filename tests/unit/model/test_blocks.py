@@ -223,7 +223,7 @@ def test_state_equations_with_ports_have_the_transfer_matrix(inputs, outputs, di
         ({"to": ["y", "r"]}, "'r' is a signal already"),
         ({"to": "y"}, "C of ss 'G' must be 1 x 2, found 2 x 2"),
         ({"from": ["r", "r", "r"]}, "B of ss 'G' must be 2 x 3, found 2 x 2"),
-        ({"states": ["p"]}, "states of ss 'G' are 1 name, A has 2 rows"),
+        ({"states": ["p"]}, "A of ss 'G' must be 1 x 1, found 2 x 2"),
         ({"from": None}, "ss 'G' lacks from"),
     ],
 )

@@ -98,6 +98,26 @@ def test_an_oscillator_with_a_fractional_damper_rings_as_its_pole_and_its_branch
             assert value == pytest.approx(float(ringing + creep), rel=1e-12)
 
 
-def test_waves_that_are_reflected_and_dead_times_are_refused():
+def test_a_rod_with_a_half_infinite_end_agrees_with_talbots_inversion():
+    text = """symflex = 1
+inputs.u = {}
+outputs.Y = "T(0.5)"
+fields.T.domain = ["0", "1"]
+fields.T.equation = "T'' = s*T"
+fields.T.conditions = ["T(0) = u", "T'(1) = -sqrt(s)/3*T(1)"]
+"""
+
+    def step(s):
+        at = [mpmath.cosh(sqrt(s) * x) + mpmath.sinh(sqrt(s) * x) / 3 for x in (mpf(1) / 2, 1)]
+        return at[0] / at[1] / s
+
+    with mpmath.workdps(30):
+        expected = [float(mpmath.invertlaplace(step, t, method="talbot")) for t in (0.1, 1.0)]
+    response = loads(text).transfer_function("Y", "u").bind().step_response([0.1, 1.0])
+    assert response.certified
+    assert response.values == pytest.approx(expected, rel=1e-11)
+
+
+def test_dead_times_are_refused():
     with pytest.raises(ModelError, match="not all waves decay"):
         function("exp(-s*k)/(1 + sqrt(s))*u").step_response([1.0])
