@@ -507,6 +507,10 @@ class FitOptions:
         help="Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
         "s21; of records in time t,u,y.",
     )
+    first_hz: float = option(
+        0.0, "--from", type=float, least=0, help="First frequency of data without any [Hz], with --step."
+    )
+    step_hz: float | None = option(None, "--step", type=float, help="Their distance [Hz].")
     averages: float | None = option(
         None,
         "--averages",

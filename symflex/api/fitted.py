@@ -143,6 +143,7 @@ def fit(
     criterion: Literal["bic", "aicc"] = "bic",
     band: tuple[float, float] | None = None,
     columns: str = "",
+    axis: tuple[float, float] | None = None,
     averages: float | None = None,
     window: Literal["hann", "none"] | None = None,
     gain: bool = False,
@@ -174,6 +175,8 @@ def fit(
         Only lines between these frequencies [Hz].
     columns : str
         What the columns of the files are, where these do not say: see :func:`read_measurement`.
+    axis : (float, float), optional
+        First frequency and step [Hz] of files without frequencies.
     averages : float, optional
         Independent averages, where the data do not say.
     window : str, optional
@@ -229,7 +232,7 @@ def fit(
         if isinstance(one, MeasuredResponse):
             responses.append(one)
         else:
-            responses += read_measurement(one, columns, estimate)
+            responses += read_measurement(one, columns, estimate, axis)
     asked = FitOptions(
         base=base,
         tfs=[tf] if isinstance(tf, str) else list(tf),

@@ -126,8 +126,9 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
     from symflex.data.measurement import read_measurement
 
     read: list[MeasuredResponse] = []
+    axis = (given.first_hz, given.step_hz) if given.step_hz else None
     for path in given.data:
-        responses = read_measurement(str(path), given.columns, _estimate(given))
+        responses = read_measurement(str(path), given.columns, _estimate(given), axis)
         for guess in dict.fromkeys(guess for one in responses for guess in one.guesses):
             note(f"{path}: {guess}")
         read += responses

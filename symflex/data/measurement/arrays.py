@@ -24,6 +24,7 @@ from symflex.data.measurement.array_files import (
 )
 from symflex.data.measurement.columns import (
     CROSS,
+    WITHOUT_AXIS,
     Assembled,
     ColumnMeaning,
     DataColumn,
@@ -288,7 +289,7 @@ def _from_scope(known: Arrays, name: str, stem: str, scope: str = "") -> list[Me
     lines = _frequency(known, name, guesses)
     if lines is None:
         message = f"'{name}' has no array frequency_hz; it has {listed_names(list(known)) or 'none'}"
-        raise DataError(Diagnostic("SF602", message, None, _HINT))
+        raise DataError(Diagnostic("SF602", message, None, f"{_HINT}; {WITHOUT_AXIS}"))
     columns = [DataColumn("frequency", ColumnMeaning("frequency"), lines)]
     kinds = ("complex", "real", "imaginary", "magnitude", "phase")
     used = [key for key in known if _meaning(key).kind in kinds and key != "values"]
@@ -411,7 +412,7 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         message = f"'{name}' has no array {what}; it has {listed_names(shapes) or 'none'}"
         option = f"--columns f={next(iter(named or rising), 'NAME')},h={next(iter(complexes), 'NAME')}"
         hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=)"
-        raise DataError(Diagnostic("SF602", message, None, hint))
+        raise DataError(Diagnostic("SF602", message, None, hint if rising else WITHOUT_AXIS))
     ((f, h),) = pairs
     own = f.rpartition(".")[2].lower()
     guesses = [f"'{h}' is taken as the values, the only complex array as long as '{f}'"]

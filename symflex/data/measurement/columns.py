@@ -104,6 +104,7 @@ _SUFFIX = re.compile(
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
+WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ say them"
 UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
 WRAPPED: Final = 2 * np.pi * 1.001
@@ -120,6 +121,8 @@ MOST_LISTED: Final = 6
 ROUNDED_COHERENCE: Final = 1.01
 """Up to which coherence was rounded upwards."""
 FILLED: Final = 0.95
+SAME_BAND: Final = 0.5
+"""Share of the lines of each sweep in the band that all of them cover; less are segments of one."""
 SAME_FREQUENCY: Final = 1e-3
 """Relative distance up to which two columns, of two units perhaps, hold the same frequency."""
 SAME_PHASE: Final = 1e-2
@@ -396,6 +399,7 @@ def assembled(
                 made.append(Assembled(label, lines, values, shares, unit, kept, is_magnitude))
     if not made:
         raise DataError(_missing(columns, file, header))
+    made = [sweep for m in made for sweep in _sweeps(m, guesses)]
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
@@ -412,6 +416,59 @@ def assembled(
         listed += ", ..." if len(unused) > MOST_LISTED else ""
         guesses.append(f"{'columns' if len(unused) > 1 else 'column'} {listed} not used")
     return made, list(dict.fromkeys(guesses))
+
+
+def _sweeps(one: Assembled, guesses: list[str]) -> list[Assembled]:
+    """Return the sweeps of a response that goes through its band more than once.
+
+    Those of one direction and the same frequencies are averaged; others are kept apart, since a response may
+    depend on the direction.
+    """
+    lines, starts = one.frequency_hz, [0]
+    ways = np.sign(np.diff(lines))
+    for turn in (np.flatnonzero(np.diff(ways)) + 1).tolist():
+        starts += [turn + 1] * (turn > starts[-1])
+    if not 1 < len(starts) <= lines.size // FEWEST_TO_DECIDE:
+        return [one]
+    runs = [slice(*ends) for ends in pairwise([*starts, lines.size])]
+    parts = [lines[run] for run in runs]
+    low, high = max(map(np.min, parts)), min(map(np.max, parts))
+    if min(float(np.mean((part >= low) & (part <= high))) for part in parts) < SAME_BAND:
+        return [one]
+    groups: dict[int, list[slice]] = {}
+    for i, part in enumerate(parts):
+        alike = (
+            k
+            for k in groups
+            if parts[k].shape == part.shape and np.allclose(parts[k], part, SAME_FREQUENCY, 0)
+        )
+        groups.setdefault(next(alike, i), []).append(runs[i])
+    is_both_ways = sorted(ways[runs[k].start] for k in groups) == [-1, 1]
+    made = []
+    for number, (k, same) in enumerate(groups.items(), 1):
+        way = {1: "up", -1: "down"}[ways[runs[k].start]] if is_both_ways else f"sweep {number}"
+        label = " ".join(filter(None, (one.label, way if len(groups) > 1 else "")))
+        values = np.mean([one.values[run] for run in same], axis=0)
+        if one.is_magnitude:
+            size = np.mean([np.abs(one.values[run]) for run in same], axis=0)
+            values = size * np.exp(1j * _minimum_phase(parts[k], size))
+        shares = None if one.coherence is None else np.mean([one.coherence[run] for run in same], axis=0)
+        columns = tuple(_below(c, runs[k]) for c in one.columns)
+        made.append(Assembled(label, parts[k], values, shares, one.unit, columns, one.is_magnitude))
+        if len(same) > 1:
+            guesses.append(f"{len(same)} sweeps with the same frequencies are averaged")
+    if len(made) > 1:
+        guesses.append(
+            f"sweeps with other frequencies or directions are kept apart: {', '.join(m.label for m in made)}"
+        )
+    return made
+
+
+def _below(column: DataColumn, rows: slice) -> DataColumn:
+    """Return some rows of a column."""
+    wrong = tuple(row - rows.start for row in column.wrong if rows.start <= row < rows.stop)
+    place = column.place
+    return replace(column, wrong=wrong, place=lambda row: place(row + rows.start))
 
 
 def _with_frequency(
@@ -871,6 +928,8 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
     if re.search(r"\b(?:time|zeit|temps|tiempo)\b|^t\b", columns[axis].name, re.I):
         return f"'{columns[axis].name[:30]}' is no frequency: --columns t,u,y reads a record in time"
+    if columns[axis].meaning.kind not in ("", "frequency"):
+        return WITHOUT_AXIS
     if _NO_WORD.search(columns[axis].name):
         return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
     open_ones: list[int] = []

@@ -19,6 +19,7 @@ import numpy as np
 from symflex.data.measurement.columns import (
     HINT,
     UNITS,
+    WITHOUT_AXIS,
     Assembled,
     ColumnMeaning,
     DataColumn,
@@ -41,6 +42,7 @@ from symflex.data.measurement.measured_response import (
 )
 from symflex.data.measurement.text_table import (
     COMMENTS,
+    FEWEST_ROWS,
     SIGNS,
     WHOLE,
     NumberBlock,
@@ -88,7 +90,9 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     fields = _comment_fields(table)
     blocks = table.blocks()
     if not blocks:
-        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
+        are_alone = sum(number(line, table.decimal) is not None for line in table.lines) >= FEWEST_ROWS
+        hint = WITHOUT_AXIS if are_alone else HINT
+        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, hint))
     if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     guesses = list(table.guesses)
@@ -177,6 +181,23 @@ def _with_axis(head: str, axis: Iterable[str], rows: str) -> _Rewritten | None:
     lines = "".join(f"{x}\t{row}\n" for x, row in zip(axis, written, strict=False))
     said = ("the frequencies are those that the header gives",)
     return ((head + lines).encode(), lambda _: None, said) if lines else None
+
+
+def with_axis(name: str, data: bytes, first: float, step: float) -> bytes:
+    """Return a text with a frequency in front of each row of numbers, tabs between cells."""
+    table = TextTable.of(name, data)
+    axis, lines = count(), []
+    for line in table.lines:
+        words = cut(line, table.delimiter)
+        readings = (
+            cells
+            for cells in (words, [line.strip()])
+            if None not in (number(c, table.decimal) for c in cells)
+        )
+        if words and (cells := next(readings, None)):
+            words = [repr(first + next(axis) * step).replace(".", table.decimal), *cells]
+        lines.append("\t".join(words))
+    return "\n".join(lines).encode()
 
 
 def _turned(table: TextTable) -> _Rewritten | None:

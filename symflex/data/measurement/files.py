@@ -17,7 +17,8 @@ from typing import Final
 import numpy as np
 
 from symflex.data.measurement.arrays import arrays_in, format_of, read_arrays
-from symflex.data.measurement.comma_separated import read_columns
+from symflex.data.measurement.arrays import responses_of as responses_of_arrays
+from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
@@ -57,7 +58,10 @@ SAVE_AS: Final = {
 
 
 def read_measurement(
-    path: str | Path, columns: str = "", estimate: Estimate | None = None
+    path: str | Path,
+    columns: str = "",
+    estimate: Estimate | None = None,
+    axis: tuple[float, float] | None = None,
 ) -> tuple[MeasuredResponse, ...]:
     """Read the frequency responses of a data file, or estimate those of a record in time.
 
@@ -72,6 +76,8 @@ def read_measurement(
         ``z11`` for Touchstone files; ``t,u,y`` for records in time.
     estimate : Estimate, optional
         How responses of a record in time are estimated.
+    axis : (float, float), optional
+        First frequency and step [Hz] of a file without frequencies.
 
     Returns
     -------
@@ -103,6 +109,13 @@ def read_measurement(
     suffix = format_of(name, data)
     if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
         suffix = ".uff"  # whatever the file is called, no table begins so
+    if axis is not None and suffix in ARRAYS:
+        arrays = arrays_in(name, data, suffix)
+        size = max((max(a.shape, default=0) for a in arrays.values()), default=0)
+        arrays = {**arrays, "frequency_hz": axis[0] + axis[1] * np.arange(size)}
+        return responses_of_arrays(arrays, name, Path(name).stem, columns)
+    if axis is not None:
+        return read_columns(name, with_axis(name, data, *axis), Path(name).stem, columns)
     if READERS.get(suffix, read_columns) in (read_columns, read_arrays):
         record = read_record(name, data, Path(name).stem, columns)
         if record is not None:

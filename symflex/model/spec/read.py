@@ -14,6 +14,13 @@ from symflex.files.examples import example_of
 if TYPE_CHECKING:
     from pathlib import Path
 
+DATA: Final = (
+    ".csv", ".tsv", ".frd", ".zma", ".s1p", ".s2p", ".uff", ".unv", ".npz", ".npy", ".mat", ".h5", ".hdf5",
+    ".tdms", ".xlsx", ".lvm",
+)  # fmt: skip
+"""Ends of the names of files that hold measured data and never a specification."""
+_NUMBERS = re.compile(rb"^[-+\d.][-+\d.e]*[\t ,;]+[-+\d.][-+\d.e \t,;]*\r?\n[-+\d.]", re.M | re.I)
+"""Two lines of numbers, as in a table."""
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -32,6 +39,10 @@ def read(path: str | Path) -> Source:
     """
     name = os.fspath(path)
     data = read_file(name, MAX_BYTES)
+    if name.lower().endswith(DATA) or (_NUMBERS.search(data) and b"symflex" not in data):
+        raise SpecError(
+            Diagnostic("SF901", f"'{name}' is measured data, no specification: symflex fit {name}")
+        )
     if len(data) > MAX_BYTES:
         message = f"'{name}' is larger than {MAX_BYTES} bytes"
         raise SpecError(Diagnostic("SF901", message, hint="is this the right file?"))

@@ -101,3 +101,19 @@ def test_a_missing_file_has_a_hint_to_one_of_nearly_its_name(path: Path) -> None
     assert refusal(path.with_name("quarter_cars")).hint == "did you mean 'quarter_cars.toml'?"
     path.with_name("broken.toml").touch()
     assert refusal(path.with_name("bode")).hint is None
+
+
+def test_measured_data_are_named_as_data_for_fit_in_one_line(path: Path) -> None:
+    for name, data in (
+        ("a.csv", b"f,re,im\n1,2,3\n"),
+        ("a.mat", b"MATLAB\xff\0" * 300_000),
+        ("a.txt", b"* measured\r\n1.0\t-2,5\r\n2.0\t-3,5\r\n"),
+    ):
+        path.with_name(name).write_bytes(data)
+        problem = refusal(path.with_name(name))
+        assert problem.message.endswith(
+            f"is measured data, no specification: symflex fit {path.with_name(name)}"
+        )
+        assert problem.hint is None
+    path.write_text("symflex = 1\nx = [\n1.0, 2.0,\n3.0, 4.0]\n")
+    assert read(path).text

@@ -338,3 +338,37 @@ def test_a_magnitude_of_two_channels_alone_is_their_ratio(tmp_path):
     (found,) = read_measurement(tmp_path / "a.csv")
     assert abs(found.values) == pytest.approx(abs(H), rel=1e-6)
     assert found.is_magnitude
+
+
+def test_sweeps_with_the_same_frequencies_are_averaged_and_up_and_down_kept_apart(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("f,re,im\n" + rows(F, 2 * RE, IM) + rows(F, 0 * RE, IM))
+    (found,) = read_measurement(path)
+    assert found.values == pytest.approx(H)
+    assert "2 sweeps with the same frequencies are averaged" in found.guesses
+    path.write_text("f,re,im\n" + rows(F, RE, IM) + rows(F[::-1], 3 * RE[::-1], 3 * IM[::-1]))
+    found = read_measurement(path)
+    assert [one.name for one in found] == ["up", "down"]
+    assert found[1].values == pytest.approx(3 * H)
+    path.write_text(
+        "f,re,im\n" + rows(F, RE, IM) + rows(F, RE, [*map(str, IM[:50]), "x", *map(str, IM[51:])])
+    )
+    (found,) = read_measurement(path)  # the line without a number is left out of the mean
+    assert found.values.size == F.size - 1
+
+
+def test_numbers_without_frequencies_ask_for_them(tmp_path):
+    for name, content in (
+        ("one.txt", "".join(f"{h.real:.12g}{h.imag:+.12g}j\n" for h in H).encode()),
+        ("two.csv", ("re;im\n" + rows(RE, IM, sep=";", decimal=",")).encode()),
+        ("sizes.csv", ("Magnitude,Phase (deg)\n" + rows(SIZE, DEG)).encode()),
+        ("h.npz", npz(H=H)),
+        ("any.npz", npz(x=H)),
+    ):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(DataError) as caught:
+            read_measurement(tmp_path / name)
+        assert "--from HZ --step HZ" in caught.value.diagnostics[0].hint, (name, str(caught.value))
+        (found,) = read_measurement(tmp_path / name, axis=(1.0, 0.5))
+        assert found.values == pytest.approx(H, rel=1e-6), name
+        assert found.frequency_hz == pytest.approx(F), name

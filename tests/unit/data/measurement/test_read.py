@@ -131,12 +131,6 @@ MISTAKES = {
     "unit of the values": ("# unit: furlong/N\n" + PLAIN, "SF602", "a.csv:1:9"),
     "too large to square": (PLAIN.replace("2,3,4", "2,1e300,4"), "SF603", "a.csv:3:3"),
     "too small to square": (PLAIN.replace("2,3,4", "2,1e-300,0"), "SF603", "a.csv:3:3"),
-    "two sweeps": (
-        "f,re,im\n"
-        + "".join(f"{f},2,3\n" for f in (*range(1, 20), *range(1, 20))).replace("1,2,3\n2", "1,2,4\n2", 1),
-        "SF604",
-        "a.csv:21:1",
-    ),
     "twice": (PLAIN.replace("3,4,5", "2,4,5"), "SF604", "a.csv:4:1"),
     "empty": ("", "SF605", "a.csv"),
     "comments only": ("# nothing\n", "SF605", "a.csv"),
