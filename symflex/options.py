@@ -583,6 +583,16 @@ class MeasureOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LiveOptions:
+    """Options of ``symflex live``."""
+
+    specs: Places = option((), nargs=-1, required=True, is_path=True, metavar="SPEC...")
+    tfs: Sequence[str] = option((), "--tf", **ONLY_TFS)
+    output: str | None = file_option("Page to write, a .html.  [default: named after SPEC, or live.html]")
+    allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ReportOptions:
     """Options of ``symflex report``."""
 

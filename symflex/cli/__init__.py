@@ -31,6 +31,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
     "draw": ("plot", "Draw the model as a textbook would."),
     "plot": ("plot", "Draw a Bode plot, a pole-zero plot, mode shapes, a root locus or a Nyquist plot."),
+    "live": ("live", "Write a page with a slider for every parameter."),
     "export": ("formulas", "Write numeric code or LaTeX."),
     "audit": ("formulas", "Compare printed formulas with derived ones."),
     "fit": ("measured", "Fit resonances to measured frequency responses."),
@@ -51,6 +52,7 @@ MEANT = {
     **dict.fromkeys(("margin", "margins", "stable", "gain"), "stability SPEC --gain K"),
     **dict.fromkeys(("tf", "formula", "print", "show", "explain"), "derive SPEC"),
     **dict.fromkeys(("latex", "tex", "numpy", "c", "matlab", "python"), "export SPEC --to TARGET"),
+    **dict.fromkeys(("slider", "sliders", "interactive", "html"), "live SPEC"),
     **dict.fromkeys(("help", "commands"), "--help"),
 }
 """What one command is called elsewhere, and what to write here."""

@@ -194,15 +194,23 @@ class Language:
         >>> next(line for line in text.splitlines() if line.startswith("function V_over_F("))
         'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
         """
-        if not self.is_complex or self.form:
-            check_causal(model, "band form" if self.form else "code in this language")
-        members = self._members(tfs, samples)
-        contents = Contents(model, members, stem, is_alone)
+        contents = self.contents(model, tfs, stem, is_alone=is_alone, samples=samples)
         made = self.print(contents)
         warnings = (*shortfalls(contents.verified), *made.warnings)
         return replace(made, warnings=warnings, verified=contents.verified)
 
-    def _members(self, tfs: Sequence[AnyTransferFunction], samples: int) -> tuple[Member, ...]:
+    def contents(
+        self,
+        model: Model,
+        tfs: Sequence[AnyTransferFunction],
+        stem: str = "",
+        *,
+        is_alone: bool = True,
+        samples: int = SAMPLES,
+    ) -> Contents:
+        """Return what :meth:`export` prints, with its arguments and errors."""
+        if not self.is_complex or self.form:
+            check_causal(model, "band form" if self.form else "code in this language")
         members: list[Member] = []
         for tf in {tf.name: tf for tf in tfs}.values():
             wanted = f"{tf.output.name}_over_{tf.input.name}"
@@ -217,7 +225,7 @@ class Language:
                 members.append(
                     Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True)
                 )
-        return tuple(members)
+        return Contents(model, tuple(members), stem, is_alone)
 
 
 def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ says reaches a command.
 
 from __future__ import annotations
 
+import html
 import logging
 import re
 import warnings
@@ -43,6 +44,19 @@ FORMATS: Final[dict[str, dict[str, str | None]]] = {
     "png": {"Software": None},
     "svg": {"Creator": "symflex", "Date": None},
 }
+
+# Colours that figures draw with, and the variables of the style sheet that stand for them on a page.
+_COLOURS: Final = {
+    "#0072b2": "var(--c1)", "#d55e00": "var(--c2)", "#009e73": "var(--c3)", "#cc79a7": "var(--c4)",
+    "#e69f00": "var(--c5)", "#56b4e9": "var(--c6)", "#000000": "var(--ink)", "#ffffff": "var(--paper)",
+    "#8c8c8c": "var(--quiet)", "#e3e3e3": "var(--faint)",
+}  # fmt: skip
+_COLOUR: Final = re.compile("|".join(_COLOURS), re.IGNORECASE)
+_PROLOGUE: Final = re.compile(r"^.*?(?=<svg\b)", re.DOTALL)
+_METADATA: Final = re.compile(r"\s*<metadata>.*?</metadata>|\s*<style\b.*?</style>", re.DOTALL)
+_IDENTIFIER: Final = re.compile(r'(\bid="|url\(#|href="#)')
+_SIZE: Final = re.compile(r'\s(?:width|height)="[0-9.]+pt"')
+_NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 
 def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: bool = False) -> bytes:
@@ -212,3 +226,24 @@ class _Renderer(RendererPgf):
         body = pgf_text(s, is_math=bool(ismath))
         text = rf"\pgftext[{','.join(options)}]{{{font}{colour}{{}}{body}}}"
         self.written.write(f"\\begin{{pgfscope}}\n{text}\n\\end{{pgfscope}}\n")
+
+
+def inline_svg(svg: str, prefix: str, label: str) -> str:
+    """Return a figure that matplotlib wrote as an element of a page.
+
+    Its colours become those of the page, light or dark; its identifiers get a prefix, since a page has each
+    only once.
+    """
+    content = _PROLOGUE.sub("", svg, count=1)
+    content = _METADATA.sub("", content)
+    content = _IDENTIFIER.sub(lambda m: f"{m[1]}{prefix}-", content)
+    content = _COLOUR.sub(lambda m: _COLOURS[m[0].lower()], content)
+    head, tail = content.split(">", 1)
+    width = re.search(r'\swidth="([0-9.]+)pt"', head)
+    points = float(width[1]) if width else 252.0
+    head = _NAMESPACES.sub("", _SIZE.sub("", head))
+    # xlink is not declared in HTML, and not needed there.
+    tail = tail.replace("xlink:href", "href")
+    style = f'style="max-width:{points / 72 * 1.75:.2f}in"'
+    told = f'class="plot" role="img" aria-label="{html.escape(label)}" {style}'
+    return f"{head} {told}>{tail.rstrip()}"

@@ -7,13 +7,13 @@ markup that symflex itself wrote.
 from __future__ import annotations
 
 import html
-import re
 from base64 import b64encode
 from collections.abc import Iterable, Iterator
 from importlib import resources
 from itertools import takewhile
 from typing import Final, assert_never
 
+from symflex.figures.files import inline_svg
 from symflex.print.mathml import EQUALS, math_element
 from symflex.report.document import (
     Aside,
@@ -46,19 +46,6 @@ MATH_FONT: Final = "fonts/symflex-math.woff2"
 _FONT_FACE: Final = (
     '@font-face{{font-family:"symflex math";src:url(data:font/woff2;base64,{}) format("woff2")}}'
 )
-
-# Colours that figures draw with, and the variables of the style sheet that stand for them on a page.
-_COLOURS: Final = {
-    "#0072b2": "var(--c1)", "#d55e00": "var(--c2)", "#009e73": "var(--c3)", "#cc79a7": "var(--c4)",
-    "#e69f00": "var(--c5)", "#56b4e9": "var(--c6)", "#000000": "var(--ink)", "#ffffff": "var(--paper)",
-    "#8c8c8c": "var(--quiet)", "#e3e3e3": "var(--faint)",
-}  # fmt: skip
-_COLOUR: Final = re.compile("|".join(_COLOURS), re.IGNORECASE)
-_PROLOGUE: Final = re.compile(r"^.*?(?=<svg\b)", re.DOTALL)
-_METADATA: Final = re.compile(r"\s*<metadata>.*?</metadata>|\s*<style\b.*?</style>", re.DOTALL)
-_IDENTIFIER: Final = re.compile(r'(\bid="|url\(#|href="#)')
-_SIZE: Final = re.compile(r'\s(?:width|height)="[0-9.]+pt"')
-_NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 
 def report_page(report: Report) -> str:
@@ -97,26 +84,6 @@ def report_page(report: Report) -> str:
         "</html>",
     ]
     return "\n".join(filter(None, parts)) + "\n"
-
-
-def inline_svg(svg: str, prefix: str, label: str) -> str:
-    """Return a figure that matplotlib wrote as an element of a page.
-
-    Its colours become those of the page, light or dark; its identifiers get a prefix, since a page has each
-    only once.
-    """
-    content = _PROLOGUE.sub("", svg, count=1)
-    content = _METADATA.sub("", content)
-    content = _IDENTIFIER.sub(lambda m: f"{m[1]}{prefix}-", content)
-    content = _COLOUR.sub(lambda m: _COLOURS[m[0].lower()], content)
-    head, tail = content.split(">", 1)
-    width = re.search(r'\swidth="([0-9.]+)pt"', head)
-    points = float(width[1]) if width else 252.0
-    head = _NAMESPACES.sub("", _SIZE.sub("", head))
-    # xlink is not declared in HTML, and not needed there.
-    tail = tail.replace("xlink:href", "href")
-    style = f'style="max-width:{points / 72 * 1.75:.2f}in"'
-    return f'{head} class="plot" role="img" aria-label="{_escape(label)}" {style}>{tail.rstrip()}'
 
 
 def _escape(text: str) -> str:

@@ -17,11 +17,12 @@ import pytest
 import symflex
 from symflex.budget import Silent
 from symflex.errors import SpecError, UsageError
+from symflex.figures.files import inline_svg
 from symflex.report.article import report_article
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS, comparison_section
 from symflex.report.document import Mathematics, Paragraph, Section
 from symflex.report.facts import facts_of
-from symflex.report.page import inline_svg, report_page
+from symflex.report.page import report_page
 from symflex.report.report import (
     Report,
     compose,

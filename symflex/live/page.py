@@ -1,0 +1,304 @@
+"""The page that moves: drawing, formula, sliders, plots and modes of models in one HTML file.
+
+Input: models, and which of their transfer functions are shown.
+Output: the file's text. It holds one script and one style sheet, and allows nothing else by their hashes::
+
+    default-src 'none'; script-src 'sha256-...'; style-src 'sha256-...'
+
+The script is the JavaScript export of every model, the files ``*.js`` beside this one, and the data that
+:func:`_data` makes: parameters, bands, proved roots at the declared values, and the specification cut where
+values stand, so that the page can write it anew. What a user wrote reaches the page as escaped text and as
+JSON strings that end no script.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64encode
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from importlib import resources
+from math import tau
+from typing import TYPE_CHECKING, Any, Final
+
+from symflex import pipeline
+from symflex.codegen.javascript import JAVASCRIPT, RESERVED, javascript_module
+from symflex.codegen.program.band import is_closed
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.drawing import drawing_of, render_drawing
+from symflex.errors import SymflexError
+from symflex.figures.files import inline_svg
+from symflex.model.spec import TableValue, parse
+from symflex.print.forms import print_form, with_hidden
+from symflex.print.html import escape_html
+from symflex.print.latex import model_labels
+from symflex.print.mathml import EQUALS, label_mathml, math_element, transfer_function_mathml
+from symflex.roots import Modes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from symflex.codegen.export import Contents, Member
+    from symflex.model import Model, ModelParameter
+    from symflex.roots import PoleZeroMap, Progress, Root
+    from symflex.transfer import AnyTransferFunction
+
+SCRIPTS: Final = ("page.js",)
+"""Files of the script, in their order."""
+MODES: Final = 10
+"""Modes of a distributed function that are carried along, where its model does not say how many."""
+FACTOR: Final = 10
+"""A slider without a ``range`` goes from the declared value over this to the declared value times this."""
+LARGEST_DRAWING: Final = 60
+"""Elements of a model that is drawn."""
+LONGEST_FORMULA: Final = 60_000
+"""Characters of MathML that a page shows: some forty lines."""
+STYLE_ATTRIBUTE: Final = re.compile(r' style="([^"]*)"')
+
+
+def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progress: Progress) -> str:
+    """Return the page of models, each with the pairs (output, input) that are shown.
+
+    Raises what derivations and exports of these functions raise, among them ModelError: SF233 a number that
+    no double holds, SF920 loss factors, of which code for all s does not exist.
+    """
+    room = resources.files("symflex.live")
+    style = room.joinpath("page.css").read_text(encoding="utf-8")
+    parts = []
+    for i, (model, pairs) in enumerate(models):
+        progress.report(i / len(models), model.title or f"model {i + 1}")
+        parts.append(_part(i, model, pairs))
+    exported = ",\n".join(part.script for part in parts)
+    sources = "\n".join(room.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
+    script = f'"use strict";\n(() => {{\n{sources}\nlive([\n{exported}\n]);\n}})();\n'
+    title = models[0][0].title or "Transfer functions" if len(models) == 1 else f"{len(models)} models"
+    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}"
+    lines = [
+        "<!DOCTYPE html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        '<meta name="color-scheme" content="light dark">',
+        f"<title>{escape_html(title)}</title>",
+        f"<style>{style}</style></head><body>",
+        *_chooser(models),
+        *(part.markup for part in parts),
+        f"<script>{script}</script></body></html>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
+
+
+def _chooser(models: Sequence[tuple[Model, object]]) -> Iterable[str]:
+    if len(models) > 1:
+        titles = (escape_html(model.title or f"Model {i + 1}") for i, (model, _) in enumerate(models))
+        options = "".join(f"<option>{title}</option>" for title in titles)
+        yield f'<nav><label>Model <select id="model">{options}</select></label></nav>'
+
+
+@dataclass(frozen=True)
+class _LivePart:
+    """What one model adds to the page."""
+
+    markup: str
+    script: str  # an expression: data, parameters and functions
+
+
+def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> _LivePart:
+    derived, _ = pipeline.derive_as(model, pairs)
+    every = JAVASCRIPT.contents(model, derived)
+    contents = replace(every, members=tuple(m for m in every.members if not m.is_response))
+    # Neither exports nor, in code of many lines, indentation.
+    module = re.sub(r"\n *(?:export (?=const ))?", "\n", javascript_module(contents).text)
+    names = contents.names(RESERVED)[1]
+    located = _located(model, pairs)
+    data = _data(contents, names, located)
+    script = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
+    returned = f"return {{ PARAMETERS, TRANSFER_FUNCTIONS, data: {script} }};"
+    return _LivePart(_markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()")
+
+
+# ---------------------------------------------------------------------------------------------------- data
+
+
+def _located(model: Model, pairs: Sequence[tuple[str, str]]) -> list[PoleZeroMap | str]:
+    """Return the roots of every function at the declared values, or why there are none."""
+    found: list[PoleZeroMap | str] = []
+    region = None if model.analysis.modes or not model.is_distributed else Modes(MODES)
+    for pair in pairs:
+        try:
+            (bound,) = pipeline.derive_for_roots(model, [pair])
+            found.append(pipeline.roots(bound, region))
+        except SymflexError as error:
+            found.append(error.diagnostics[0].message)
+    return found
+
+
+def _data(
+    contents: Contents, names: Mapping[str, str], located: Sequence[PoleZeroMap | str]
+) -> dict[str, Any]:
+    model = contents.model
+    moving = {p.name for m in contents.members for p in m.parameters}
+    used = [p for p in model.settable if p.value is not None or p.name in moving]
+    functions = [_function(m, at) for m, at in zip(contents.members, located, strict=True)]
+    band = [float(f) for f in model.analysis.band or ()]
+    return {
+        "title": model.title,
+        "parameters": [_parameter(p, names[p.name], p.name in moving) for p in used],
+        "functions": functions,
+        "band": band or _band(functions),
+        "specification": _pieces(model, [p.name for p in used]),
+    }
+
+
+def _parameter(p: ModelParameter, identifier: str, is_moving: bool) -> dict[str, Any]:
+    """Return what the page knows of a parameter: values in SI units, ends of its slider in those written."""
+    written, unit = p.as_written()
+    value, own = (None if x is None else nearest_double(x.rational, x.pi_power) for x in (p.value, written))
+    low, high = _ends(own, p)
+    scale = nearest_double(p.scale.rational, p.scale.pi_power) if p.written_unit else 1.0
+    return {
+        "name": p.name, "id": identifier, "unit": "" if unit == "1" else unit, "scale": scale, "value": value,
+        "low": low, "high": high, "assume": p.assume, "moves": is_moving,
+    }  # fmt: skip
+
+
+def _ends(value: float | None, p: ModelParameter) -> tuple[float, float]:
+    """Return where a slider goes, in the unit that was written."""
+    if value:
+        ends = (value / FACTOR, value * FACTOR)
+        return (min(ends), max(ends))
+    return (-1.0 if p.assume == "real" else 0.0, 1.0) if value is not None else (0.1, 10.0)
+
+
+def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
+    tf, accuracy = member.tf, member.verification.text()
+    data = {"name": tf.name, "unit": tf.unit or "", "fixed": not is_closed(tf), "accuracy": accuracy}
+    if isinstance(located, str):
+        data |= {"why": located, "poles": [], "zeros": [], "infinite": tf.is_distributed}
+        return {**data, "verdict": None}
+    verdict, data["why"] = located.verdict, ""
+    data |= {"poles": _upper(located.all_poles), "zeros": _upper(located.zeros)}
+    said = {"word": verdict.word, "sentence": verdict.sentence, "proved": verdict.certified}
+    return {**data, "infinite": located.is_infinite, "verdict": said}
+
+
+def _upper(roots: Iterable[Root]) -> list[list[float]]:
+    """Return real and imaginary parts and multiplicities of roots of the closed upper half plane."""
+    points = ((complex(root), root) for root in roots)
+    return [
+        [0.0 if r.on_imaginary_axis else z.real, 0.0 if r.is_real else z.imag, r.multiplicity]
+        for z, r in points
+        if r.is_real or z.imag > 0
+    ]
+
+
+def _band(functions: Sequence[dict[str, Any]]) -> list[float]:
+    """Return frequencies [Hz] around the roots, or the default of a frequency response."""
+    sizes = [abs(complex(x, y)) / tau for f in functions for x, y, _ in f["poles"] + f["zeros"] if x or y]
+    return [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
+
+
+def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
+    """Return the specification's text, cut: between texts stand places of values.
+
+    A place is the number of a parameter and the unit to be written with its value.
+    Parameters that other files declare have no place.
+    """
+    source = next((o.span.source for o in model.outputs if o.span), None)
+    if source is None:
+        return []
+    section = parse(source).root.get("parameters")
+    table = section.value if section and isinstance(section.value, TableValue) else None
+    units = {p.name: p.written_unit for p in model.parameters}
+    places: list[tuple[int, int, list[Any]]] = []
+    for entry in table.entries if table else ():
+        if entry.key not in shown:
+            continue
+        inner, unit = entry, None
+        if isinstance(entry.value, TableValue):
+            value, unit = entry.value.get("value"), entry.value.get("unit")
+            if value is None:
+                continue
+            inner = value
+        span = inner.value.span
+        places.append((span.start, span.end, [shown.index(entry.key), "" if unit else units[entry.key]]))
+    pieces: list[str | list[Any]] = []
+    last = 0
+    for start, end, place in sorted(places):
+        pieces += [source.text[last:start], place]
+        last = end
+    return [*pieces, source.text[last:]]
+
+
+# -------------------------------------------------------------------------------------------------- markup
+
+
+def _markup(number: int, contents: Contents, data: dict[str, Any]) -> str:
+    model = contents.model
+    room = resources.files("symflex.live")
+    frame = room.joinpath("page.html").read_text(encoding="utf-8")
+    labels = model_labels(model)
+    rows = [_slider(number, i, p, labels, model) for i, p in enumerate(data["parameters"])]
+    names = [escape_html(m.tf.name) for m in contents.members]
+    filled = {
+        "title": escape_html(model.title or "Transfer functions"),
+        "source": escape_html(model.source),
+        "drawing": _drawing(model, number),
+        "parameters": "\n".join(rows) or "<p>The model has no parameters.</p>",
+        "options": "".join(f"<option>{name}</option>" for name in names),
+        "checks": "".join(f'<label><input type="checkbox">{name}</label>' for name in names),
+        "formulas": "\n".join(_formula(m.tf) for m in contents.members),
+        "n": str(number),
+    }
+    return re.sub(r"\{\{(\w+)\}\}", lambda m: filled[m[1]], frame)
+
+
+def _slider(number: int, i: int, p: dict[str, Any], labels: Mapping[str, str], model: Model) -> str:
+    doc = next(q.doc for q in model.parameters if q.name == p["name"])
+    label, name = math_element(label_mathml(p["name"], labels)), f"p{number}-{i}"
+    return (
+        f'<div class="parameter"><label id="{name}">{label} <span>{escape_html(doc)}</span></label>'
+        f'<input type="range" min="0" max="400" step="1" aria-labelledby="{name}">'
+        f'<input type="number" step="any" aria-labelledby="{name}">'
+        f"<span>{escape_html(p['unit'])}</span></div>"
+    )
+
+
+def _drawing(model: Model, number: int) -> str:
+    if len(model.elements) > LARGEST_DRAWING:
+        return ""
+    try:
+        svg = render_drawing(drawing_of(model), "svg").decode()
+    except SymflexError:
+        return ""
+    drawn = inline_svg(svg, f"d{number}", f"{model.title or 'The model'}, drawn")
+    return STYLE_ATTRIBUTE.sub(_as_attributes, drawn)
+
+
+def _as_attributes(found: re.Match[str]) -> str:
+    """Return properties as attributes of SVG; the policy of the page allows no style attributes."""
+    properties = (entry.partition(":")[::2] for entry in found[1].split(";") if entry.strip())
+    named = ((key.strip().replace("max-width", "width"), value.strip()) for key, value in properties)
+    return "".join(f' {key}="{value}"' for key, value in named)
+
+
+def _formula(tf: AnyTransferFunction) -> str:
+    """Return a transfer function in its shortest form, or a sentence where it would be long."""
+    rows = None
+    if is_closed(tf):
+        form, _ = with_hidden(tf, print_form(tf))
+        rows = transfer_function_mathml(tf, form)
+    size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows or ())
+    if not rows or size > LONGEST_FORMULA:
+        return f"<p>The formula of {escape_html(tf.name)} is long: symflex derive prints it.</p>"
+    lines = ['<div class="formula" tabindex="0" role="group">']
+    for row in rows:
+        left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
+        right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
+        lines.append(f'<div class="row{" where" if row.is_where else ""}">{left} {right}</div>')
+    return "\n".join((*lines, "</div>"))
