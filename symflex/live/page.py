@@ -159,7 +159,8 @@ def _parameter(p: ModelParameter, identifier: str, is_moving: bool) -> dict[str,
     """Return what the page knows of a parameter: values in SI units, ends of its slider in those written."""
     written, unit = p.as_written()
     value, own = (None if x is None else nearest_double(x.rational, x.pi_power) for x in (p.value, written))
-    low, high = _ends(own, p)
+    ends = [p.as_written(end)[0] for end in p.limits or ()]
+    low, high = [nearest_double(x.rational, x.pi_power) for x in ends if x] or _ends(own, p)
     scale = nearest_double(p.scale.rational, p.scale.pi_power) if p.written_unit else 1.0
     return {
         "name": p.name, "id": identifier, "unit": "" if unit == "1" else unit, "scale": scale, "value": value,

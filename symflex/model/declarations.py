@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
+from math import pi
 from typing import TYPE_CHECKING, cast
 
 from symflex.errors import Diagnostic, Text
@@ -14,7 +15,15 @@ from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelPa
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
-from symflex.quantities import Quantity, looks_like_quantity, parse_unit, unit_doubt, unit_named, unit_of
+from symflex.quantities import (
+    DIMENSIONLESS,
+    Quantity,
+    looks_like_quantity,
+    parse_unit,
+    unit_doubt,
+    unit_named,
+    unit_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -51,6 +60,7 @@ class DeclaredParameter:
     latex: str
     doc: str
     span: Span
+    limits: tuple[Quantity, Quantity] | None = None  # its ``range``
 
     @property
     def measured(self) -> Quantity | None:
@@ -61,10 +71,13 @@ class DeclaredParameter:
 
     def resolve(self, reading: CycleReading, implied_unit: str) -> ModelParameter:
         """Return the parameter in SI units, in cycles or in radians as it was read."""
-        value, unit, measured = None, implied_unit, self.measured
-        if self.quantity is not None:
-            is_converted = reading is CycleReading.CONVERTED
-            value = ExactValue(*(self.quantity.angular() if is_converted else self.quantity.cyclic()))
+        unit, measured = implied_unit, self.measured
+        is_converted = reading is CycleReading.CONVERTED
+        known = [self.quantity] if self.quantity is not None else []
+        read = Quantity.angular if is_converted else Quantity.cyclic
+        exact = [ExactValue(*read(q)) for q in (*known, *(self.limits or ()))]
+        value = exact[0] if known else None
+        limits = (exact[-2], exact[-1]) if self.limits else None
         if measured is not None and (
             self.quantity is None or reading is CycleReading.TURNED or not implied_unit
         ):
@@ -85,6 +98,7 @@ class DeclaredParameter:
             cycles,
             written_unit=written,
             scale=scale,
+            limits=limits,
         )
 
 
@@ -191,7 +205,7 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         return None
     table = entry.value if isinstance(entry.value, TableValue) else None
     if table:
-        reader.keys(table, ("value", "unit", "doc", "latex", "assume"), what)
+        reader.keys(table, ("value", "unit", "range", "doc", "latex", "assume"), what)
     inner = table.get("value") if table else entry
     quantity = _quantity(reader, inner, what, named) if inner else None
     literal = bool(quantity and quantity.unit)
@@ -210,7 +224,48 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         read_label(reader, table, what),
         reader.plain(table, "doc", what),
         entry.key_span,
+        _limits(reader, table, entry.key, quantity, unit_text or (quantity.unit if quantity else ""), assume),
     )
+
+
+def _limits(
+    reader: Reader,
+    table: TableValue | None,
+    name: str,
+    quantity: Quantity | None,
+    unit_text: str,
+    assume: Assumption,
+) -> tuple[Quantity, Quantity] | None:
+    """Return the ends of a parameter's ``range``; numbers are in the unit of its value."""
+    entry, what = table.get("range") if table else None, f"range of parameter '{name}'"
+    if table is None or entry is None or (table.get("value") and quantity is None):
+        return None
+    example = 'two values, for instance range = ["50 kN/m", "200 kN/m"]'
+    ends: list[Quantity] = []
+    for value in reader.pair(entry.value, f"{what} must have two ends", example) or ():
+        end = reader.quantity(value, what)
+        if end is None:
+            return None
+        own = one_of(unit_text) if unit_text else Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
+        if not end.unit and unit_text:
+            unit = unit_of(unit_text)
+            end = replace(own, magnitude=end.magnitude * unit.scale, pi_power=end.pi_power + unit.pi_power)
+        turns = [q.cycles + q.radians for q in (own, end)]
+        if end.dimension != own.dimension or ((own.cycles or end.cycles) and turns[0] != turns[1]):
+            declared = f"is in '{unit_text}'" if unit_text else "has no unit"
+            reader.note("SF203", f"{what} is in '{end.unit}', and '{name}' {declared}", value.span)
+            return None
+        if problem := without_sign(name, end, assume, value.span):
+            reader.take((problem,))
+            return None
+        ends.append(end)
+    if not ends:
+        return None
+    low, high = (e.magnitude * Fraction(pi) ** e.pi_power for e in ends)
+    if low >= high:
+        reader.note("SF208", f"{what} must rise from its first end to its second", entry.value.span)
+        return None
+    return ends[0], ends[1]
 
 
 def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]) -> Quantity | None:

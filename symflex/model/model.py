@@ -68,6 +68,7 @@ class ModelParameter:
     # The unit as it was declared; empty when it was not.
     written_unit: str = ""
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
+    limits: tuple[ExactValue, ExactValue] | None = None  # its ``range``, like ``value``
 
     def __repr__(self) -> str:
         value, unit = self.as_written()

@@ -49,7 +49,7 @@ FREE_NAMES: Schema = {**NAMES, "not": {"enum": list(RESERVED)}}
 NODE: Schema = {"type": "string", "pattern": rf"^{WORD}(\.({'|'.join(COMPONENT_DOMAIN)}))?$"}
 VALUE: Schema = {"type": ["string", "number"], "pattern": "\\S"}
 """A number, a quantity such as "20 kN/m", or an expression."""
-FREQUENCIES: Schema = {"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2}
+RANGE: Schema = {"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2}
 
 
 def json_schema() -> Schema:
@@ -120,6 +120,7 @@ def _parameter() -> Schema:
     keys = {
         "value": value,
         "unit": _said(TEXT, "SI or other unit of the value"),
+        "range": _said(RANGE, "ends of its slider in symflex live"),
         "assume": {"enum": list(ASSUMPTIONS), "description": "what its sign is; positive by default"},
     }
     return {"anyOf": [value, _closed(_labelled(keys))]}
@@ -254,7 +255,7 @@ def _count(most: int, description: str) -> Schema:
 
 def _analysis() -> Schema:
     known: dict[str, Schema] = {
-        "band": _said(FREQUENCIES, "frequencies of interest [Hz]"),
+        "band": _said(RANGE, "frequencies of interest [Hz]"),
         "data_end": _said(VALUE, "frequency at which the data end that the model was fitted to [Hz]"),
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
@@ -270,8 +271,8 @@ def _figure() -> Schema:
         "kind": {"enum": list(FIGURE_KINDS), "description": "what is drawn"},
         "of": _said(texts, "transfer functions, OUT/IN"),
         "gain": _said(TEXT, "parameter that is the loop's gain"),
-        "range": _said({**FREQUENCIES}, "first and last gain of a locus"),
-        "band": _said(FREQUENCIES, "frequencies shown [Hz]"),
+        "range": _said(RANGE, "first and last gain of a locus"),
+        "band": _said(RANGE, "frequencies shown [Hz]"),
         "until": _said(VALUE, "last time shown [s]"),
         "data": {"type": "boolean", "description": "whether measured data are drawn under it"},
         "title": TEXT,
