@@ -61,7 +61,7 @@ def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progres
     """Return the page of models, each with the pairs (output, input) that are shown.
 
     Raises what derivations and exports of these functions raise, among them ModelError: SF233 a number that
-    no double holds, SF920 loss factors, of which code for all s does not exist.
+    no double holds, SF251 loss factors, which hold on the frequency axis alone.
     """
     room = resources.files("symflex.live")
     style = room.joinpath("page.css").read_text(encoding="utf-8")
