@@ -56,12 +56,12 @@ function followed(value, slope, roots, values, reach) {
         if (y < 0) continue;
         const twin = found.find((r) => Math.hypot(r.re - x, r.im - y) < 1e-6 * size);
         if (twin) twin.multiplicity++;
-        else found.push(root(x, y, 1, !(left[i] < 1e-8 && Math.hypot(re[i] - first[i][0], im[i] - first[i][1]) < size)));
+        else found.push(tracked(x, y, 1, !(left[i] < 1e-8 && Math.hypot(re[i] - first[i][0], im[i] - first[i][1]) < size)));
     }
     return found;
 }
 
-function root(re, im, multiplicity, isLost = false) {
+function tracked(re, im, multiplicity, isLost = false) {
     return { re, im, radius: NaN, proved: false, multiplicity, isLost };
 }
 
@@ -75,7 +75,7 @@ function tracerOf(f, data, why) {
     const state = (values, poles, zeros) => ({
         values, poles, zeros, certified: { poles: false, zeros: false }, why, stability: "unknown",
     });
-    const given = (list) => list.map((r) => root(...r));
+    const given = (list) => list.map((r) => tracked(...r));
     return {
         begin: (values) => state(values, given(data.poles), given(data.zeros)),
         moved(last, values) {
@@ -107,7 +107,13 @@ function path(from, to, stride) {
 }
 
 // The response to a unit step as the sum of residues of G(s)/s: at 0 and at multiple poles by means over a circle.
-function stepOf(f, values, poles, times) {
+function stepOf(f, values, listed, times) {
+    const poles = [];
+    for (const p of listed) {
+        const same = poles.find((r) => Math.hypot(r.re - p.re, r.im - p.im) <= 1e-7 * Math.hypot(p.re, p.im));
+        if (same) same.multiplicity += p.multiplicity;
+        else poles.push({ ...p });
+    }
     const y = new Float64Array(times.length);
     const distance = (p) => Math.min(...poles.filter((r) => r !== p).map((r) => Math.hypot(r.re - p.re, r.im - p.im)),
         p.im ? 2 * p.im : Infinity, Math.hypot(p.re, p.im) || Infinity);
@@ -117,7 +123,7 @@ function stepOf(f, values, poles, times) {
         const s = [Float64Array.from(x, (v) => v + p.re), Float64Array.from(z, (v) => v + p.im)];
         return [s, x, z, f(s, values)];
     };
-    const origin = poles.find((r) => r.re === 0 && r.im === 0) ?? root(0, 0, 0);
+    const origin = poles.find((r) => r.re === 0 && r.im === 0) ?? tracked(0, 0, 0);
     const radius = 0.5 * distance(origin), [, x0, z0, [g, h]] = circle(origin, Number.isFinite(radius) ? radius : 1);
     let factorial = 1;
     for (let k = 0, u = x0.map(() => 1), v = x0.map(() => 0); k <= origin.multiplicity; k++) {
@@ -230,7 +236,7 @@ class Plot {
         const width = this.svg.clientWidth || 400, height = this.svg.clientHeight || 240;
         const key = JSON.stringify([x, y, width, height]);
         if (key === this.key) return;
-        const left = 58, right = width - 10, top = 8, bottom = height - 40;
+        const left = 58, right = width - 18, top = 8, bottom = height - 40;
         Object.assign(this, { key, left, right, top, bottom, x, y });
         this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
         for (const [k, v] of Object.entries({ x: left, y: top, width: right - left, height: bottom - top })) {
@@ -314,9 +320,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
 
     const provers = functions.map((f) => {
         const make = () => {
-            const why = f.fixed ? "its code holds the numbers of the model" : "roots are carried along in doubles";
-            const tape = f.tape && !f.tape.refused ? f.tape : null;
-            const prover = tape ? proverOf(tape) : { refused: f.tape?.refused ?? why };
+            const prover = proverOf(f.tape);
             return prover.refused ? tracerOf(f.at, f, prover.refused) : prover;
         };
         let made = null;
@@ -632,10 +636,10 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         line.classList.toggle("stable", word === "stable");
         line.classList.toggle("unstable", word === "unstable");
         const right = Math.max(...state.poles.map((p) => p.re));
-        const traced = state.poles.length ? `the traced poles nearest to the right half plane have Re s = ${short(right, 3)} rad/s` : "no pole is known";
+        const traced = state.poles.length ? `the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : "no pole is known";
         const text = word === state.stability && word !== "unknown" ? `${word === "stable" ? "Stable" : "Unstable"}, proved at these values`
             : known ? `${known.sentence[0].toUpperCase()}${known.sentence.slice(1)}, proved at the declared values`
-            : `Stability not proved: ${traced}`;
+            : `Neither stability nor instability is proved here: ${traced}`;
         if (line.textContent !== `${text}.`) line.textContent = `${text}.`;
     };
 

@@ -29,6 +29,7 @@ from symflex.codegen.program.evaluate import nearest_double
 from symflex.drawing import drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
+from symflex.live.tape import MODES, tape_of
 from symflex.model.spec import TableValue, parse
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.html import escape_html
@@ -44,16 +45,17 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap, Progress, Root
     from symflex.transfer import AnyTransferFunction
 
-SCRIPTS: Final = ("page.js",)
+SCRIPTS: Final = ("discs.js", "roots.js", "page.js")
 """Files of the script, in their order."""
-MODES: Final = 10
-"""Modes of a distributed function that are carried along, where its model does not say how many."""
 FACTOR: Final = 10
 """A slider without a ``range`` goes from the declared value over this to the declared value times this."""
 LARGEST_DRAWING: Final = 60
 """Elements of a model that is drawn."""
 LONGEST_FORMULA: Final = 60_000
 """Characters of MathML that a page shows: some forty lines."""
+SHOWN: Final = 0.7
+"""How large a drawing is beside the formula, as a share of its size in a report."""
+MAX_WIDTH: Final = re.compile(r' style="max-width:([0-9.]+)in"')
 STYLE_ATTRIBUTE: Final = re.compile(r' style="([^"]*)"')
 
 
@@ -112,14 +114,19 @@ def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> _LiveP
     derived, _ = pipeline.derive_as(model, pairs)
     every = JAVASCRIPT.contents(model, derived)
     contents = replace(every, members=tuple(m for m in every.members if not m.is_response))
-    # Neither exports nor, in code of many lines, indentation.
-    module = re.sub(r"\n *(?:export (?=const ))?", "\n", javascript_module(contents).text)
+    module = "\n".join(map(_packed, javascript_module(contents).text.splitlines()))
     names = contents.names(RESERVED)[1]
     located = _located(model, pairs)
     data = _data(contents, names, located)
     script = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
     returned = f"return {{ PARAMETERS, TRANSFER_FUNCTIONS, data: {script} }};"
     return _LivePart(_markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()")
+
+
+def _packed(line: str) -> str:
+    """Return a line of the export without ``export``, indentation and blanks around most operators."""
+    bare = line.lstrip().removeprefix("export ")
+    return bare if re.search(r"[\"'`]|^[/*]", bare) else re.sub(r" ([*/+=]) |(,) ", r"\1\2", bare)
 
 
 # ---------------------------------------------------------------------------------------------------- data
@@ -144,7 +151,10 @@ def _data(
     model = contents.model
     moving = {p.name for m in contents.members for p in m.parameters}
     used = [p for p in model.settable if p.value is not None or p.name in moving]
-    functions = [_function(m, at) for m, at in zip(contents.members, located, strict=True)]
+    functions = [
+        {**_function(m, at), "tape": tape_of(m.tf, names)}
+        for m, at in zip(contents.members, located, strict=True)
+    ]
     band = [float(f) for f in model.analysis.band or ()]
     return {
         "title": model.title,
@@ -278,14 +288,17 @@ def _drawing(model: Model, number: int) -> str:
     except SymflexError:
         return ""
     drawn = inline_svg(svg, f"d{number}", f"{model.title or 'The model'}, drawn")
-    return STYLE_ATTRIBUTE.sub(_as_attributes, drawn)
+    return STYLE_ATTRIBUTE.sub(_as_attributes, MAX_WIDTH.sub(_width, drawn, count=1))
+
+
+def _width(found: re.Match[str]) -> str:
+    return f' width="{SHOWN * float(found[1]):.2f}in"'
 
 
 def _as_attributes(found: re.Match[str]) -> str:
     """Return properties as attributes of SVG; the policy of the page allows no style attributes."""
     properties = (entry.partition(":")[::2] for entry in found[1].split(";") if entry.strip())
-    named = ((key.strip().replace("max-width", "width"), value.strip()) for key, value in properties)
-    return "".join(f' {key}="{value}"' for key, value in named)
+    return "".join(f' {key.strip()}="{value.strip()}"' for key, value in properties)
 
 
 def _formula(tf: AnyTransferFunction) -> str:
