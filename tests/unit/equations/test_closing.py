@@ -118,25 +118,6 @@ def test_opening_keeps_to_its_limits(monkeypatch):
             closure.open(polynomial)
 
 
-def test_one_mass_has_one_column_and_the_sign_of_its_border():
-    text = """symflex = 1
-parameters = { m = {}, k = {}, b = {} }
-elements.body = { type = "mass", at = "x", m = "m" }
-elements.held = { type = "spring", between = ["x", "ground"], k = "k" }
-elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
-inputs.F = { force = "x" }
-outputs.X = "x"
-"""
-    found = Determinants.of(pipeline.assemble(pipeline.loads(text)))
-    assert len(found.reduced.columns) == 1
-    # s and pi stand in the closed ring whether they occur or not.
-    assert found.system.closure.ring.names == ("s", "pi", "sum0")
-    above, below = found.opened(found.num("X", "F")), found.opened(found.den)
-    s, m, k, b = (below.ring.generator(name) for name in "smkb")
-    assert above.factors == ()
-    assert below.expand() == int(above.unit) * (m * s**2 + b * s + k)
-
-
 def test_a_loop_without_a_solution_is_told_from_the_equations():
     text = 'symflex = 1\n[signals]\ne = "U + e"\n[inputs]\nU = {}\n[outputs]\nX = "e"\n'
     with pytest.raises(ModelError) as caught:

@@ -96,23 +96,6 @@ X = "u1(l)"
     assert caught.value.diagnostics[0].span is not None
 
 
-def test_common_factors_are_found_where_only_s_is_linear_in_the_dispersion_relation():
-    text = """
-symflex = 1
-parameters = { D_0 = "1 m^2/s", v = "2 m/s", l = "1.5 m" }
-inputs = { u = {} }
-outputs = { Y = "c(l/2)" }
-[fields.c]
-domain = ["0", "l"]
-equation = "D_0*c'' - v*c' - s*c = 0"
-conditions = ["v*c(0) - D_0*c'(0) = v*u", "c'(l) = 0"]
-"""
-    (tf,) = pipeline.derive_all(pipeline.loads(text))
-    # v e^(v l/4D) / (2 D gamma sinh q + v cosh q) with q = gamma l/2: one sum of two terms is left.
-    assert sorted(len(f) for f, _ in tf.ratio.factors if len(f) > 1) == [2]
-    assert any(len(h.polynomial) == 2 for h in tf.hidden)
-
-
 @pytest.mark.parametrize(
     ("unknowns", "equations", "static"),
     [('["a", "b"]', '["a\' = s*b", "b = 2*a"]', "b"), ('["a"]', "[\"a' - a' + s*a = 0\"]", "a")],

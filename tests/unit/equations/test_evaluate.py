@@ -10,9 +10,9 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import PRIME, Factored, Ring, residue
 from symflex.equations.distributed import read_equation
-from symflex.equations.evaluate import ExactEvaluator, exact_root, extent
+from symflex.equations.evaluate import ExactEvaluator, exact_root
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
-from symflex.expressions import Name, format_expression, names, parse_equation
+from symflex.expressions import Name, names, parse_equation
 from symflex.expressions import parse as parse_text
 from symflex.library.elements import LinearForm, Variable
 from symflex.model import scope_of
@@ -222,18 +222,6 @@ def test_definitions_are_opened_in_a_function_up_to_a_size():
                 assert [(d.code, d.span.text) for d in caught.value.diagnostics] == [
                     (code, f"sqrt(d{last})")
                 ], link
-
-
-def test_definitions_opened_once_serve_the_next_call():
-    opener = ExactEvaluator(RING, scope_of(MODEL), {}, {}, {"a": parse("k + 1"), "b": parse("a*m")}).opener
-    assert [format_expression(opener.open(parse(t))) for t in ("sqrt(b)", "exp(a - b)")] == [
-        "sqrt((k + 1)*m)", "exp(k + 1 - (k + 1)*m)"
-    ]  # fmt: skip
-
-
-def test_the_extent_of_a_tree_is_its_parts_and_levels():
-    for text, size in [("k", (1, 1)), ("k + m*s - 2", (7, 3)), ("sqrt(k)", (2, 2)), ("(k + m)^2", (5, 3))]:
-        assert extent(parse(text)) == size, text
 
 
 def test_a_square_root_of_a_number_is_exact_or_none():

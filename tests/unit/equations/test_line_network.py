@@ -29,12 +29,6 @@ def test_a_chain_written_in_any_order_is_a_narrow_band():
     assert width <= 6
 
 
-def test_equal_values_are_one_entry():
-    one = table(f'r = {{ {ROD}, between = ["ground", "a"] }}')
-    two = table(f'r = {{ {ROD}, between = ["ground", "a"] }}\nq = {{ {ROD}, between = ["a", "b"] }}')
-    assert len(two.entries) == len(one.entries)
-
-
 def test_points_along_an_element_cut_it_in_their_order():
     cut = table(f'r = {{ {ROD}, between = ["ground", "a"] }}', "r.u(0.4 m) - r.u(0.1 m)")
     assert [float(c.length.unit) for c in cut.equations.continua] == [0.1, 0.3, 0.1]

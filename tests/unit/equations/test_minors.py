@@ -11,7 +11,7 @@ import pytest
 
 from symflex.algebra import Ring
 from symflex.equations.elimination import determinants as module
-from symflex.equations.elimination.determinants import DegreeBounds, Minors, expansion_order
+from symflex.equations.elimination.determinants import DegreeBounds, Minors
 from symflex.errors import BudgetError
 
 RING = Ring(("s", "a", "b"))
@@ -204,28 +204,3 @@ def test_the_degree_bound_is_the_largest_sum_along_a_permutation():
         for columns in combinations(range(5), 4):
             assert bounds.determinant(bits(columns)) == highest_product(rows, columns), seed
         assert bounds.bordered(top, 31) == highest_product((top, *rows), range(5)), seed
-
-
-def order_by_hand(patterns):
-    """Return the greedy order as the docstring has it, every step looked for among all rows."""
-    seen, order = set(), []
-    while len(order) < len(patterns):
-        left = [i for i in range(len(patterns)) if i not in order]
-        near = [i for i in left if patterns[i] & seen] or left
-        best = min(near, key=lambda i: (len(patterns[i] - seen), i))
-        order.append(best)
-        seen |= patterns[best]
-    return tuple(order)
-
-
-def test_rows_that_reach_fewest_new_columns_come_next():
-    for seed in range(20):
-        random = Random(seed)
-        size = random.randrange(4, 12)
-        columns = tuple(random.sample(range(size), size - 2))
-        rows = tuple(
-            {c: RING.constant(1) for c in random.sample(range(size), random.randrange(1, min(6, size)))}
-            for _ in range(size)
-        )
-        patterns = [{c for c in row if c in columns} for row in rows]
-        assert expansion_order(rows, columns) == order_by_hand(patterns), seed

@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 from random import Random
 
 import pytest
 from flint import fmpq, fmpq_mat
 
-from benchmarks.networks import NETWORKS, chain, ladder, network, ring, tree
+from benchmarks.networks import NETWORKS, chain, network, tree
 from symflex import pipeline
 from symflex.algebra.straight_line import ONE, ZERO, Step, Workbench
 from symflex.equations import assemble
@@ -115,11 +114,6 @@ def size_of(branches):
     return found.program.size(*found.quotients[0])
 
 
-def test_the_size_grows_by_the_same_for_every_rung_of_a_ladder():
-    sizes = [size_of(ladder(n)) for n in (20, 22, 24)]
-    assert len({b - a for a, b in pairwise(sizes)}) == 1
-
-
 def star(n):
     """Return the branches of a mass with all others around it."""
     return [(1, i) for i in range(2, n + 1)]
@@ -129,11 +123,6 @@ def test_a_network_without_rings_needs_seven_operations_a_mass():
     # b s + k, m s^2, Z + w, w/(Z + w), that times Z, and the sum: 7 with s^2 shared.
     for make in (chain, tree, star):
         assert size_of(make(40)) == 7 * 40 - 5, make
-
-
-def test_a_ring_needs_twelve_operations_a_mass():
-    # b s + k, m s^2, Z + v + w, v and w over that, those times Z, two sums; one branch for both ways.
-    assert size_of(ring(31)) - size_of(ring(30)) == 2 + 1 + 2 + 2 + 2 + 2 + 1
 
 
 def test_opposite_and_equal_terms_are_seen():
@@ -483,11 +472,6 @@ def test_a_division_that_is_all_of_a_response_is_its_quotient():
     assert read == [(1, m * s**2), (-1, n * s**2), (1 / (m * s**2) - 1 / (n * s**2), 1)]
 
 
-def test_nothing_wanted_is_nothing_found():
-    found = eliminate(pipeline.assemble_sparse(pipeline.loads(APART)), [])
-    assert (found.quotients, found.pivots) == ((), ())
-
-
 def test_fewer_equations_than_unknowns_are_refused_with_what_they_leave_open():
     equations = pipeline.assemble_sparse(pipeline.loads(APART))
     with pytest.raises(ModelError, match="nothing determines node 'y': it floats"):
@@ -517,12 +501,6 @@ tilt = "p.theta"
 
 def test_what_joins_two_nodes_side_by_side_adds_up():
     assert_solves(BESIDE)
-
-
-def test_what_an_input_does_not_reach_is_nothing_over_one():
-    text = APART.replace('["x", "y"]', '"x"')
-    found = eliminate(pipeline.assemble_sparse(pipeline.loads(text)), [("Y", "F")])
-    assert found.quotients == ((ZERO, ONE),)
 
 
 def test_impedances_to_ground_and_between_nodes_are_marked_as_such():

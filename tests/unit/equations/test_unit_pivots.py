@@ -72,16 +72,6 @@ def test_a_row_is_put_into_the_others():
         assert (found.columns, found.kept) == ((1,), (1,)), sign
 
 
-def test_what_cancels_is_no_entry_any_more():
-    # x_0 = a x_1, so x_0 - a x_1 + b x_2 is b x_2.
-    found = eliminate_unit_pivots(
-        ({0: ONE, 1: -a}, {0: ONE, 1: -a, 2: b}, {1: a, 2: s}), ({0: ONE, 1: -a},), 3
-    )
-    assert found.rows == ({2: b}, {1: a, 2: s})
-    assert found.outputs == ({},)
-    assert (found.columns, found.kept) == ((1, 2), (1, 2))
-
-
 def test_a_chain_of_units_leaves_one_row():
     # x_0 = u, x_1 = a x_0, x_2 = a x_1 and s x_3 = x_2: s x_3 = a^2 u.
     rows = ({0: ONE, 4: -ONE}, {0: -a, 1: ONE}, {1: -a, 2: ONE}, {2: -ONE, 3: s})
