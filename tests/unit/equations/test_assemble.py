@@ -55,11 +55,6 @@ def codes(text):
     return [d.code for d in caught.value.diagnostics]
 
 
-def test_a_function_of_constants_is_one_generator_however_often_it_is_written():
-    text = PENDULUM.replace('k = "k"', 'k = "sqrt(k*m)"').replace('b = "b"', 'b = "sqrt(k * m)"')
-    assert [c.generator for c in assemble(text).constants] == ["sqrt(k*m)"]
-
-
 def test_an_exact_value_of_a_function_is_a_number():
     for expression, value in [
         ("sqrt(9/4)", "3/2"),

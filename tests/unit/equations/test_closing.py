@@ -73,39 +73,6 @@ def test_a_bordered_determinant_over_the_determinant_is_the_response():
         assert value(num) / value(den) == expected, pair
 
 
-def test_sums_with_a_parameter_are_closed_and_sums_of_s_alone_are_not():
-    closure = close(EQUATIONS).closure
-    s, m, k, b, more = (EQUATIONS.ring.generator(name) for name in ("s", "m", "k", "b", "sum0"))
-    assert [polynomial for _, polynomial in closure.sums] == [m * s**2 + 2 * k + more, b * s + k]
-    # A parameter is called sum0; the closed sum gets another name. Only M stands outside of sums.
-    assert [name for name, _ in closure.sums] == ["sum0!", "sum1"]
-    assert closure.ring.names == ("s", "M", "pi", "sum0!", "sum1")
-
-
-def test_what_was_closed_opens_again():
-    closure = close(EQUATIONS).closure
-    s, M, pi, first, second = (closure.ring.generator(name) for name in closure.ring.names)
-    sums = [at(polynomial, POINT) for _, polynomial in closure.sums]
-    point = (*(GIVEN[name] for name in ("s", "M", "pi")), *sums)
-    number = closure.ring.constant(-6)
-    for closed in (s * first, 3 * second**2 * M, -first * (M + second), first - second, s**2 + pi, number):
-        assert value(closure.open(closed)) == at(closed, point)
-    nothing = closure.open(closure.ring.constant(0))
-    assert (nothing.is_zero, nothing.ring) == (True, EQUATIONS.ring)
-
-
-def test_factors_in_front_stay_factored():
-    closure = close(EQUATIONS).closure
-    s, M, second = (closure.ring.generator(name) for name in ("s", "M", "sum1"))
-    b, k = EQUATIONS.ring.generator("b"), EQUATIONS.ring.generator("k")
-    opened = closure.open(6 * s**2 * M * second**3)
-    assert opened.unit == 6
-    base = EQUATIONS.ring.generator
-    assert sorted(((str(f), e) for f, e in opened.factors)) == sorted(
-        [(str(b * base("s") + k), 3), ("M", 1), ("s", 2)]
-    )
-
-
 def test_opening_keeps_to_its_limits(monkeypatch):
     for limit in ["TERM_LIMIT", "MEMORY_LIMIT"]:
         closure = close(EQUATIONS).closure

@@ -132,15 +132,6 @@ def test_two_coupled_unknowns_are_those_of_a_leaking_line():
         assert found == pytest.approx([float(x) for x in wanted], abs=1e-12), source
 
 
-def test_without_names_every_dispersion_but_a_delay_s_is_a_general_one():
-    text = COUPLED.replace("[fields", 'blocks.D = { type = "delay", T = 2 }\n[fields').replace("= V", "= D*V")
-    model = pipeline.loads(text)
-    kinds = {
-        n: [d.kind for d in assemble(model, is_nameless=n).propagation.table.dispersions] for n in (0, 1)
-    }
-    assert kinds == {0: ["exponential", "wave"], 1: ["exponential", "general"]}
-
-
 def test_a_uniform_load_where_a_constant_solves_the_equation_is_refused():
     with pytest.raises(ModelError) as caught:
         assemble(read("w''' = s^2*w' + p", 3))
