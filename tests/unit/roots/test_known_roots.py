@@ -19,6 +19,7 @@ from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sqrt, tan, tanh
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots import Band, Mode, Modes, Rectangle
+from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, SEARCHES, SUBDIVISION
 from symflex.roots.locate import locate
@@ -374,6 +375,32 @@ def is_in(root, region, wanted):
     if isinstance(region, Band):
         return 2 * pi * region.low < abs(s) < 2 * pi * region.high
     return 0 < abs(s) < (abs(wanted[1]) + abs(wanted[2])) / 2
+
+
+def test_where_a_count_speaks_against_what_was_found_all_is_searched_again_with_proof(monkeypatch):
+    monkeypatch.setattr(Side, "counted", lambda self: Proof(9, 8))
+    for name, region in (
+        ("a rod with a mass", Modes(2)),
+        ("a rod with a mass", Band(Fraction(1, 4), 1)),
+        ("a loop with a delay", Modes(2)),
+    ):
+        case = CASES[name]
+        shown = locate(bound(case.text), region, DIGITS)
+        assert shown.certificate.certified, (name, region)
+        assert "subdivision" in shown.certificate.engine, (name, region)
+        every = islice(case.poles(), 6)
+        inside = every if region == Modes(2) else (s for s in every if pi / 2 < abs(s) < 2 * pi)
+        assert_are(shown.poles, list(inside)[: len(upper(shown.poles))])
+
+
+def test_a_band_far_up_holds_its_modes_and_no_others():
+    for name in ("a rod with a mass", "a string in a fluid"):
+        case = CASES[name]
+        wanted = [mpc(s) for s in islice(case.poles(), 56)][50:53]
+        low, high = ((abs(wanted[i]) + j) / (2 * pi) for i, j in ((0, -1), (-1, 1)))
+        shown = locate(bound(case.text), Band(Fraction(float(low)), Fraction(float(high))), DIGITS)
+        assert shown.certificate.certified, name
+        assert_are(shown.poles, wanted)
 
 
 def test_a_mode_is_that_of_its_number():

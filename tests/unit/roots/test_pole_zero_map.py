@@ -11,7 +11,7 @@ from flint import arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots import Band, Mode, Modes, PolynomialInS, RootProblem, find_pole_zero_map, pole_zero_map
-from symflex.roots.pole_zero_map import ON_AXIS, Certificate, Exclusion, PoleZeroMap, judge, right_beyond
+from symflex.roots.pole_zero_map import ON_AXIS, Certificate, Exclusion, PoleZeroMap, judge
 from symflex.roots.region import Everything
 from symflex.roots.root import Root
 from tests.unit.roots.root_problems import problem, with_root_of_two
@@ -146,12 +146,6 @@ def test_of_a_band_hidden_modes_right_of_the_axis_are_shown_wherever_they_lie():
     assert [float(r.re) for r in shown.all_poles] == [-1, 3]
 
 
-def test_roots_beyond_are_those_right_of_the_axis_that_are_not_shown():
-    roots = real(-1, 2, 3)
-    assert right_beyond(roots, roots[1:2]) == roots[2:]
-    assert right_beyond(roots, ()) == roots[1:]
-
-
 def test_digits_are_doubled_until_every_root_has_its_side_and_an_unknown_side_is_on_the_boundary():
     wide, narrow = real((EDGE, 1e-3)), real((EDGE - 0.1, 1e-9))
     shown, finder = mapped(wide, wide, narrow, (), degrees=(1, 0), region=BAND)
@@ -181,20 +175,6 @@ def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
     with Budget(seconds=0, clock=clock).entered():
         shown, _ = mapped(real(-1, -2))
     assert (shown.poles, shown.certificate.code) == ((), "SF506")
-
-
-def test_progress_is_told_by_polynomials():
-    class Told:
-        def __init__(self):
-            self.said = []
-
-        def report(self, done, text):
-            self.said.append((done, text))
-
-    told = Told()
-    with Budget(progress=told).entered():
-        mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1))
-    assert told.said == [(i / 4, f"polynomial {i + 1} of 4") for i in range(4)]
 
 
 def test_an_exceeded_budget_is_an_error_that_holds_the_map():

@@ -12,7 +12,7 @@ import pytest
 from flint import arb, fmpz_poly
 from hypothesis import strategies as st
 
-from symflex.balls import bits_for_digits, precision
+from symflex.balls import precision
 from symflex.roots import Modes, Root, find_pole_zero_map, find_polynomial_roots
 from symflex.roots.root import FLOAT_BITS, decimals, exact_fraction, mirror_images, overlap
 from tests.unit.roots.root_problems import problem, problem_of
@@ -33,10 +33,6 @@ def test_a_root_has_a_frequency_and_a_damping_ratio():
     ]:
         assert given.frequency_hz() == pytest.approx(hertz, abs=0.3 if given.re.rad() else 1e-15)
         assert given.damping_ratio() == (zeta if zeta is None else pytest.approx(zeta))
-
-
-def test_a_root_is_a_complex_number():
-    assert complex(root(-3, 4)) == -3 + 4j
 
 
 def test_a_frequency_is_known_as_well_as_both_parts():
@@ -149,20 +145,6 @@ def test_exact_prints_have_radius_zero_and_others_about_one_unit_of_the_last_dig
     assert (decimals.re, decimals.im, decimals.radius) == ("-1.500000000", "0", "0")
 
 
-def test_three_digits_of_a_dyadic_number():
-    for value, text in [
-        (Fraction(12345), "1.23e4"),
-        (Fraction(123), "123"),
-        (Fraction(-5, 4), "-1.25"),
-        (Fraction(1, 32), "0.0312"),  # 0.03125 is a tie and goes to the even digit
-        (Fraction(1, 2**40), "9.09e-13"),
-        (Fraction(9999), "1.00e4"),
-    ]:
-        with precision(100):
-            ball = arb(value.numerator) / value.denominator
-        assert box(ball, arb(0)).decimal(3).re == text, value
-
-
 @hypothesis.settings(max_examples=60)
 @hypothesis.given(
     st.fractions(min_value=-(10**6), max_value=10**6),
@@ -180,14 +162,6 @@ def test_the_print_is_rigorous_for_any_box(re, im, exponent, digits):
     decimals = root.decimal(digits)
     reached = Fraction(decimals.radius) ** 2
     assert farthest_square(root, decimals) <= reached
-
-
-@hypothesis.settings(max_examples=60)
-@hypothesis.given(st.integers(min_value=-(10**9), max_value=10**9), st.integers(min_value=1, max_value=60))
-def test_the_radius_is_at_most_a_tenth_too_large(middle, exponent):
-    root = box(arb(arb(middle), arb(2) ** -exponent), arb(0))
-    decimals = root.decimal(12)
-    assert Fraction(decimals.radius) ** 2 <= farthest_square(root, decimals) * Fraction(122, 100)
 
 
 # ------------------------------------------------------------------- The working precision never leaks
@@ -212,10 +186,6 @@ def test_finding_roots_and_asking_them_leaves_the_precision_as_it_was():
     assert flint.ctx.prec == before
     find_pole_zero_map("a/b", problem(4, 0, 1), problem(1), Modes(1)).to_json_dict()
     assert flint.ctx.prec == before
-
-
-def test_bits_cover_the_digits():
-    assert 2 ** bits_for_digits(40) > 10**40
 
 
 def test_the_callers_precision_does_not_change_the_result():

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi, sqrt
-
 import mpmath
-import pytest
 from flint import arb
 from mpmath import mp, mpf
 
@@ -19,7 +16,6 @@ from symflex.roots.axes.axis_function import (
     AxisNewton,
     Enclosures,
     bits_of,
-    bracketed,
     changes_sign,
 )
 
@@ -215,29 +211,6 @@ def test_a_root_next_to_a_guess_is_enclosed_to_the_digits_wanted():
                 assert found.rad() < abs(found) * arb(10) ** -(digits + 1), (source, guess)
 
 
-def test_where_doubles_do_not_reach_nothing_is_known():
-    source = Real(lambda t: t - 1, lambda t: arb(1), fastest=inf)
-    assert AxisNewton(20).frequency(source, 1.0) is None
-    assert source.asked == []
-
-
 def test_a_value_not_told_from_zero_has_no_sign():
     assert not changes_sign(Real(lambda t: (t - 1) * (t - 3), lambda t: 2 * t - 4), 1.0, 2.0)
     assert not changes_sign(Real(lambda t: arb(0, 1), lambda t: arb(1)), 1.0, 2.0)
-
-
-def test_a_root_between_two_places_of_opposite_sign_is_met():
-    for sign in [1, -1]:
-        for value, slope, low, high, root in [
-            (lambda t: t * t - 2, lambda t: 2 * t, 1.0, 2.0, sqrt(2)),
-            (lambda t: t.cos(), lambda t: -t.sin(), 0.1, 3.0, pi / 2),
-            # Newton's method alone leaves the interval.
-            (lambda t: (20 * (t - 1.1)).atan(), lambda t: 20 / (1 + 400 * (t - 1.1) ** 2), 0.5, 9.0, 1.1),
-            (lambda t: (t - 2) ** 2 - 0.25, lambda t: 2 * (t - 2), 1.0, 2.4, 1.5),
-            # No slope in the middle.
-            (lambda t: (t - 2) ** 3 + 0.125, lambda t: 3 * (t - 2) ** 2, 1.0, 3.0, 1.5),
-        ]:
-            source = Real(
-                lambda t, f=value, sign=sign: sign * f(t), lambda t, f=slope, sign=sign: sign * f(t)
-            )
-            assert bracketed(source, low, high) == pytest.approx(root, rel=1e-11), sign

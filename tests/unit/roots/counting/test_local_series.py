@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
-from math import comb, prod
 
 import pytest
 from flint import acb, arb
@@ -197,20 +196,3 @@ def test_the_middle_of_some_roots_is_their_mean_if_the_highest_term_is_known():
         assert complex(found) == pytest.approx(mean + 3j), values
         assert float(found.real.rad()) == 0, values
     assert told(1, 1, 0).middle(2) is None
-
-
-def test_a_series_of_a_function_has_the_reach_and_the_bound_it_was_made_with():
-    for points in [10, 30]:
-        function = known(*offsets(3.0))
-        series = local_series(function, CENTRE, arb(2), 128, points)
-        assert float(series.reach) == 2, points
-        assert 5 <= float(series.bound) < 6, points
-        assert series.centre == CENTRE, points
-        assert len(series.coefficients) == min(16, points)
-
-
-def test_binomials_come_out():
-    # (x + 1)^6 about 0.
-    series = local_series(known(*[-1] * 6), acb(0), arb(1), 256, 40)
-    assert [round(float(c.real.mid()), 9) for c in series.coefficients[:7]] == [comb(6, k) for k in range(7)]
-    assert prod(float(c.real.rad()) < 1e-12 for c in series.coefficients[:7]) == 1

@@ -27,8 +27,6 @@ from tests.unit.roots.distributed_models import (
     DELAY_LOOP,
     FREE,
     KELVIN_VOIGT,
-    LINE,
-    ON_A_FOUNDATION,
     PARAMETERS,
     SLIDING_FREE,
     bound,
@@ -110,14 +108,6 @@ def test_where_kelvin_voigt_poles_accumulate_a_neighbourhood_is_left_out_and_all
     assert part.radius == pytest.approx(250 * abs(cmath.exp(0.05 + 0.05j) - 1))
 
 
-def test_a_band_holds_what_lies_between_its_limits_and_a_rectangle_one_of_a_pair():
-    # x^2/(2 pi) of the sliding-free beam: 0.89, 4.81, 11.87 Hz.
-    poles = found(SLIDING_FREE, Band(Fraction(1), Fraction(12)), digits=12).poles
-    assert [f"{root.frequency_hz():.2f}" for root in poles] == ["4.81", "4.81", "11.88", "11.88"]
-    region = Rectangle(Fraction(-1), Fraction(1), Fraction(2), Fraction(10))
-    assert [root.im > 0 for root in found(SLIDING_FREE, region, digits=12).poles] == [True]
-
-
 def test_a_root_counted_twice_has_its_multiplicity():
     # Two equal sliding-free beams in a row of signals: every pole is double.
     text = (
@@ -153,24 +143,6 @@ def test_a_search_beyond_its_budget_says_what_it_found(monkeypatch):
 def test_a_million_modes_are_refused_at_once():
     with pytest.raises(BudgetError, match="SF505"):
         found(SLIDING_FREE, Modes(10**6))
-
-
-def test_a_wavenumber_that_vanishes_is_no_mode():
-    # 1/(2 s^2 + g coth g) with g^2 = s^2 + 1; from the second pole on g = j h.
-    g = findroot(lambda g: 2 * (g * g - 1) * sinh(g) + g * cosh(g), 0.6)
-    h = [findroot(lambda h: 2 * (h * h + 1) * sin(h) - h * cos(h), guess) for guess in (3.3, 6.4)]
-    expected = [mpc(0, sqrt(1 - g**2)), *(mpc(0, sqrt(1 + each**2)) for each in h)]
-    result = found(ON_A_FOUNDATION, Modes(3))
-    agree(upper(result.poles), expected)
-    assert result.hidden == ()
-
-
-def test_what_a_polynomial_and_a_vanishing_wavenumber_share_is_no_mode():
-    # y/u = (s + 1) tanh(g)/g with g^2 = (s + 1)(s + 3): poles where g^2 = -((n - 1/2) pi)^2.
-    result = found(LINE, Modes(2))
-    expected = [-2 + mpc(0, sqrt(((n - mpf(1) / 2) * pi) ** 2 - 1)) for n in (1, 2)]
-    agree(upper(result.poles), expected)
-    assert result.hidden == ()
 
 
 # -------------------------------------- what each engine accepts, that they agree, and modes by number

@@ -33,12 +33,6 @@ def sides(cell):
     return cell.low, cell.high, cell.right, cell.left
 
 
-def test_a_hole_is_a_square_of_ln_s_about_its_point():
-    (hole,) = holes_about([3 + 4j])
-    z = log(5), atan2(4, 3)
-    assert sides(hole) == pytest.approx((z[0] - E, z[0] + E, z[1] - E, z[1] + E))
-
-
 def test_holes_that_meet_are_one_that_reaches_as_far_as_both():
     for points, count in [
         ([2, 2 * 1.1], 1),

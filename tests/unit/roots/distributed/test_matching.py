@@ -10,12 +10,17 @@ from math import inf, log
 
 import pytest
 
-from symflex.roots import Rectangle
+from symflex import pipeline
+from symflex.errors import BudgetError
+from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell
 from symflex.roots.locate import (
+    MATCHING_ROUNDS,
     _chosen,
     _exclusion,
+    _find,
     _match,
+    default_region,
     degenerate_points,
 )
 from tests.unit.roots.distributed_models import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
@@ -73,12 +78,40 @@ def test_what_is_shared_is_certified_where_both_are():
         assert [r.certified for r in _match(*sides)] == [one and other]
 
 
+class Sharing(StandIn):
+    """A side that finds the same root in every round."""
+
+    def extend(self, modes, radius=-inf):
+        super().extend(modes, radius)
+        self.roots = [root(-1, 2)]
+
+
+def test_so_many_modes_are_lacking_that_it_is_given_up():
+    poles, zeros = Sharing([], modes=1), Sharing([], modes=1)
+    with pytest.raises(
+        BudgetError, match=r"SF505.*: too many poles and zeros coincide to identify the modes"
+    ) as e:
+        _find((poles, zeros), Modes(3))
+    assert e.value.diagnostics[0].hint == "ask for a band, which shows those that do not"
+    assert [modes for modes, _ in poles.asked if modes] == [3 + 2 * k for k in range(MATCHING_ROUNDS)]
+
+
 FIVE = [root(0, 0, 2), root(0, 4), root(0, -4), root(-7, 0, 2), root(0, 9), root(0, -9)]
 
 
 def test_of_a_rectangle_what_lies_outside_is_left_out_and_what_lies_on_it_marked():
     found = _chosen(FIVE, Rectangle(Fraction(-5), Fraction(5), Fraction(-4), Fraction(9, 2)))
     assert [(float(r.im), r.on_boundary) for r in found] == [(0, False), (4, False), (-4, True)]
+
+
+def test_without_a_region_the_models_own_is_searched():
+    for analysis, region in [
+        ("", Modes(5)),
+        ("[analysis]\nmodes = 3", Modes(3)),
+        ('[analysis]\nband = ["1 Hz", "9 Hz"]', Band(Fraction(1), Fraction(9))),
+    ]:
+        model = pipeline.loads(ROD + analysis)
+        assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region, analysis
 
 
 def test_wavenumbers_vanish_where_their_law_does():

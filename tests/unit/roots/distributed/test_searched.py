@@ -187,6 +187,13 @@ def test_a_repeated_search_does_not_hide_what_is_not_proved(world):
     assert world.locate().certificate.reason == "why"
 
 
+def test_too_few_modes_left_after_a_repeated_search_are_said(world):
+    for modes, reason in [(1, True), (2, None)]:
+        world.sides["poles"] = Known([], modes=modes, engine_after="subdivision")
+        told = world.locate(region=Modes(2)).certificate
+        assert told.reason == (reason and "too many poles and zeros coincide to identify the modes"), modes
+
+
 # ------------------------------------------------------------ searches broken off
 
 

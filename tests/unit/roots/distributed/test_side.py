@@ -11,6 +11,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
+from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Modes
 from symflex.roots.counting.winding import Cell, RootOnPathError
@@ -50,6 +51,18 @@ def three_modes(engine):
     return one
 
 
+def test_a_search_anew_that_is_broken_off_is_recalled_to_the_one_that_found_the_modes():
+    one = side(ROD, engines=(GUESS_AND_PROVE, SUBDIVISION))
+    one.extend(3)
+    before = (one.modes, one.reached, one.engine)
+    one._known = Proof(20, 12)
+    with pytest.raises(BudgetError), Budget(seconds=0).entered():
+        one.prove(Modes(3))
+    assert one.engine == SUBDIVISION
+    one.recall()
+    assert (one.modes, one.reached, one.engine) == before
+
+
 def test_a_root_taken_away_is_missed_and_one_too_many_is_noticed():
     for engine in (LOSSLESS, GUESS_AND_PROVE):
         one = three_modes(engine)
@@ -77,9 +90,25 @@ def test_a_root_on_the_circle_is_no_proof():
     assert one.counted() == Proof(0, 0, UNPROVED)
 
 
+def test_a_count_is_kept_until_other_roots_are_set_and_nothing_is_proved_before_a_search():
+    one = side(ROD)
+    one.extend(2)
+    assert one.counted() is one.counted()
+    one._set([])
+    assert one.counted() == Proof(4, 0)
+    assert side(ROD).counted() == Proof(0, 0, "nothing was searched")
+
+
 def test_a_proof_is_complete_when_all_counted_are_found_and_nothing_speaks_against_it():
     for given, is_complete in [((3, 3), True), ((3, 2), False), ((3, 3, "why"), False)]:
         assert Proof(*given).is_complete is is_complete
+
+
+def test_a_mode_by_number_is_that_one():
+    for n, engine in [(1, LOSSLESS), (4, LOSSLESS), (2, GUESS_AND_PROVE)]:
+        one = side(ROD, engines=(engine,))
+        assert float(one.numbered(n).im) == pytest.approx(rod(n))
+        assert [abs(float(r.im)) for r in one.roots] == pytest.approx([rod(n)] * 2)
 
 
 def test_a_polynomial_has_all_its_roots_at_once():

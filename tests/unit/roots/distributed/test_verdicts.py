@@ -256,6 +256,15 @@ def test_a_budget_spent_by_the_count_is_said(searching):
     assert found == RightHalfPlane((RIGHT,), "poles have no end", 20.0)
 
 
+def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
+    for count, said in [
+        (3, "3 are counted, but not all are found: the budget is spent"),
+        (RootOnPathError(), "the budget is spent"),
+    ]:
+        again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
+        assert searching(Half(count), [RIGHT], again=again) == RightHalfPlane((RIGHT,), said)
+
+
 def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_they_end(searching):
     side, again = Half(9, is_even=True), Half(0, roots=(RIGHT, ON, LEFT))
     found = searching(side, [ON], reached=20.0, tails=ENDLESS, again=again)
@@ -265,6 +274,15 @@ def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_t
     found = searching(Half(9, is_even=True), [ON, LEFT], reached=31.0, tails=ENDLESS)
     assert found == RightHalfPlane((ON, LEFT), "poles have no end", 31.0)
     assert searching(Half(1, is_even=True), [RIGHT]) == RightHalfPlane((RIGHT,))
+
+
+def test_a_budget_spent_beyond_what_was_asked_for_says_how_far_all_is_known(searching):
+    class Spent(Half):
+        def search(self, region):
+            raise SPENT
+
+    found = searching(Half(0, is_even=True), [ON], reached=20.0, tails=ENDLESS, again=Spent(0))
+    assert found == RightHalfPlane((ON,), "poles have no end", 20.0)
 
 
 def test_distributed_parts_that_nothing_sees_are_not_said_to_be_stable():

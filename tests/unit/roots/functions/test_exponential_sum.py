@@ -6,7 +6,6 @@ from functools import cache
 from itertools import product
 
 import mpmath
-import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
@@ -106,45 +105,6 @@ def test_sums_have_the_values_and_slopes_of_polynomials_in_kernels():
                 found = made.values.value(i, series)
                 found = found[1] if isinstance(found, acb_series) else acb(0)
                 assert close(found, slope) if slope else found.contains(0), (i, s)
-
-
-def test_divided_by_one_exponential_the_sum_is_smaller_by_it():
-    for (made, _), s in product(models(), PLACES):
-        with precision(120):
-            place = made.values.at(acb(s))
-            for i, terms in enumerate(made.sums):
-                own = made.values.exponents(i, place)
-                whole = made.values.value(i, place)
-                for k, exponent in enumerate(terms.terms):
-                    factor = acb(1) if own[k] is None else own[k].exp()
-                    assert (made.values.value(i, place, exponent) * factor - whole).contains(0), (i, s)
-                    assert made.values.exponents(i, place, exponent)[k] is None, (i, s)
-
-
-def test_the_largest_term_is_the_largest():
-    for (made, _), s in product(models(), (5.0, 4 + 9j, 40j)):
-        with precision(120):
-            place = made.values.at(acb(s))
-            for i in range(len(made.sums)):
-                exponents = made.values.exponents(i, place)
-                sizes = [
-                    float((abs(c) * (1 if e is None else abs(e.exp()))).mid())
-                    for c, e in zip(made.values.amplitudes(i, place), exponents, strict=True)
-                ]
-                largest = list(made.sums[i].terms).index(made.values.largest([i], place))
-                assert sizes[largest] == pytest.approx(max(sizes)), (i, s)
-
-
-def test_a_place_near_another_has_wavenumbers_of_the_same_branch():
-    # sqrt(s^2) changes its sign on the imaginary axis.
-    made = rod()
-    (name,) = made.table.wavenumbers
-    with precision(120):
-        around = made.values.at(acb(arb(0, 0.1), 3))
-        right, left = (made.values.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
-        assert abs(abs(right - left) - 0.1) < 1e-15
-        assert around.values[name].overlaps(right)
-        assert around.values[name].overlaps(left)
 
 
 def test_a_ball_of_places_has_a_ball_of_values():

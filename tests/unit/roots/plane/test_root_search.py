@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from cmath import phase
-from math import exp, log, pi
+from math import inf, log, pi
 
 import pytest
 from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.balls import precision
+from symflex.budget import Budget
+from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import Cell, Winding
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.plane.search import RootSearch
 from tests.unit.roots.distributed_models import DELAY_LOOP, bound
 
 DIGITS = 15
+
+
+class Told:
+    """Remembers what progress was reported."""
+
+    def __init__(self):
+        self.said = []
+
+    def report(self, done, text):
+        self.said.append((done, text))
 
 
 def search(make, holes=(), kind=Winding):
@@ -65,22 +76,6 @@ def test_a_ring_holds_all_roots_in_the_upper_half_plane():
         assert all(root.certified and root.multiplicity == 1 for root in found.roots), kind
 
 
-def test_rings_and_sectors_hold_those_between_their_circles_and_rays():
-    for low, high in [(0.1, 1.0), (1.0, 2.9), (2.5, 3.5), (3.5, 9), (5, 9)]:
-        found = search(mixed).ring(log(low), log(high))
-        assert values(found.roots) == pytest.approx(
-            sorted((s for s in MIXED if low < abs(s) < high), key=abs)
-        ), low
-        # A little beyond is searched too, and said.
-        assert found.cell.low < log(low)
-        assert found.cell.high > log(high), low
-    for right, left in [(0.0, 1.0), (1.0, 2.2), (2.2, pi), (1.9, 2.5)]:
-        found = search(mixed).ring(log(0.1), log(10), right, left)
-        inside = [s for s in MIXED if right - 0.03 <= phase(s) <= left + 0.03]
-        assert values(found.roots) == pytest.approx(sorted(inside, key=abs)), right
-        assert (found.cell.right, found.cell.left) == pytest.approx((right - 0.03, left + 0.03))
-
-
 def test_of_an_even_function_a_quarter_is_searched_and_roots_next_to_the_axis_lie_on_it():
     for other, on_axis in [(lambda s: s**4 + 2, True), (lambda s: s + 1, False)]:
         # j sqrt(10), of which no box about it tells more than that it is close to the axis.
@@ -93,12 +88,6 @@ def test_of_an_even_function_a_quarter_is_searched_and_roots_next_to_the_axis_li
     assert one.ring(log(0.1), log(10)).cell.left < 2
     other = search(mixed)
     assert (other.is_even, other.left) == (False, pi)
-
-
-def test_a_root_of_a_power_has_its_exponent():
-    for times in [2, 3]:
-        found = search(lambda s, times=times: [(s + 2, times), (s**2 + s + 9, 1)]).ring(log(0.1), log(10))
-        assert sorted((r.multiplicity, r.is_real) for r in found.roots) == [(1, False), (times, True)]
 
 
 @pytest.mark.parametrize(("apart", "alone"), [(10**3, True), (10**9, True), (10**14, False), (10**25, False)])
@@ -122,22 +111,32 @@ def test_a_root_that_two_factors_share_is_one_of_two_that_are_not_told_apart():
     assert sum(root.multiplicity for root in found.roots) == 4
 
 
-def test_modes_are_found_outwards_until_there_are_enough_or_to_a_radius():
-    one = search(mixed)
-    one.extend(1)
-    assert values(one.roots)[0] == pytest.approx(MIXED[0])
-    assert exp(one.reached) > abs(MIXED[0])
-    known = len(one.roots)
-    one.extend(3)
-    assert len(one.roots) >= max(3, known)
-    assert values(one.roots) == pytest.approx(
-        [s for s in sorted(MIXED, key=abs) if abs(s) < exp(one.reached)]
-    )
-    assert one.missing == 0
-    one = search(mixed)
-    one.extend(0, log(3.5))
-    assert [s for s in values(one.roots) if abs(s) < 3.5] == pytest.approx(sorted(MIXED[:3], key=abs))
-    assert one.reached >= log(3.5)
+def test_modes_located_are_reported_and_a_scan_for_more_than_there_are_ends():
+    told = Told()
+    with Budget(progress=told).entered():
+        search(even).extend(3)
+    assert told.said
+    assert all(text == f"{round(3 * done)} of 3 modes located" for done, text in told.said)
+    told = Told()
+    one = search(lambda s: [(4 * s**2 + 25, 1)])
+    with Budget(progress=told).entered():
+        assert one.scan(2, -inf, lambda: True) is True
+    assert one.reached == inf
+    assert {text for _, text in told.said} == {"0 of 2 modes located", "1 of 2 modes located"}
+
+
+def test_a_scan_says_whether_these_are_all():
+    for complete in [True, False]:
+        assert search(even).scan(1, log(9), lambda complete=complete: complete) is complete
+
+
+def test_a_scan_along_axes_without_roots_ends_soon():
+    # The roots of s^4 + 64 are +-2 +- 2j: none lies on an axis.
+    one = search(lambda s: [(s**4 + 64, 1)])
+    asked = []
+    assert one.scan(1, -inf, lambda: bool(asked.append(one.reached))) is False
+    assert len(asked) == 1
+    assert log(8) < asked[0] < log(100)
 
 
 HOLE = Cell(log(2) - 0.05, log(2) + 0.3, 1.8, 2.3)
@@ -164,7 +163,27 @@ def test_circles_pass_by_one_hole_and_the_next():
         assert search(mixed, holes=holes).passing(HOLE.low) == pytest.approx(other.high + 0.03)
 
 
+def test_where_no_circle_passes_it_is_said_where():
+    class Blocked(Winding):
+        def count(self, cell):
+            raise RootOnPathError
+
+    one = search(mixed, kind=Winding)
+    one._winding = Blocked(one.function)
+    with pytest.raises(BudgetError, match=r"SF505.*: roots do not separate near 2 rad/s") as failed:
+        one._ring(log(1), log(2))
+    assert failed.value.diagnostics[0].hint == "ask for a band that ends elsewhere"
+    # A ring that was asked for has one that was not found.
+    found = one.ring(log(1), log(2))
+    assert (found.roots, found.missing, found.cell) == ((), 1, None)
+
+
 # ----------------------------------------------------------------- roots that cuts do not tell apart, by hand
+
+
+def cell_about(place, size):
+    z = log(place)
+    return Cell(z - size / 2, z + size / 2, -size / 2, size / 2)
 
 
 def shared(s):
@@ -179,3 +198,11 @@ def close(apart):
 def contained(roots, *expected):
     with precision(600):
         return [sum(bool(root.enclosure().contains(acb(value))) for root in roots) for value in expected]
+
+
+def test_a_cell_with_fewer_roots_than_none_has_lost_some():
+    for count, power, lost in [(-2, 1, 2), (-4, 2, 2), (-1, 2, 1)]:
+        # Where poles lie, which an entire function has not.
+        one = search(mixed)
+        one.function.power = power
+        assert one._separate(cell_about(4, 0.1), count) == ([], lost)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 from flint import acb, acb_poly, arb
 
 from symflex.balls import precision
 from symflex.roots.polynomials.discs import (
-    LARGEST_LOGARITHM,
-    _polygon_moduli,
     propose_by_laguerre,
 )
 
@@ -67,27 +63,6 @@ def test_of_a_double_root_both_are_guessed():
     found = numbers(propose_by_laguerre(made_of(2.0, 2.0, -5.0)))
     assert sum(1 if z.imag == 0 else 2 for z in found) == 3
     assert [z.real for z in found] == pytest.approx([2.0] * (len(found) - 1) + [-5.0], rel=1e-6)
-
-
-def test_the_newton_polygon_tells_the_moduli_within_doubles():
-    for coefficients, moduli in [
-        ([16, 0, 0, 0, 1], [2, 2, 2, 2]),
-        # sides from 0 to 1, 1 to 2, 2 to 3
-        ([1e-3, 1, 1, 1e-4], [1e-3, 1, 1e4]),
-        # the middle lies below the hull
-        ([4, 1e-3, 1], [2, 2]),
-        # on the hull
-        ([4, 2, 1], [2, 2]),
-        ([0, 0, -5, 1], [5, 5, 5]),
-        ([0, 0, 1], [1, 1]),
-        # sides from 0 to 1, 1 to 3, 3 to 4
-        ([1, 100, 1, 1, 1e-6], [0.01, 10, 10, 1e6]),
-    ]:
-        found = _polygon_moduli(acb_poly(coefficients), len(coefficients) - 1)
-        assert found == pytest.approx(moduli), coefficients
-    tiny = arb(10) ** -900
-    assert _polygon_moduli(acb_poly([tiny, 1]), 1) == [math.exp(-LARGEST_LOGARITHM)]
-    assert _polygon_moduli(acb_poly([1, tiny]), 1) == [math.exp(LARGEST_LOGARITHM)]
 
 
 def test_a_polynomial_lost_in_rounding_altogether_has_still_as_many_guesses_or_none():
