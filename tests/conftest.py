@@ -1,7 +1,5 @@
 """What tests share: one thread each, how one asks for a program or a library, and what each costs."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

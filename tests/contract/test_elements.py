@@ -1,7 +1,5 @@
 """What every element of the registry promises, tested the moment it is registered."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import replace
 from itertools import product

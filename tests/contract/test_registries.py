@@ -1,7 +1,5 @@
 """What every block, form, exporter, root finder and function of the registries promises."""
 
-from __future__ import annotations
-
 import contextlib
 from functools import cache
 

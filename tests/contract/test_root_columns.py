@@ -1,7 +1,5 @@
 """What every column of tables of roots promises, whatever page it stands on."""
 
-from __future__ import annotations
-
 import functools
 
 import pytest

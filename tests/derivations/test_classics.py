@@ -1,7 +1,5 @@
 """The classic beams, rods and shafts: poles, mode shapes and static limits known from elsewhere."""
 
-from __future__ import annotations
-
 import functools
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What Eppinger & Seering 1988 claim about their models, and what holds of them exactly."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

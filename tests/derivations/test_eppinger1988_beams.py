@@ -1,7 +1,5 @@
 """The distributed models of Eppinger & Seering 1988: the sliding-free beam and the robot axis with a link."""
 
-from __future__ import annotations
-
 import functools
 import tomllib
 from pathlib import Path

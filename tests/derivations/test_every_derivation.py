@@ -5,8 +5,6 @@ response. Where one of them fails another one takes over, and no result shows it
 who has to answer.
 """
 
-from __future__ import annotations
-
 import tomllib
 from fractions import Fraction
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The frames of ``derivations/frames``, against dynamic stiffness matrices and published frequencies."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

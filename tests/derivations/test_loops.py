@@ -1,7 +1,5 @@
 """The loops of derivations/eppinger1988/loops: what their README states."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The report on the paper's models: what the paper states is computed, and the report opens and prints."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """The models of ``derivations/tapers`` against collocation, closed forms, Bessel functions and tables."""
 
-from __future__ import annotations
-
 from math import cos, exp, isclose, sin, sqrt, tan
 from pathlib import Path
 

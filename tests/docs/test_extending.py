@@ -1,7 +1,5 @@
 """The diffs of docs/extending.md apply to this version, and what they add works."""
 
-from __future__ import annotations
-
 import cmath
 import json
 import runpy

@@ -1,7 +1,5 @@
 """What the pages show is what the program does."""
 
-from __future__ import annotations
-
 import doctest
 import re
 

@@ -1,7 +1,5 @@
 """The recipes are right: each against what a textbook says of it."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import pytest

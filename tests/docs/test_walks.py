@@ -1,7 +1,5 @@
 """The walks of docs/architecture.md pass the files they list, in that order."""
 
-from __future__ import annotations
-
 import re
 import sys
 

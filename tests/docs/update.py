@@ -4,8 +4,6 @@ Tables of the program's registries are written too. Sessions that still hold sta
 ``...``; look at what changed before you keep it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import doctest
 import io

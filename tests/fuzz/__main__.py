@@ -1,7 +1,5 @@
 """Run targets one after the other: ``python -m tests.fuzz --seconds N [--folder FOLDER] [TARGET...]``."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

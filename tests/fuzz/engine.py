@@ -5,8 +5,6 @@ itself, so it mutates every input of the corpus that guided runs left in the fol
 kept there, and the run goes on; of failures at one place the first is kept.
 """
 
-from __future__ import annotations
-
 import sys
 import traceback
 from hashlib import sha256

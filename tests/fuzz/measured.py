@@ -1,7 +1,5 @@
 """What the targets of data files share."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from symflex.data.measurement import MeasuredResponse

@@ -1,7 +1,5 @@
 """Measured responses as text in columns."""
 
-from __future__ import annotations
-
 from symflex.data.measurement.comma_separated import read_columns
 from symflex.data.measurement.files import csv_bytes
 from tests.fuzz.measured import RESPONSE, answered

@@ -4,8 +4,6 @@ The bytes are read as choices: a model, then changes of it (values, nodes, kinds
 parts left out or repeated), each of which keeps it a specification that could be meant.
 """
 
-from __future__ import annotations
-
 import tomllib
 from contextlib import suppress
 from functools import cache

@@ -1,7 +1,5 @@
 """Inputs over time as text in columns."""
 
-from __future__ import annotations
-
 import tempfile
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Journals of sweeps: whose they are, and their chunks."""
 
-from __future__ import annotations
-
 import shutil
 import tempfile
 from contextlib import suppress

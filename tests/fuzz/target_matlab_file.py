@@ -1,7 +1,5 @@
 """Measured responses in MATLAB files."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Measured one- and two-ports in Touchstone files."""
 
-from __future__ import annotations
-
 from symflex.data.measurement.touchstone import read_touchstone
 from tests.fuzz.measured import answered
 

@@ -1,7 +1,5 @@
 """Measured responses in numpy archives; checksums are made right, so that mutation reaches the arrays."""
 
-from __future__ import annotations
-
 import io
 import struct
 import zipfile

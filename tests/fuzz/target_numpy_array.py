@@ -1,7 +1,5 @@
 """Measured responses as one numpy array."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

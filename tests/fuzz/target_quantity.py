@@ -1,7 +1,5 @@
 """Quantities and units as they stand in specifications."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 
 from symflex.errors import Source, Span, SymflexError, Text

@@ -1,7 +1,5 @@
 """Whole specifications: syntax, meaning, and whether the equations can be solved."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Results of sweeps in netCDF and numpy archives."""
 
-from __future__ import annotations
-
 import tempfile
 from contextlib import suppress
 from functools import cache

@@ -1,7 +1,5 @@
 """Measured responses in universal files."""
 
-from __future__ import annotations
-
 from symflex.data.measurement.files import universal_bytes
 from symflex.data.measurement.universal_file import read_universal_file
 from tests.fuzz.measured import RESPONSE, answered

@@ -1,7 +1,5 @@
 """What fuzzing once found stays found, and every target reaches what it is for."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

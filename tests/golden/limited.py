@@ -4,8 +4,6 @@ The processes are forked from one that has imported the program, so that what is
 command, not the start of Python.
 """
 
-from __future__ import annotations
-
 import atexit
 import json
 import os

@@ -5,8 +5,6 @@ Each ``audit/NAME.toml`` holds printed formulas; ``audit/NAME.txt`` holds the wh
 has 2*C^2 for 6*C^2 and -1 for -1/2 (checked against a boundary-value solve), the others were made wrong.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -5,8 +5,6 @@ the whole output of ``symflex check NAME.toml``, judged message by message: does
 the value found, and say what to do?
 """
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

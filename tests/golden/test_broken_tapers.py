@@ -1,7 +1,5 @@
 """Mistakes where coefficients vary along x: each is refused at its place, which «» mark, in a sentence."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

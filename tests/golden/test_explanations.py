@@ -5,8 +5,6 @@ is known from the sources: the clamped-free beam from Miu (1991), the winding fr
 pairs from Eppinger and Seering (1988). The numbers are tested elsewhere against independent ones.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -6,8 +6,6 @@ Nothing a specification says may run: no payload succeeds in making the file ``c
 drive a terminal: all output is printable. There is never a traceback.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

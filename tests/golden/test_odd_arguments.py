@@ -1,7 +1,5 @@
 """Commands with arguments that cannot be meant: the documented exit code, and no file is touched."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 
 import pytest

@@ -1,7 +1,5 @@
 """The same file gives the same bytes, whatever order Python's sets happen to have."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A message that points to a limit says the way round it."""
 
-from __future__ import annotations
-
 import ast
 import re
 

@@ -1,7 +1,5 @@
 """The name of a class means one thing in the whole package, and a module that a page names is there."""
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from tests.house.repository import ROOT, blocks
 
 SHELL = ("sh", "bash", "shell", "console")

@@ -1,7 +1,5 @@
 """What symflex derives from distributed systems is what a boundary-value solver of 50 digits finds."""
 
-from __future__ import annotations
-
 import functools
 
 import mpmath

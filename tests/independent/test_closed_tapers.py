@@ -3,8 +3,6 @@
 The enclosures are power series of the differential equation: they know of no Bessel function.
 """
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from flint import acb, ctx

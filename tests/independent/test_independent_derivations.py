@@ -1,7 +1,5 @@
 """The independent derivations agree with each other and with what the paper says."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

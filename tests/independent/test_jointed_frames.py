@@ -1,7 +1,5 @@
 """Frames with joints and material loss, of which no closed form fits into memory, against numbers."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import pytest

@@ -1,7 +1,5 @@
 """Chains of beams that are all different, against a boundary-value problem in numbers."""
 
-from __future__ import annotations
-
 import pytest
 from mpmath import mp, mpc, mpf
 

@@ -1,7 +1,5 @@
 """Plane frames against dynamic stiffness matrices in numbers, and against published frequencies."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Poles and zeros against values that others published, each string of digits checked by mpmath as well."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 

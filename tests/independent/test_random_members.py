@@ -1,7 +1,5 @@
 """Random networks of two to twelve members, against boundary-value problems in numbers."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Poles and zeros of random networks, against responses of boundary-value problems and their winding."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise

@@ -3,8 +3,6 @@
 The equations are written down here from equilibrium of a slice; nothing of the program is used to solve them.
 """
 
-from __future__ import annotations
-
 import random
 from dataclasses import replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Mode shapes of members that taper against closed forms and collocation."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import isclose
 

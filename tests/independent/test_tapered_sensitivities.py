@@ -1,7 +1,5 @@
 """Derivatives of poles of members that taper against scaling laws and closed forms."""
 
-from __future__ import annotations
-
 import pytest
 from mpmath import diff, findroot, mp, mpf
 

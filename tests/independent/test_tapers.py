@@ -1,7 +1,5 @@
 """Members whose coefficients vary along x against collocation with Chebyshev polynomials, and a benchmark."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache

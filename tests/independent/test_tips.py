@@ -1,7 +1,5 @@
 """Ends where a stiffness vanishes, against Bessel functions of mpmath: their zeros, values off the axis."""
 
-from __future__ import annotations
-
 import pytest
 from mpmath import besseli, besselj, besseljzero, findroot, mp, mpc, mpf, sqrt
 

@@ -1,7 +1,5 @@
 """The independent counts themselves, against roots known in closed form; and the counts of the program."""
 
-from __future__ import annotations
-
 import functools
 import math
 

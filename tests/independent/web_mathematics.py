@@ -5,8 +5,6 @@ TeX/LaTeX commands"); each was given to KaTeX 0.16 in its strict mode and to Mat
 and with two, and those that both set without an error are kept; and ``right``, which goes with ``left``.
 """
 
-from __future__ import annotations
-
 COMMANDS = frozenset(
     """
     And Bbb Bbbk Big Bigg Biggl Biggm Biggr Bigl Bigm Bigr Box Bumpeq Cap Cup Delta Diamond Doteq Finv

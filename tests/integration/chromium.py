@@ -1,7 +1,5 @@
 """Pages opened in Chromium, which is driven through a pipe by the DevTools protocol."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

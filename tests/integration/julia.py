@@ -1,7 +1,5 @@
 """Running exported modules in Julia: one process for all of them."""
 
-from __future__ import annotations
-
 import subprocess
 
 import numpy as np

@@ -4,8 +4,6 @@ Only what generated functions consist of is understood: assignments, ``if``, ``r
 The two functions of the run-time text that need loops are written anew here.
 """
 
-from __future__ import annotations
-
 import cmath
 import keyword
 import math

@@ -1,7 +1,5 @@
 """Running exported function files in Octave: one process for all of them."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 

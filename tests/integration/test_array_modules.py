@@ -1,7 +1,5 @@
 """Modules over libraries of arrays: array-api-strict, numpy and jax compute, compile and differentiate."""
 
-from __future__ import annotations
-
 import ast
 import types
 from functools import cache, partial

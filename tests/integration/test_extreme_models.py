@@ -1,7 +1,5 @@
 """Every command on models that are out of all proportion ends within its budget of time and memory."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Faults injected into commands that write; see tests/tools/faults.py, which runs longer."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Exported Julia modules against ball arithmetic: read as Python, and run where there is Julia."""
 
-from __future__ import annotations
-
 import re
 import shutil
 

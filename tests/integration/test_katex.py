@@ -3,8 +3,6 @@
 KaTeX is found as Node finds packages: installed beside the tests, globally, or where ``NODE_PATH`` says.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -3,8 +3,6 @@
 Many texts go into one document; what is complained of bears the name of the text that it follows.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Pages with sliders, opened in Chromium without a network, against the same models in Python."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

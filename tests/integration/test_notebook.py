@@ -1,7 +1,5 @@
 """What a notebook shows: a kernel runs it, and its outputs are read back."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import math

@@ -1,7 +1,5 @@
 """Exported function files, run in Octave, against ball arithmetic."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

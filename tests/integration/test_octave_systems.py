@@ -4,8 +4,6 @@ The Control System Toolbox is not here, nor the package control: functions of th
 ``ss`` keep what they are given, so that this is seen.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Figures in somebody's paper: no warning, as wide as asked for, in the paper's font."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from dataclasses import replace

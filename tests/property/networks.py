@@ -1,7 +1,5 @@
 """The random networks of lumped elements, as hypothesis draws them."""
 
-from __future__ import annotations
-
 from tests import random_models
 from tests.random_models import drawn, to_toml
 

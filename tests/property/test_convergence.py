@@ -1,7 +1,5 @@
 """Theories that tend to each other do so at the order that they should."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Laws that every distributed model obeys, whatever its numbers."""
 
-from __future__ import annotations
-
 import functools
 
 import pytest

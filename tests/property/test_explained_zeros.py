@@ -3,8 +3,6 @@
 The matrices are put together here from the branches, and solved by numpy.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

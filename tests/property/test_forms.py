@@ -1,7 +1,5 @@
 """Every form of random networks and of models with definitions reads back to the same rational function."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given, settings
 

@@ -1,7 +1,5 @@
 """An element that is called idle may have any value: an independent dense solution does not see it."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What is printed is read back as the same tree, over everything the program prints."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

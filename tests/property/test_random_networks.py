@@ -1,7 +1,5 @@
 """What symflex derives from random networks is what an independent dense solution gives at any s."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

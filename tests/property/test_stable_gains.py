@@ -1,7 +1,5 @@
 """Random loops: the counts are those of the roots numpy finds, for gains drawn at random."""
 
-from __future__ import annotations
-
 import cmath
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The tableau that judges random networks agrees with derivations by hand; the networks are well posed."""
 
-from __future__ import annotations
-
 import contextlib
 import tomllib
 

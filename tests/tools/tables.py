@@ -1,7 +1,5 @@
 """Makes the tables ``grammar.json`` of the grammars: ``python -m tests.tools.tables`` after a change."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How something is refused, for tests that try many values and name those that were not."""
 
-from __future__ import annotations
-
 from symflex.errors import SymflexError
 
 

@@ -1,7 +1,5 @@
 """What a Python user touches."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """The command line of the benchmarks, with benchmarks that take no time, and the table of errors."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

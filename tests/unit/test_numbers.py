@@ -1,7 +1,5 @@
 """Deriving with numbers in place of parameters gives the poles and zeros of the symbolic derivation."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What a command is asked reads alike from texts and from numbers."""
 
-from __future__ import annotations
-
 from dataclasses import FrozenInstanceError, fields, is_dataclass
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """The arrows of the pipeline, one after another."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Figures and short prints of what a Python user holds."""
 
-from __future__ import annotations
-
 import re
 from io import BytesIO
 

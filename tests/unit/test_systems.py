@@ -1,7 +1,5 @@
 """Systems of other programs as models, against these programs' own values."""
 
-from __future__ import annotations
-
 import re
 
 import control

@@ -3,8 +3,6 @@
 The second does not read the first, except for the numbers under [parameters].
 """
 
-from __future__ import annotations
-
 from tests.independent.distributed.case import Case
 from tests.independent.distributed.elements_alone import ELEMENTS_IN_BENDING, ELEMENTS_IN_TENSION_AND_TORSION
 from tests.independent.distributed.fields_in_bending import FIELDS_IN_BENDING

@@ -1,7 +1,5 @@
 """Beams written as fields."""
 
-from __future__ import annotations
-
 from tests.independent.distributed.case import BEAM, DAMPED, EULER, LOSSES, SLENDER, STOCKY, THICK, Case, ode
 from tests.independent.distributed.span import (
     beam_with_load,

@@ -1,7 +1,5 @@
 """Points where a wavenumber, or a difference of two, vanishes: 0/0 in formulas, nothing in the physics."""
 
-from __future__ import annotations
-
 from tests.independent.boundary_value import rod, string, timoshenko
 from tests.independent.distributed.case import (
     BEAM,

@@ -1,7 +1,5 @@
 """Propagators, normal forms, exponential coordinates and orders of vanishing, against mpmath."""
 
-from __future__ import annotations
-
 from itertools import islice, product
 
 import mpmath as mp

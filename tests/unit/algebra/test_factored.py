@@ -1,7 +1,5 @@
 """Factored rational functions agree with SymPy in every operation and stay canonical."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import gcd
 

@@ -1,7 +1,5 @@
 """Elementary functions enclose their values; the random point tells zero from nonzero."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Base lengths."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from symflex.algebra import Factored, Ring

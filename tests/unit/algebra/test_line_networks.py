@@ -1,7 +1,5 @@
 """The functions that solve networks of line elements at frequencies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

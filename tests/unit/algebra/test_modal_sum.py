@@ -1,7 +1,5 @@
 """Sums of exponentials of characteristic roots, against fundamental functions from matrix exponentials."""
 
-from __future__ import annotations
-
 import mpmath as mp
 import pytest
 

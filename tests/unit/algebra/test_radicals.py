@@ -1,7 +1,5 @@
 """Square roots and the relations between them, against numbers."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import mpmath

@@ -1,7 +1,5 @@
 """The exact ring refuses what would be too large, and its generators stay apart."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest

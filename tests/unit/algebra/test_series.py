@@ -1,7 +1,5 @@
 """Series over prime fields, and the orders read off them, against what calculus says."""
 
-from __future__ import annotations
-
 from itertools import islice, pairwise, product
 
 from flint import fmpz

@@ -1,7 +1,5 @@
 """Steps of straight-line programs against fractions, and against themselves modulo a prime."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from random import Random

@@ -1,7 +1,5 @@
 """Minors of fundamental matrices in doubles, of equations whose solutions have names of their own."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

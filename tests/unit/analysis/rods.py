@@ -1,7 +1,5 @@
 """Rods with E A = rho A = l = 1, whose transfer functions have expansions in every textbook."""
 
-from __future__ import annotations
-
 import functools
 
 from symflex import pipeline

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from symflex.equations import assemble
 from symflex.errors import Source, SymflexError
 from symflex.model import load_model

@@ -1,7 +1,5 @@
 """Frequency responses of distributed systems."""
 
-from __future__ import annotations
-
 import cmath
 
 import numpy as np

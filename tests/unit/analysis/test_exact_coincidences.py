@@ -4,8 +4,6 @@ Every expected output is that of a recurrence made here: rational arithmetic for
 matrix exponentials of mpmath at 60 digits for a held input.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import ceil
 from random import Random

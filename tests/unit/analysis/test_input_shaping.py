@@ -1,7 +1,5 @@
 """Input shapers leave the modes they are made for at rest."""
 
-from __future__ import annotations
-
 from math import acos, exp, pi, sqrt
 
 import numpy as np

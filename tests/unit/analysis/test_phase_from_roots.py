@@ -1,7 +1,5 @@
 """The phase of a distributed system from its roots on the axis, against the one that is followed along it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Sampled transfer functions: held inputs exactly, controllers by Tustin's method or matched roots."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import cos, exp, pi, sin
 

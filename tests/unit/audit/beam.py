@@ -4,8 +4,6 @@ The right formulas are those of Eppinger & Seering 1988, with 6*C^2 and 1/2 in t
 independent boundary-value solve confirms to 30 digits.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from symflex import pipeline

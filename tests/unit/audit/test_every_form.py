@@ -4,8 +4,6 @@ The audit reads expressions and knows nothing of forms, so that each is proved a
 outside.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from symflex.audit import judge

@@ -1,7 +1,5 @@
 """Formulas with mistakes, and formulas meant to do harm."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex.errors import SpecError

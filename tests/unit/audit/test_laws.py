@@ -1,7 +1,5 @@
 """Laws that wrong formulas violate. What is violated is known from how the formula was made wrong."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Right formulas in many prints, and right formulas made wrong in one place."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

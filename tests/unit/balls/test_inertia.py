@@ -1,7 +1,5 @@
 """Signs of pivots against eigenvalues in numpy, with and without constraints."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Interval Newton steps on polynomials whose roots are known."""
 
-from __future__ import annotations
-
 from flint import acb, arb
 
 from symflex.balls import narrowed, stays_inside

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 
 from tests.unit.audit.beam import COLOCATED, SCALE, TIP, VAUGHAN, specification

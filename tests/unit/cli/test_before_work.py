@@ -1,7 +1,5 @@
 """What can be refused is refused before anything is computed."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

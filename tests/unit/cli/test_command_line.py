@@ -1,7 +1,5 @@
 """What holds for all commands: exit codes, streams, width, colour, pipes."""
 
-from __future__ import annotations
-
 import errno
 import os
 import pty

@@ -1,7 +1,5 @@
 """The tab key, in the shells that people use: what is typed, and the line that it becomes."""
 
-from __future__ import annotations
-
 import os
 import pty
 import select

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
 

@@ -1,7 +1,5 @@
 """``symflex examples``, and reports on examples by name."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

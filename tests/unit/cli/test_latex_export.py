@@ -1,7 +1,5 @@
 """LaTeX from the command line: columns, forms, one document or files for a paper."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import runpy
 import tomllib
 from importlib.resources import files

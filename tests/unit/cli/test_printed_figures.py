@@ -3,8 +3,6 @@
 Truths are closed forms, evaluated with mpmath.
 """
 
-from __future__ import annotations
-
 import random
 import re
 

@@ -1,7 +1,5 @@
 """The bar on stderr, with a clock and a terminal of the test's own."""
 
-from __future__ import annotations
-
 from io import StringIO
 
 import pytest

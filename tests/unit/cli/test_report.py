@@ -1,7 +1,5 @@
 """``symflex report`` at the command line."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex.cli import report as report_command

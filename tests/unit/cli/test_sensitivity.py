@@ -1,7 +1,5 @@
 """``symflex roots --sensitivity``."""
 
-from __future__ import annotations
-
 from tests.unit.cli.commands import TWO_MASS, WORKED
 
 DAMPED = """

@@ -1,7 +1,5 @@
 """--set NAME=VALUE: the same as another value in the file, on every command that binds values."""
 
-from __future__ import annotations
-
 import json
 from math import pi, sqrt
 

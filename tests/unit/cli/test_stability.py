@@ -1,7 +1,5 @@
 """``symflex stability``, ``symflex colocation`` and figures of loops on the command line."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

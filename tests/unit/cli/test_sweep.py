@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 BEAM = """
 symflex = 1
 parameters = { E = 1, I = 1, rho = 1, A = 1, l = "1 m" }

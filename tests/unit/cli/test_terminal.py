@@ -1,7 +1,5 @@
 """Text from files, wherever it comes from, drives no terminal."""
 
-from __future__ import annotations
-
 import io
 import unicodedata
 import zipfile

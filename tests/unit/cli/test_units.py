@@ -1,7 +1,5 @@
 """``symflex units`` and the shell's completion."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """What exported code of other languages is compared with: balls over a band and beside resonances."""
 
-from __future__ import annotations
-
 import numpy as np
 from flint import acb, ctx
 

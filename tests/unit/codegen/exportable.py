@@ -1,7 +1,5 @@
 """Models that between them need everything a program tree can ask of a language."""
 
-from __future__ import annotations
-
 from functools import cache
 from importlib.abc import InspectLoader
 from importlib.util import module_from_spec, spec_from_loader

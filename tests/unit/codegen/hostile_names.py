@@ -3,8 +3,6 @@
 They are written down here, not taken from the program, so that a name it forgets to leave alone is noticed.
 """
 
-from __future__ import annotations
-
 import builtins
 import keyword
 from dataclasses import replace

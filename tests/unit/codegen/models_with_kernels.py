@@ -1,7 +1,5 @@
 """Models with transcendental transfer functions, one for every kind of kernel and collision of names."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from symflex import pipeline

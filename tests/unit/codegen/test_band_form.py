@@ -1,7 +1,5 @@
 """The band form: code that is a product over poles and zeros, where there is no short formula."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Exported C: compiled and run on the models of derivations/, against ball arithmetic and libm."""
 
-from __future__ import annotations
-
 import ctypes
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Difference equations: generated code runs a controller, in C and in Python."""
 
-from __future__ import annotations
-
 import ctypes
 import runpy
 import subprocess

@@ -1,7 +1,5 @@
 """Spans whose numerator grows in a length in which the denominator does not: exponentials stay in range."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """No text of a model becomes code in any language: names become identifiers, prose stays prose."""
 
-from __future__ import annotations
-
 import ast
 import builtins
 import doctest

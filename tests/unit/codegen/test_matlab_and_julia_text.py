@@ -1,7 +1,5 @@
 """The text of exported function files and modules, whatever machine reads it."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Exported networks of many members: solved at every s, in numpy and in C, and refused elsewhere."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 

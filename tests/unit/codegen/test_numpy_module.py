@@ -1,7 +1,5 @@
 """The generated module: imported from a file, called as a user would, compared with ball arithmetic."""
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import inspect

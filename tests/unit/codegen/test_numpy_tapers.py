@@ -1,7 +1,5 @@
 """Modules of a cone, whose u (1 - c x) is a uniform rod's motion (Rayleigh 1894), and of what has a tip."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.special import factorial, ive, jv

@@ -1,7 +1,5 @@
 """Programs compute the transfer function, stay small, and neither overflow nor cancel."""
 
-from __future__ import annotations
-
 import warnings
 from fractions import Fraction
 from functools import cache

@@ -1,7 +1,5 @@
 """Programs whose pieces are all evaluated everywhere: cases, places, and lumped functions as pieces."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

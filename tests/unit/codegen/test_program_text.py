@@ -1,7 +1,5 @@
 """Names become identifiers one to one, and prose stays prose."""
 
-from __future__ import annotations
-
 import doctest
 import keyword
 

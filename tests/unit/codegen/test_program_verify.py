@@ -1,7 +1,5 @@
 """The measured error is a measured error: it sees one wrong digit, and the best form is taken."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import sqrt

@@ -1,7 +1,5 @@
 """The structure of chains, found again in their determinants."""
 
-from __future__ import annotations
-
 from symflex import pipeline
 from symflex.codegen.program.polynomials import SumStep, plan_recurrences
 

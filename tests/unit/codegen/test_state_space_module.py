@@ -1,7 +1,5 @@
 """The exported module of state equations: run, and compared."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

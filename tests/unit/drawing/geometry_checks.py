@@ -1,7 +1,5 @@
 """What every drawing keeps to, told from its geometry alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Random models of all kinds of parts, those of them that are sound."""
 
-from __future__ import annotations
-
 from symflex import pipeline
 from symflex.errors import SymflexError
 from tests.random_models import anything

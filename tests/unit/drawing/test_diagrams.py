@@ -1,7 +1,5 @@
 """Drawings of signals, blocks and fields, and of every worked model."""
 
-from __future__ import annotations
-
 import functools
 from itertools import pairwise
 

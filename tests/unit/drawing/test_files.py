@@ -1,7 +1,5 @@
 """Files of drawings of all kinds, opened by the programs that readers open them with."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Frames in their plane, and random models of all kinds."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

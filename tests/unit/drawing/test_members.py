@@ -1,7 +1,5 @@
 """Members that taper, lengths, coordinates, rollers, and what a specification says of its drawing."""
 
-from __future__ import annotations
-
 import pytest
 
 import symflex

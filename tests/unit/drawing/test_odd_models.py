@@ -1,7 +1,5 @@
 """Odd models are drawn, or refused with a sentence."""
 
-from __future__ import annotations
-
 import re
 from itertools import combinations
 

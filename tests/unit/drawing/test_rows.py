@@ -1,7 +1,5 @@
 """Drawings of networks: what stands where, and that nothing stands on anything else."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """What is read of an expression is compared with it, and what was read wrongly is not used."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

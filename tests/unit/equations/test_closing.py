@@ -1,7 +1,5 @@
 """Closed sums and the way back, and Cramer's rule, on two masses whose equations are written by hand."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """What distributed parts may hold, and what they may not."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

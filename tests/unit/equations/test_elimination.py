@@ -1,7 +1,5 @@
 """Elimination against independent dense solutions."""
 
-from __future__ import annotations
-
 import inspect
 import sys
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Expressions evaluated: their values against numbers, and what they may not hold, with the place."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

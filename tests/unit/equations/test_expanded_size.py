@@ -1,7 +1,5 @@
 """The estimate of a determinant's size, on programs and rows small enough to count by hand."""
 
-from __future__ import annotations
-
 from math import exp, log
 from types import SimpleNamespace
 

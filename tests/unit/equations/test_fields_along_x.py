@@ -1,7 +1,5 @@
 """Fields of every kind of dispersion, loaded all along and at an end, against matrix exponentials."""
 
-from __future__ import annotations
-
 import mpmath as mp
 import pytest
 

@@ -1,7 +1,5 @@
 """Equations cut into a table of numbers: order, width, stations along x."""
 
-from __future__ import annotations
-
 from random import Random
 
 from symflex import pipeline

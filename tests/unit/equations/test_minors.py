@@ -1,7 +1,5 @@
 """Minors against elimination with fractions, degree bounds against all permutations, limits at their edge."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import combinations, permutations
 from math import comb

@@ -1,7 +1,5 @@
 """Quantities of beams, rods, shafts and strings at points between their ends."""
 
-from __future__ import annotations
-
 from cmath import cosh, sinh
 
 import numpy as np

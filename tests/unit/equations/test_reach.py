@@ -1,7 +1,5 @@
 """Inputs, outputs and elements without effect are told; those with effect are not."""
 
-from __future__ import annotations
-
 from symflex import pipeline
 
 CHAIN = """symflex = 1

@@ -1,7 +1,5 @@
 """What is said of singular systems: what floats, what is redundant, which loop is algebraic."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

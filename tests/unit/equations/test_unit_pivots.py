@@ -1,7 +1,5 @@
 """Which unit pivot is first, and what rows are left: against matrices worked out by hand."""
 
-from __future__ import annotations
-
 from symflex.algebra import Ring
 from symflex.equations.elimination import eliminate_unit_pivots
 from symflex.equations.elimination.closing import _cheapest

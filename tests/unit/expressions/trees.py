@@ -1,7 +1,5 @@
 """Random trees of the shape the parser gives: no sum directly in a sum, no product directly in a product."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Figures of responses in time."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures in PGF: their size, their texts, and that no text of a model brings a command."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Notes and arrows of pole-zero panels keep clear of the roots."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Mode shapes of plane frames: where members lie, and what is 1."""
 
-from __future__ import annotations
-
 import functools
 
 import pytest

@@ -1,7 +1,5 @@
 """Figures can be read: no text lies over another or leaves the page."""
 
-from __future__ import annotations
-
 import random
 
 import pytest

@@ -1,7 +1,5 @@
 """Where the texts of a figure stand once it is drawn."""
 
-from __future__ import annotations
-
 import re
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Couplings between bodies, active circuits and sound, against the equations solved by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm

@@ -1,7 +1,5 @@
 """Members of plane frames: nodes of the plane, directions, what is read along a member."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

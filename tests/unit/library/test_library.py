@@ -1,7 +1,5 @@
 """Every block is the transfer function its summary states."""
 
-from __future__ import annotations
-
 import sympy
 
 import symflex

@@ -1,7 +1,5 @@
 """Distributed elements against textbook statics and the closed forms of rods, shafts and strings."""
 
-from __future__ import annotations
-
 import cmath
 import re
 from itertools import product

@@ -1,7 +1,5 @@
 """Sources between two nodes, the first-order lag, and the piezoelectric transducer."""
 
-from __future__ import annotations
-
 import pytest
 
 import symflex

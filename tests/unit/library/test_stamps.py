@@ -1,7 +1,5 @@
 """Every element against the law it stands for, written by hand as a small matrix equation."""
 
-from __future__ import annotations
-
 import sympy
 
 import symflex

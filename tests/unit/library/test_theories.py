@@ -1,7 +1,5 @@
 """Every theory of the registry, and the reduction of field equations to first order."""
 
-from __future__ import annotations
-
 import mpmath as mp
 import pytest
 

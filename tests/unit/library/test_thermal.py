@@ -1,7 +1,5 @@
 """Heat: resistances in K/W and capacities in J/K between nodes whose temperature is an effort."""
 
-from __future__ import annotations
-
 import pytest
 
 import symflex

@@ -1,7 +1,5 @@
 """Engineers' words, and what they lead to."""
 
-from __future__ import annotations
-
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
 from symflex.library.words import THINGS, hint_of_type

@@ -1,7 +1,5 @@
 """Which files a ``model`` block reads, and what messages show of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

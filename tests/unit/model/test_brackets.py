@@ -1,7 +1,5 @@
 """Coefficients that vary along x, as specifications write them: what is read, and what is refused."""
 
-from __future__ import annotations
-
 import pytest
 import sympy
 

@@ -1,7 +1,5 @@
 """Roots of s mean their principal branch, however they are written."""
 
-from __future__ import annotations
-
 import cmath
 import runpy
 

@@ -1,7 +1,5 @@
 """Filters and machines with complex coefficients, against numpy's roots of the polynomials they stand for."""
 
-from __future__ import annotations
-
 from math import cos, sin
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A name given in Hz counts cycles in every formula, and 2 pi stands beside it where radians are meant."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

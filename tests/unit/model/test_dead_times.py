@@ -1,7 +1,5 @@
 """Dead times written as exp(-s*T) mean what a block of type delay means."""
 
-from __future__ import annotations
-
 import cmath
 
 import mpmath

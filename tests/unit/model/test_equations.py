@@ -1,7 +1,5 @@
 """Equations of motion as they stand on paper, against numpy's solution of the same equations at one s."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

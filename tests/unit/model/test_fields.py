@@ -1,7 +1,5 @@
 """Boundary-value problems as a specification writes them: what is read, and what is refused."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

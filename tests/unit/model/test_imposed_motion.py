@@ -1,7 +1,5 @@
 """Inputs that nodes follow: what moves, what that takes, and what is refused."""
 
-from __future__ import annotations
-
 import re
 from math import sqrt
 

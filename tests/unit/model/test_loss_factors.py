@@ -1,7 +1,5 @@
 """Structural damping: what loss factors mean, by complex stiffnesses in numpy, and what they exclude."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Nodes take their domain from what touches them; nested models, analysis and figures are read."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -3,8 +3,6 @@
 What each model should give follows from counting kg, m and s by hand, as beside it.
 """
 
-from __future__ import annotations
-
 import pytest
 
 import symflex

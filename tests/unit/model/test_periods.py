@@ -1,7 +1,5 @@
 """The inverse of a frequency in Hz is a period, wherever it is written and however far it is passed on."""
 
-from __future__ import annotations
-
 from cmath import exp, pi
 
 import pytest

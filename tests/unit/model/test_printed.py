@@ -1,7 +1,5 @@
 """The names of printed formulas, checked when the file is read."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex.errors import Source, SpecError

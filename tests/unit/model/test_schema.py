@@ -1,7 +1,5 @@
 """The JSON Schema of the language accepts what symflex accepts, and refuses what it can know to be wrong."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import tomllib

@@ -1,7 +1,5 @@
 """Values a distributed part cannot have: told from numbers, from declared values and from assumed signs."""
 
-from __future__ import annotations
-
 from symflex import pipeline
 from symflex.errors import Source, SpecError
 from symflex.model import load_model

@@ -1,7 +1,5 @@
 """Units are inferred from use; cycles are read as the place asks for."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

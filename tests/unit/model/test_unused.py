@@ -1,7 +1,5 @@
 """Typing errors leave loose nodes and unused names behind; models as they are meant leave none."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -6,8 +6,6 @@ b*j*q)`` is ``E^a*z^b``. Two rational functions of these that differ agree at a 
 about their degree over the prime, 1e-16. Entries of a fundamental matrix are random residues of their own.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 from random import Random
 

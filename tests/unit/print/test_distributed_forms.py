@@ -1,7 +1,5 @@
 """Forms of transfer functions with kernels: all of them are the same function, and print as papers do."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from itertools import product

@@ -1,7 +1,5 @@
 """The forms print what a person would write."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """HTML for notebooks: what it shows, and that no text of a model is more than text in it."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from html.parser import HTMLParser

@@ -1,7 +1,5 @@
 """Documents and files for a paper: their parts, their names, and what no text of a model can do in them."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Transfer functions as display mathematics."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path

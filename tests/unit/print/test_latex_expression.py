@@ -1,7 +1,5 @@
 """Expressions as LaTeX; what is expected is written by hand."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

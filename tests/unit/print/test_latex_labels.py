@@ -1,7 +1,5 @@
 """Labels: made from names, read when declared, refused when they would break a formula."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex.print.label import labels_of, read_label, symbol

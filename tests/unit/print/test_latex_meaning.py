@@ -1,7 +1,5 @@
 """What is printed means what the tree means: read back by a reader of its own and compared in numbers."""
 
-from __future__ import annotations
-
 import re
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Units, values and tables."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

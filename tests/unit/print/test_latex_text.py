@@ -1,7 +1,5 @@
 """Plain text in LaTeX: whatever it holds, it prints and does nothing else."""
 
-from __future__ import annotations
-
 import re
 
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Mathematics for notebooks and pages holds only commands that KaTeX and MathJax both have."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

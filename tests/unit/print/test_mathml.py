@@ -1,7 +1,5 @@
 """MathML says what the expression says: it is read back by a reader of its own, and evaluated."""
 
-from __future__ import annotations
-
 import re
 import xml.etree.ElementTree as ET
 from pathlib import Path

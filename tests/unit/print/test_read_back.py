@@ -1,7 +1,5 @@
 """What is printed is read back: a fault planted in a form or its text is caught, and nothing shown."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product

@@ -1,7 +1,5 @@
 """Printed formulas of members whose coefficients vary along x."""
 
-from __future__ import annotations
-
 import pytest
 import sympy
 

@@ -1,7 +1,5 @@
 """Laying out formulas and roots for a terminal."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

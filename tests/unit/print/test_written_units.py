@@ -1,7 +1,5 @@
 """Values stand in tables as they were written, and beside the SI values of generated code."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Letters that data sheets mean differently from the SI, and suffixes of circuit simulators."""
 
-from __future__ import annotations
-
 import pytest
 
 import symflex

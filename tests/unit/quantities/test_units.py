@@ -1,7 +1,5 @@
 """Every unit and prefix against pint, which keeps its own tables."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pint

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from symflex.errors import Source, Span, Text
 
 

@@ -1,7 +1,5 @@
 """Models for the tests of reports, small and odd."""
 
-from __future__ import annotations
-
 SMALL = """
 symflex = 1
 title = "Two masses"

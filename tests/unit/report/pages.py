@@ -1,7 +1,5 @@
 """A reader of pages that knows nothing of the printer."""
 
-from __future__ import annotations
-
 from html.parser import HTMLParser
 
 VOID = frozenset("meta br img link input hr".split())

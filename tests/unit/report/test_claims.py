@@ -1,7 +1,5 @@
 """Claims of publications: read with the place of every mistake, and judged from facts alone."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from inspect import signature

@@ -1,7 +1,5 @@
 """What a report does about models that cannot be computed."""
 
-from __future__ import annotations
-
 import os
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool

@@ -1,7 +1,5 @@
 """Conditions for minimum phase, against Routh's and derivations that share no code."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import sympy

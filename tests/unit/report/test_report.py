@@ -1,7 +1,5 @@
 """Reports on small models: the page, the article and the files."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import html

@@ -1,7 +1,5 @@
 """A report shows the step of a loop that is closed and stable, and no other."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import loads

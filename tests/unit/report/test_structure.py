@@ -1,7 +1,5 @@
 """Where models give way, and counts in limits, against what a textbook says of chains of masses."""
 
-from __future__ import annotations
-
 import pytest
 
 from symflex import pipeline

@@ -1,7 +1,5 @@
 """Distributed models for tests of roots, with values that make dimensionless numbers show."""
 
-from __future__ import annotations
-
 import functools
 
 from symflex import pipeline

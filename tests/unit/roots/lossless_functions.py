@@ -1,7 +1,5 @@
 """Functions without losses made of hyperbolic and circular functions of x, the root of s."""
 
-from __future__ import annotations
-
 from itertools import product
 
 from flint import arb

@@ -1,7 +1,5 @@
 """Roots and sides of transfer functions as tests of searches make them up, and the end of a budget."""
 
-from __future__ import annotations
-
 from flint import arb
 
 from symflex.errors import BudgetError, Diagnostic

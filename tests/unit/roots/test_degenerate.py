@@ -6,8 +6,6 @@ hidden.
 Axial force and rotary inertia resist the turn, not the translation.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """Poles, zeros and hidden modes of a whole transfer function, by what its formula says."""
 
-from __future__ import annotations
-
 import cmath
 from math import pi, sqrt
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Loops and fields that are proved to be passive, what only looks so, and finite elements that agree."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import cos, cosh, pi, sin, sinh
 from string import Template

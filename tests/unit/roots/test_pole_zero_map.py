@@ -1,7 +1,5 @@
 """Poles, zeros and their certificate."""
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 

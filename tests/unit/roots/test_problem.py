@@ -1,7 +1,5 @@
 """Exact polynomials with constants as coefficients, and their splitting into coprime square-free parts."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """Roots inside, on and outside a region."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """One root: frequency and damping, mirror images, decimals with a rigorous radius, and precision."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import hypot, pi

@@ -1,7 +1,5 @@
 """Poles on the principal sheet of functions with roots of s, against equations solved in mpmath."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import mpmath

@@ -1,7 +1,5 @@
 """What inputs do not reach, or outputs do not show, is left out, and nothing else."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy

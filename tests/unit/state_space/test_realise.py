@@ -1,7 +1,5 @@
 """State equations against textbooks, and against transfer functions found another way."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

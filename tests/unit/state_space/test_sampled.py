@@ -1,7 +1,5 @@
 """Sampled state equations are those of the continuous system at samples, the input held between."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import exp
 

@@ -1,7 +1,5 @@
 """Models whose roots are known in closed form."""
 
-from __future__ import annotations
-
 import symflex
 
 OSCILLATOR = """

@@ -1,7 +1,5 @@
 """Journals that were damaged, and outputs that two processes want."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Transfer functions against equations: values at points from formulas of books, and planted faults."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path

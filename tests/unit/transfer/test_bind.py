@@ -1,7 +1,5 @@
 """Transfer functions with numbers, against mpmath at forty digits and messages in full."""
 
-from __future__ import annotations
-
 import math
 from decimal import Decimal
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Cancellation of common factors, against SymPy's greatest common divisors."""
 
-from __future__ import annotations
-
 import cmath
 from fractions import Fraction
 from random import Random

@@ -1,7 +1,5 @@
 """Enclosures of characteristic roots on wide balls of s."""
 
-from __future__ import annotations
-
 import cmath
 
 import numpy as np

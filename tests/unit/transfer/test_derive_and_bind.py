@@ -1,7 +1,5 @@
 """Transfer functions in lowest terms, what cancelled, and their exact values with numbers."""
 
-from __future__ import annotations
-
 import math
 from decimal import Decimal
 from fractions import Fraction

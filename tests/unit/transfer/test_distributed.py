@@ -1,7 +1,5 @@
 """Distributed transfer functions in lowest terms, against closed forms from books and statics."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """Values to double precision, on functions in balls whose accuracy a test lays down."""
 
-from __future__ import annotations
-
 from itertools import product
 from math import inf, isnan, nan
 

@@ -1,7 +1,5 @@
 """Functions too large to be expanded unasked: coprime on a line, opened on demand, with numbers early."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import mpmath

@@ -1,7 +1,5 @@
 """Test points: where they lie, which parameters they have, and the values of functions there."""
 
-from __future__ import annotations
-
 import mpmath
 from flint import ctx
 

@@ -1,7 +1,5 @@
 """The zeros against the poles of constrained systems that are written down anew, or known from books."""
 
-from __future__ import annotations
-
 from math import cos, cosh, pi, sqrt
 
 import numpy as np

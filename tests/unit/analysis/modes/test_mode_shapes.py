@@ -1,7 +1,5 @@
 """Mode shapes against textbooks, independent eigenvectors and the equations they have to satisfy."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from flint import acb, acb_mat, arb, ctx
 
 from symflex.analysis.modes.bound_equations import null_space

@@ -1,7 +1,5 @@
 """Rational approximations against infinite products and sums whose terms textbooks give."""
 
-from __future__ import annotations
-
 import math
 import sys
 from itertools import product

@@ -1,7 +1,5 @@
 """Residues and approximations of networks, against their formula and the network itself."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """Residues against partial fractions, modal masses and the functions' own derivatives, all from elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What python-control, scipy and SymPy make of bound transfer functions, with these programs themselves."""
 
-from __future__ import annotations
-
 import math
 import sys
 from fractions import Fraction

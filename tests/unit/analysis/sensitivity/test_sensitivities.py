@@ -1,7 +1,5 @@
 """Derivatives of roots, against closed forms, eigenvectors, scaling laws and finite differences."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path

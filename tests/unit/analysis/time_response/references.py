@@ -1,7 +1,5 @@
 """Responses computed by other means: matrix exponentials of companion matrices, to 40 digits."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import mpmath

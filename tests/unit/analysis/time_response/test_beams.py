@@ -1,7 +1,5 @@
 """Responses of beams hold the sums over modes that textbooks give, with all modes."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import mpmath

@@ -1,7 +1,5 @@
 """Responses with delays and with waves that keep their form are exact, piecewise."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from math import comb, cos, exp, factorial, pi, sin, sqrt

@@ -1,7 +1,5 @@
 """Finely discretised models, stepped through time, come to the responses with the order of their elements."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

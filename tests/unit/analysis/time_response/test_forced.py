@@ -1,7 +1,5 @@
 """Responses to inputs given by samples are exact between them."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Beams in loops with delays agree with numerical inversions, turn by turn, as far as is estimated."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Servos about beams that lose energy in their material: responses are the inverses of closed forms."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Responses of rational functions hold the true values, which other means compute."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import mpmath

@@ -1,7 +1,5 @@
 """Beams with anything passive at their ends: responses hold what closed forms, inverted otherwise, give."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Responses in time of functions with a root of s, against closed solutions of textbooks."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from mpmath import erf, erfc, exp, gamma, mpf, nsum, pi, sqrt

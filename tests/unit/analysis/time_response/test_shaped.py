@@ -1,7 +1,5 @@
 """Responses to an input that went through a shaper are sums of late ones."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import cos, pi, sqrt
 

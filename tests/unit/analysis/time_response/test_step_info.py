@@ -1,7 +1,5 @@
 """Properties of step responses hold what closed forms say."""
 
-from __future__ import annotations
-
 from math import acos, exp, factorial, log, pi, sin, sqrt
 
 import numpy as np

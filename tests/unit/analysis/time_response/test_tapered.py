@@ -1,7 +1,5 @@
 """Members that taper, pushed at an end: responses hold what finite elements give."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

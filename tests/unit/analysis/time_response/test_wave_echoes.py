@@ -1,7 +1,5 @@
 """Waves that change their form on the way are known exactly, front by front."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

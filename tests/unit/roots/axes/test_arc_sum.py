@@ -1,7 +1,5 @@
 """Turns of sums of exponentials on an arc where they are known: of one term, about roots, and bounds."""
 
-from __future__ import annotations
-
 from cmath import exp, rect
 from itertools import product
 from math import cos, pi, sin

@@ -1,7 +1,5 @@
 """Real functions on an axis against the same formulas in mpmath, and their roots where these are known."""
 
-from __future__ import annotations
-
 import mpmath
 from flint import arb
 from mpmath import mp, mpf

@@ -1,7 +1,5 @@
 """Guesses on the axes: on a grid in doubles, and step by step in balls where doubles do not serve."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import exp, pi
 

@@ -1,7 +1,5 @@
 """Functions of the root of s on both axes against products of hyperbolic and circular functions."""
 
-from __future__ import annotations
-
 from itertools import product
 from math import log, sqrt
 

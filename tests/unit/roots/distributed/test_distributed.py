@@ -1,7 +1,5 @@
 """Poles and zeros of distributed systems, against characteristic equations solved by mpmath."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import re

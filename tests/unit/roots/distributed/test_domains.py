@@ -1,7 +1,5 @@
 """Domains of the plane by elementary geometry: holes, rings, cells about rectangles, and what lies inside."""
 
-from __future__ import annotations
-
 from cmath import exp as cexp
 from fractions import Fraction
 from math import atan2, hypot, inf, log, pi

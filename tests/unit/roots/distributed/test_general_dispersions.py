@@ -1,7 +1,5 @@
 """Roots of fields whose wavenumbers have no formula: coupled bending and torsion, sandwich beams."""
 
-from __future__ import annotations
-
 from math import pi
 
 import mpmath

@@ -1,7 +1,5 @@
 """One side of a transfer function: what was found, and counts that notice what was tampered with."""
 
-from __future__ import annotations
-
 from math import exp, inf, log, pi
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Each step of the search of one side, with searches and counts that answer what is known."""
 
-from __future__ import annotations
-
 from math import inf, pi
 
 import pytest

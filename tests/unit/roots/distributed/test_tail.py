@@ -1,7 +1,5 @@
 """Radii beyond which no root lies in the right half plane: Cauchy's bound, and its edge."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import permutations, product
 from math import log, pi, prod, sqrt

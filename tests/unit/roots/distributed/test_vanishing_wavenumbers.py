@@ -7,8 +7,6 @@ vanishes at the cut-off frequency, kappa G A = -rho I s^2, where a pinned beam t
 (w = 0, phi = 1).
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """Polynomials in kernels as sums of exponentials, in balls, series and doubles, against mpmath."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Functions with kernels against closed forms: values, slopes, turns, symmetry, and how fast they turn."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import mpmath

@@ -1,7 +1,5 @@
 """Squares hidden in polynomials in kernels: found with their multiplicities, and nothing else changed."""
 
-from __future__ import annotations
-
 from flint import acb
 
 from symflex.algebra import Factored

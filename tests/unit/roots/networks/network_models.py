@@ -1,7 +1,5 @@
 """Networks the tests of this folder share, and their counters and maps."""
 
-from __future__ import annotations
-
 from symflex import pipeline
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive

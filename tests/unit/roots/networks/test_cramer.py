@@ -1,7 +1,5 @@
 """Determinants at points and their bounds in discs, against closed forms."""
 
-from __future__ import annotations
-
 from math import log
 
 import numpy as np

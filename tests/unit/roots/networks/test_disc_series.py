@@ -1,7 +1,5 @@
 """Entire functions in a disc whose roots are known, from their values on the circle."""
 
-from __future__ import annotations
-
 from math import log, pi
 
 import pytest

@@ -1,7 +1,5 @@
 """Dynamic stiffness and own frequencies of a member against textbook formulas."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import cos, cosh, floor, pi, sin, sinh, sqrt, tan
 

@@ -1,7 +1,5 @@
 """What is a network without losses, where its powers of s stand, and how many zeros its paths leave."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import pi
 

@@ -1,7 +1,5 @@
 """Poles, zeros and hidden modes of networks against closed forms and published values."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 from math import log, pi, sqrt

@@ -1,7 +1,5 @@
 """Beams on damped foundations: roots at, and next to, points where wavenumbers vanish or meet."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Searching the plane for roots of polynomials that are known: close, multiple, on axes and beside holes."""
 
-from __future__ import annotations
-
 from math import inf, log, pi
 
 import pytest

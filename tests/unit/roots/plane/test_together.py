@@ -1,7 +1,5 @@
 """Roots proved together in a disc that holds so many, of functions whose roots are known."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest

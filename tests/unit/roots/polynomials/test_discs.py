@@ -1,7 +1,5 @@
 """Certified discs: what they claim and what they refuse."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import combinations
 from random import Random

@@ -1,7 +1,5 @@
 """Guesses by Laguerre's method, and each of its parts, for polynomials made of their roots."""
 
-from __future__ import annotations
-
 import pytest
 from flint import acb, acb_poly, arb
 

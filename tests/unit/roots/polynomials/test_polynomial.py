@@ -1,7 +1,5 @@
 """From discs of s or of s^2 to roots, and what may be said of roots that could not be told apart."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations, product

@@ -1,7 +1,5 @@
 """Searches for the roots of polynomials that are broken off: what they return is proved, and is not all."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import count
 

@@ -1,7 +1,5 @@
 """Roots against formulas and other people's algorithms, close together, and of every engine."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 
