@@ -121,7 +121,7 @@ def _json_variables(data: bytes) -> Arrays:
             else:
                 value = {key: [x.get(key) for x in rows] for key in keys}
         if not isinstance(value, dict):
-            found[path or "array"] = _json_array(value, path.rpartition(".")[2].lower())
+            found[path or "array"] = _json_array(value)
             return
         for key, inner in value.items():
             walk(inner, f"{path}{key}" if key.startswith("(") or not path else f"{path}.{key}", depth + 1)
@@ -133,17 +133,15 @@ def _json_variables(data: bytes) -> Arrays:
     return {key: array for key, array in found.items() if array.dtype.kind in "fciubU"}
 
 
-def _json_array(value: object, key: str) -> Array:
+def _json_array(value: object) -> Array:
     if not isinstance(value, list):
         return np.array(value)
     cells = [np.nan if x is None else x for x in value]
     if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
-        require(len(cells) * max(texts) <= MAX_BYTES // 4, f"{key[:40]} is a list of long texts")
+        require(len(cells) * max(texts) <= MAX_BYTES // 4, "it holds a list of long texts")
         numbers = [number(x) if isinstance(x, str) else x for x in cells]
         cells = cells if None in numbers else numbers
-    array = np.array(cells)
-    is_pair = array.ndim == 2 and array.shape[1] == 2 and array.dtype.kind in "fi"  # noqa: PLR2004
-    return array[:, 0] + 1j * array[:, 1] if is_pair and _meaning(key).kind == "complex" else array
+    return np.array(cells)
 
 
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
@@ -250,6 +248,17 @@ def _with_axes(arrays: Arrays) -> Arrays:
         if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
             lines = start.item() + step.item() * np.arange(max(values.shape))
             with_axes[f"{stem}.y_values.frequency_hz"] = lines
+    tables = {k: a for k, a in arrays.items() if a.ndim == 2 < len(a) and a.shape[1] == 2}  # noqa: PLR2004
+    tables = {k: a for k, a in tables.items() if _meaning(k.rpartition(".")[2].lower()).kind == "complex"}
+    beside = {k: a for k, a in tables.items() if a.dtype.kind == "c" and _goes_up(a[:, 0])}
+    if len(beside) > 1:  # values beside their frequencies; what is called G is a spectrum where others are H
+        own = {k: a for k, a in beside.items() if k.lower().startswith("h")} or beside
+        return {"f": next(iter(own.values()))[:, 0].real} | {k: a[:, 1] for k, a in own.items()}
+    pairs = {k: a for k, a in tables.items() if a.dtype.kind in "fi" and np.any(a < 0)}
+    with_axes |= {k: a[:, 0] + 1j * a[:, 1] for k, a in pairs.items()}
+    if pairs and {"f_start", "df"} <= with_axes.keys():
+        count = len(next(iter(pairs.values())))
+        with_axes["f"] = with_axes["f_start"].item() + with_axes["df"].item() * np.arange(count)
     return with_axes
 
 

@@ -15,7 +15,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import combinations, pairwise, product
+from itertools import pairwise, permutations, product
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -96,8 +96,8 @@ _LETTERS: Final = {
 """Letters that mean something as a pair alone."""
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
 _SUFFIX = re.compile(
-    r"(?:[\s_/,:.]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|"
-    r"grad|град)\s*$"
+    r"(?:[\s_/,:.]|\bin |(?<=\w\d)(?=d))\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|"
+    r"°|º|гц|дб|grad|град)\s*$"
     r"|(?<=\S)\s+/\s+(\S+)\s*$",
     re.I,
 )
@@ -113,6 +113,8 @@ FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
 DECADE: Final = 10.0
 """Ratio of the largest and smallest of positive numbers up to which they may well be dB."""
+LEAST_LEVELS: Final = 1.0
+"""Range [dB] below which positive numbers are rather ratios."""
 SAME_SIZE: Final = 0.02
 MOST_ALIKE: Final = 0.9
 """Relative deviation up to which a column is another one, of few digits, and in how many of its lines."""
@@ -399,7 +401,8 @@ def assembled(
                 made.append(Assembled(label, lines, values, shares, unit, kept, is_magnitude))
     if not made:
         raise DataError(_missing(columns, file, header))
-    made = [sweep for m in made for sweep in _sweeps(m, guesses)]
+    settings = [c.numbers.real for c in columns if not c.meaning.kind]
+    made = [sweep for m in made for sweep in _sweeps(m, settings, guesses)]
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
@@ -418,11 +421,11 @@ def assembled(
     return made, list(dict.fromkeys(guesses))
 
 
-def _sweeps(one: Assembled, guesses: list[str]) -> list[Assembled]:
+def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> list[Assembled]:
     """Return the sweeps of a response that goes through its band more than once.
 
-    Those of one direction and the same frequencies are averaged; others are kept apart, since a response may
-    depend on the direction.
+    Those of one direction and the same frequencies are averaged, unless another column holds a setting that
+    changed; others are kept apart, since a response may depend on the direction.
     """
     lines, starts = one.frequency_hz, [0]
     ways = np.sign(np.diff(lines))
@@ -436,11 +439,14 @@ def _sweeps(one: Assembled, guesses: list[str]) -> list[Assembled]:
     if min(float(np.mean((part >= low) & (part <= high))) for part in parts) < SAME_BAND:
         return [one]
     groups: dict[int, list[slice]] = {}
+    held = [x for x in settings if x.shape == lines.shape and all(np.ptp(x[run]) == 0 for run in runs)]
     for i, part in enumerate(parts):
         alike = (
             k
             for k in groups
-            if parts[k].shape == part.shape and np.allclose(parts[k], part, SAME_FREQUENCY, 0)
+            if parts[k].shape == part.shape
+            and np.allclose(parts[k], part, SAME_FREQUENCY, 0)
+            and all(x[starts[k]] == x[starts[i]] for x in held)
         )
         groups.setdefault(next(alike, i), []).append(runs[i])
     is_both_ways = sorted(ways[runs[k].start] for k in groups) == [-1, 1]
@@ -924,7 +930,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
 
     Nothing is offered that a name contradicts, or the numbers; readings that fit far worse are left out.
     """
-    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
+    is_indexed = len(columns) > 2 and counts(columns[0].numbers) and _is_rising(columns[1].numbers)  # noqa: PLR2004
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
     if re.search(r"\b(?:time|zeit|temps|tiempo)\b|^t\b", columns[axis].name, re.I):
         return f"'{columns[axis].name[:30]}' is no frequency: --columns t,u,y reads a record in time"
@@ -949,13 +955,19 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     readings = _likely(columns, axis, open_ones, UNDECIDED if pair else UNDECIDED / 3)
     if readings:
         options = [option(*zip(words, pair, strict=True)) for words, pair in readings]
+        if not columns[axis].name and columns[axis].numbers[0] == 0:
+            options += ["--columns t,u,y of a record in time"]
         return f"say what the columns are: {', or '.join(options)}"
     sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
     if not sizes:
         return "a phase alone is no response: save the magnitude too" if open_ones else HINT
     i = next((i for i in sizes if columns[i].meaning.kind), sizes[0])
-    options = [option((word, i)) for word in ("mag_db", "mag", "psd") if _may_be(columns[i], word)]
-    return f"{' or '.join(options)} computes the phase of a minimum-phase response"
+    options = [option((word, i)) for word in ("mag", "mag_db", "psd") if _may_be(columns[i], word)]
+    return f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"
+
+
+def _is_rising(numbers: npt.NDArray[Any]) -> bool:
+    return bool(np.all(np.diff(numbers.real) > 0))
 
 
 def _is_same(values: Real, other: Real) -> bool:
@@ -974,6 +986,12 @@ def _may_be(column: DataColumn, word: str) -> bool:
         return bool(meaning.kind)
     if word == "mag":
         return meaning.scale != "decibel" and not np.any(column.numbers.real <= 0)
+    if (
+        word == "mag_db"
+        and not np.any(column.numbers.real <= 0)
+        and np.ptp(column.numbers.real) < LEAST_LEVELS
+    ):
+        return meaning.scale == "decibel"
     return word != "mag_db" or meaning.scale in ("decibel", "unknown") or not meaning.kind
 
 
@@ -982,8 +1000,13 @@ def _likely(
 ) -> list[tuple[tuple[str, str], tuple[int, int]]]:
     """Return the readings of two columns as one response, words and places, the likeliest first."""
     lines, costs = np.asarray(columns[axis].numbers.real, np.float64), {}
-    for pair, words in product(combinations(open_ones[:MOST_LISTED], 2), _READINGS):
+    are_known = any(columns[i].meaning.kind for i in open_ones)
+    for pair, words in product(permutations(open_ones[:MOST_LISTED], 2), _READINGS):
         one, two = (columns[i] for i in pair)
+        kinds = {one.meaning.kind, two.meaning.kind}
+        is_other = kinds in ({""}, {"", "magnitude"}) if are_known else pair[0] > pair[1]
+        if is_other:
+            continue
         if not all(_may_be(columns[i], word) for i, word in zip(pair, words, strict=True)):
             continue
         with np.errstate(all="ignore"):

@@ -256,7 +256,13 @@ def _responses(
             used = [[bool(word.strip("- ")) for word in option.split(",")] for option in (better[1], asked)]
             if better[1] != asked and (used[0] == used[1] or not header):
                 guesses.append(f"names and numbers look more like --columns {better[1]}")
-        columns = [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)]
+        # A plain f has the unit that the header gives.
+        is_kept = [
+            c.meaning.kind == m.kind == "frequency" and m.word == "f" and not m.unit
+            for c, m in zip(columns, meanings, strict=True)
+        ]
+        triples = zip(columns, meanings, is_kept, strict=True)
+        columns = [c if is_own else replace(c, meaning=m) for c, m, is_own in triples]
         return assembled(columns, name, header, is_asked=True)
     implied = _IMPLIED.get(Path(name).suffix.lower())
     if implied and header is None and len(columns) == 3:  # noqa: PLR2004
