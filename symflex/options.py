@@ -242,6 +242,13 @@ class RespondOptions:
         metavar="step|impulse|ramp|free|FILE.csv",
         help="Input from t = 0 on; a file has two columns, time_s and the value; free: no input.",
     )
+    record: str | None = option(
+        None,
+        "--record",
+        metavar="FILE",
+        help="Record in time: its input drives the model, its output is compared and drawn.",
+    )
+    columns: str = option("", "--columns", metavar="WORDS", help="Columns of the record: t,u,y.")
     hold: bool = option(
         False, "--hold", help="Hold every value of a file until the next one, as digital controllers do."
     )

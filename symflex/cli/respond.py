@@ -7,6 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
@@ -14,7 +16,10 @@ from symflex.model import read_settings
 from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from symflex.analysis.time_response import EnclosedResponse
+    from symflex.data.measurement.input_signal import InputSignal
     from symflex.roots import PoleZeroMap
 
 POINTS = 201
@@ -32,6 +37,9 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     first sample and constant after the last. This is exact, too. Two samples at one time are a jump.
     --initial begins with values of states, at the first sample of a file; --to free adds no input. --shaped
     passes the input through the shaper that 'symflex shape' prints for the same transfer function.
+
+    --record FILE drives the model with the input of a record in time, as 'symflex fit' reads them. The rms of
+    the measured output less that of the model is printed, and -o draws both. Values are in the model's units.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from above.
@@ -54,19 +62,17 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         response_from,
         response_text,
     )
-    from symflex.data.measurement.input_signal import ENDINGS, read_signal
+    from symflex.data.measurement.input_signal import ENDINGS
     from symflex.transfer import BoundNested
 
-    place = Path(given.to)
-    is_file = place.suffix.lower() in ENDINGS
+    place = Path(given.record or given.to)
+    is_file = given.record is not None or place.suffix.lower() in ENDINGS
     _check_options(given, is_file=is_file)
     initial = read_settings(given.initial, "--initial")
     until = None if given.until is None else duration(given.until, "--until")
-    signal = read_signal(place) if is_file else None
-    for guess in signal.guesses if signal else ():
-        note(f"{place}: {guess}")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
+    signal, measured = _samples(place, given, pair[0]) if is_file else (None, None)
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
     free = free_motion(model, pair, initial) if initial else None
     shaper = None
@@ -92,20 +98,50 @@ def respond(spec: Specification, given: RespondOptions) -> int:
             whole, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
         )
         response = replace(forced, input=place.name)
+        if measured is not None:
+            kept = np.interp(forced.times, np.array(signal.times, np.float64), measured[1])
+            response = replace(response, measured=(measured[0], kept))
     response = replace(response, initial=", ".join(f"{name} = {x}" for name, x in initial.items()))
     if given.output:
         _write(response, given, Path(given.output))
     else:
-        is_told = given.to == "step" and not (shaper or free) and response.certified and _may_rest(known)
+        is_told = (
+            given.to == "step"
+            and signal is None
+            and not (shaper or free)
+            and response.certified
+            and _may_rest(known)
+        )
         info = find_step_info(bound, given.digits, response.modes) if is_told else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
             emit_json({**response.to_json_dict(), **told})
         else:
-            say(response_text(response, info.lines(response.unit) if info else _growth(known)))
+            compared = [response.comparison] if response.comparison else _growth(known)
+            say(response_text(response, info.lines(response.unit) if info else compared))
     if given.strict and not response.certified:
         raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {response.reason}"))
     return 0
+
+
+def _samples(
+    place: Path, given: RespondOptions, output: str
+) -> tuple[InputSignal, tuple[str, npt.NDArray[np.float64]] | None]:
+    """Return the input that a file gives, and of a record the output that was measured; print guesses."""
+    from symflex.data.measurement import record_in_time
+    from symflex.data.measurement.input_signal import read_signal
+
+    measured: tuple[str, npt.NDArray[np.float64]] | None = None
+    if given.record is None:
+        signal = read_signal(place)
+    elif (record := record_in_time(place, given.columns)) is None:
+        hint = "a column called time, or --columns t,u,y"
+        raise UsageError(Diagnostic("SF902", f"'{place}' is no record in time", None, hint))
+    else:
+        signal, measured = record.driven(output)
+    for guess in signal.guesses:
+        note(f"{place}: {guess}")
+    return signal, measured
 
 
 def _growth(known: PoleZeroMap | None) -> list[str]:
@@ -129,6 +165,8 @@ def _check_options(given: RespondOptions, *, is_file: bool) -> None:
             "--modes and --joint need --shaped zv, zvd or ei",
         ),
         (given.hold and not is_file, "--hold needs a file of samples: --to FILE.csv"),
+        (given.record and given.to != "step", "give only one of --record and --to"),
+        (given.record and (given.shaped or given.initial), "--record starts at rest, and is not shaped"),
         (given.to == "free" and not given.initial, "--to free needs --initial, as in --initial x='1 mm'"),
     ):
         if is_wrong:

@@ -92,11 +92,16 @@ def draw_in_time(
     width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
     canvas = Canvas(frame=frame, width=width, axes=() if ax is None else (ax,))
     first = title_lines(f"{response.tf}, {response.title}", width)
-    lines = [*first, *_said([response], width)]
+    lines = [*first, *_said([response], width), *title_lines(response.comparison, width)]
     with paper_style(font):
         axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
-        _draw_curve(axes, response, (COLOURS[0], "-"), None)
+        if response.measured is not None:
+            across = response.times / _prefix(response)[0]
+            axes.plot(across, response.measured[1], color=QUIET, label=f"measured {response.measured[0]}")
+        _draw_curve(axes, response, (COLOURS[0], "-"), "model" if response.measured else None)
         _label(axes, response, response.unit, frame)
+        if response.measured is not None:
+            add_legend_above(axes, 2)
         write_title(root_figure(axes), lines)
     return root_figure(axes)
 

@@ -82,6 +82,8 @@ class EnclosedResponse:
         Values of states from which it begins, such as ``x = 1 mm``.
     refused : tuple of str
         Where it is not certified, the ways that would prove it, and why each does not answer.
+    measured : (str, array of float) or None
+        Name and values, at the same times, of an output that was measured with this input.
     """
 
     tf: str
@@ -99,6 +101,7 @@ class EnclosedResponse:
     method: str = ""
     initial: str = ""
     refused: tuple[str, ...] = ()
+    measured: tuple[str, npt.NDArray[np.float64]] | None = None
 
     def __post_init__(self) -> None:
         huge = next(
@@ -135,6 +138,15 @@ class EnclosedResponse:
         return self._doubles[0]
 
     @property
+    def comparison(self) -> str:
+        """The rms of the measured output less the values, in words; empty where nothing was measured."""
+        if self.measured is None:
+            return ""
+        name, own = self.measured
+        off, size = (float(np.sqrt(np.mean(np.square(x)))) for x in (own - self.values, own))
+        return f"measured {name} less the model: rms {off:.4g}, where {name} has {size:.4g}"
+
+    @property
     def radius(self) -> npt.NDArray[np.float64]:
         """How far each value may be off, what rounding to doubles takes away among it."""
         return self._doubles[1]
@@ -169,6 +181,10 @@ class EnclosedResponse:
         }
         document |= {"shaper": self.shaper} if self.shaper else {}
         document |= {"initial": self.initial} if self.initial else {}
+        if self.measured is not None:
+            off = float(np.sqrt(np.mean(np.square(self.measured[1] - self.values))))
+            own = {"output": self.measured[0], "value": self.measured[1].tolist()}
+            document["measured"] = {**own, "rms_difference": off}
         return document if self.reason is None else {**document, "reason": self.reason}
 
     def to_csv(self) -> str:

@@ -457,7 +457,7 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
         values = np.mean([one.values[run] for run in same], axis=0)
         if one.is_magnitude:
             size = np.mean([np.abs(one.values[run]) for run in same], axis=0)
-            values = size * np.exp(1j * _minimum_phase(parts[k], size))
+            values = size * np.exp(1j * minimum_phase(parts[k], size))
         shares = None if one.coherence is None else np.mean([one.coherence[run] for run in same], axis=0)
         columns = tuple(_below(c, runs[k]) for c in one.columns)
         made.append(Assembled(label, parts[k], values, shares, one.unit, columns, one.is_magnitude))
@@ -734,7 +734,7 @@ def _values(
         else:
             guesses.append("magnitude only: minimum phase is assumed")
             size = _plain_size(group.get("power") or group["magnitude"])
-            phase = _minimum_phase(lines, size)
+            phase = minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
 
@@ -816,7 +816,7 @@ def _called(column: DataColumn, otherwise: str) -> str:
 
 def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
     """Return whether phases are those of a minimum-phase function with this magnitude, times -1."""
-    expected = _minimum_phase(lines, size)
+    expected = minimum_phase(lines, size)
     used = (expected != 0) & np.isfinite(phase)
     if not np.any(used):
         return False
@@ -856,7 +856,7 @@ def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
     return abs(float(np.log((energies[1] + 1e-12) / (energies[0] + 1e-12))))
 
 
-def _minimum_phase(lines: Real, size: Real) -> Real:
+def minimum_phase(lines: Real, size: Real) -> Real:
     """Return the phase [rad] that the magnitude of a function without zeros on the right has.
 
     2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
@@ -1016,7 +1016,7 @@ def _likely(
             else:
                 size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
                 turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
-            off = np.nan_to_num(np.abs(np.cos(turn - _minimum_phase(lines, size))))
+            off = np.nan_to_num(np.abs(np.cos(turn - minimum_phase(lines, size))))
         costs[words, pair] = _unlikeness(lines, size, turn) + float(np.mean(1 - off))
     best = min(costs.values(), default=0.0)
     near = [reading for reading in costs if costs[reading] <= best + margin]

@@ -9,7 +9,8 @@ Output: a :class:`~symflex.data.measurement.MeasuredResponse` per output; its gu
     transient   the output begins and ends at rest          the same
     periodic    the input repeats two times or more         the mean over whole periods, at excited lines
     noise       anything else                               Welch (1967), H1 or H2
-    decay       there is no input                           spectrum of y, for its poles alone
+    decay       no input, and the output dies away          spectrum of y, for its poles alone
+    response    no input, and it does not die away          root of its power spectrum, likewise
 
 The spectrum of a record that ends while the response decays has the poles of the response, and no others: at
 lines ``omega_k = 2 pi k/T`` a mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. So no window is
@@ -27,6 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.measurement.columns import minimum_phase
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic
 
@@ -53,6 +55,8 @@ SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+DIES_AWAY: Final = 0.3
+"""Rms of the second half of a free decay over that of the first half, at most."""
 ENDS: Final = 0.05
 """Share of a record by whose samples its ends are judged."""
 
@@ -134,9 +138,14 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
     made = []
     for name, values in record.outputs:
         averages: float | None = None
-        window = ""
+        window, halves = "", [float(np.std(half)) for half in np.array_split(values, 2)]
+        is_driven = record.input is None and halves[1] > DIES_AWAY * halves[0]
         if record.input is None:
-            frequency, response, coherence, said = _decay(values, record.step_s)
+            if is_driven:
+                own = _Channel(values, values, record.step_s)
+                frequency, response, coherence, averages, window, said = _by_segments(own, how)
+            else:
+                frequency, response, coherence, said = _decay(values, record.step_s)
             called = name if len(record.outputs) > 1 else record.name
         else:
             source, u = record.input
@@ -151,7 +160,7 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
         made.append(
             MeasuredResponse(
                 called, frequency[is_finite], response[is_finite], shares, averages, window,
-                notes=(said,), guesses=(*record.guesses, said), is_record=True,
+                notes=(said,), guesses=(*record.guesses, said), is_record=True, is_magnitude=is_driven,
             )
         )  # fmt: skip
     return tuple(made)
@@ -255,7 +264,11 @@ def _of_periods(channel: _Channel, period: int) -> _Estimated:
 
 
 def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
-    """Return Welch's estimate."""
+    """Return Welch's estimate; of a channel that is its own input, the magnitude that white noise would show.
+
+    Poles are in it as in the decay of its correlation function (Natural Excitation Technique, James, Carne &
+    Lauffer 1993), and errors of its lines are independent, as they are not there.
+    """
     from scipy import signal  # takes a third of a second, and other files need none of it
 
     n = channel.u.size
@@ -281,8 +294,16 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     name = "Hann window, half an overlap" if how.window == "hann" else "no window"
     long = f"{length * channel.step_s:.6g} s"
     said = f"Welch's method, {how.estimator.upper()}: {count} segments of {long}, {name}"
+    if channel.u is channel.y:
+        size = np.sqrt(of_output)
+        response, coherence = size * np.exp(1j * minimum_phase(frequency, size)), None
+        said = (
+            "no input, and the output does not die away: taken as driven by white noise, its magnitude by "
+            f"{said}; poles are those of the system, gain and zeros those of this output alone"
+        )
     window = "hann" if how.window == "hann" else ""
-    return frequency[kept], response[kept], coherence[kept], float(averages), window, said
+    shares = None if coherence is None else coherence[kept]
+    return frequency[kept], response[kept], shares, float(averages), window, said
 
 
 def _decay(values: Real, step_s: float) -> tuple[npt.NDArray[Any], Complex, Real | None, str]:

@@ -22,7 +22,7 @@ from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
-from symflex.data.measurement.record import read_record
+from symflex.data.measurement.record import TimeRecord, read_record
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
     COHERENCE,
@@ -140,12 +140,16 @@ def _contents(name: str) -> bytes:
     return arrays_in(name, data, suffix)[""].tobytes() if suffix in WORKBOOKS else data
 
 
+def record_in_time(path: str | Path, columns: str = "") -> TimeRecord | None:
+    """Return the record that a file holds, ``None`` if its columns do not say time."""
+    return read_record(os.fspath(path), _contents(os.fspath(path)), Path(path).stem, columns)
+
+
 def responses_in_time(
     path: str | Path, columns: str = "", estimate: Estimate | None = None
 ) -> tuple[MeasuredResponse, ...] | None:
     """Return the responses of a record in time, ``None`` if the columns of a file do not say time."""
-    data = _contents(os.fspath(path))
-    record = read_record(os.fspath(path), data, Path(path).stem, columns)
+    record = record_in_time(path, columns)
     return None if record is None else responses_of(record, estimate or Estimate())
 
 

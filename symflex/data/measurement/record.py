@@ -17,6 +17,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -24,7 +25,7 @@ import numpy.typing as npt
 
 from symflex.data.measurement.arrays import arrays_in, format_of
 from symflex.data.measurement.columns import meaning_of
-from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, named_time
+from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few
 from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
 from symflex.errors import DataError, Diagnostic, UsageError
@@ -38,6 +39,8 @@ Real = npt.NDArray[np.float64]
 
 SEARCHED: Final = 300
 """Lines among which the names of columns and the first row are sought."""
+BEGIN: Final = 4
+"""Samples by which it is judged where a record begins."""
 FEWEST_SAMPLES: Final = 32
 """Fewer make no response."""
 JITTER: Final = 0.02
@@ -77,6 +80,21 @@ class TimeRecord:
     outputs: tuple[tuple[str, Real], ...]  # names and samples
     input: tuple[str, Real] | None = None
     guesses: tuple[str, ...] = ()  # what the file does not say
+
+    def driven(self, output: str) -> tuple[InputSignal, tuple[str, Real]]:
+        """Return the input, and the output of this name or else the first, as of a model that starts at rest.
+
+        Both are counted from where they begin; the input only if it rests there. SF902 without an input.
+        """
+        if self.input is None:
+            message = f"'{self.name}' has no input that could drive a model"
+            raise UsageError(Diagnostic("SF902", message, None, "--columns t,u,y names the columns"))
+        _, u = self.input
+        u = u - u[0] if np.all(u[:BEGIN] == u[0]) else u
+        name, y = next((one for one in self.outputs if one[0] == output), self.outputs[0])
+        step = Fraction(f"{self.step_s:.9g}")
+        times, values = [i * step for i in range(u.size)], [Fraction(f"{x:.12g}") for x in u.tolist()]
+        return InputSignal(tuple(times), tuple(values), self.guesses), (name, y - np.median(y[:BEGIN]))
 
 
 def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecord | None:

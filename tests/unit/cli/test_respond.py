@@ -391,3 +391,17 @@ def test_an_output_that_follows_at_once_jumps_with_its_input(oscillator, tmp_pat
     found = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "in.csv", "--hold", "--json").json
     jumps = [float(j[key]) for j in found["jumps"] for key in ("time", "height")]
     assert jumps == pytest.approx([0.1, 0.5, 0.25, -0.75])  # a jump of F over m
+
+
+def test_a_record_drives_the_model_and_its_output_is_compared(oscillator, tmp_path):
+    t = 0.01 * np.arange(200)
+    measured = np.array([1.1 * step_of_oscillator(max(x - 0.2, 0.0)) * 5 for x in t])  # 10 % too large
+    rows = [f"{x:.2f},{3 + 5 * (x >= 0.2)},{0.7 + y:.9g}" for x, y in zip(t.tolist(), measured, strict=True)]
+    (tmp_path / "axis.csv").write_text("time,force,X\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    asked = ("respond", "osc.toml", "--tf", "X/F", "--record", "axis.csv", "--hold")
+    rms = oscillator(*asked, "--json").json["measured"]["rms_difference"]
+    assert rms == pytest.approx(np.sqrt(np.mean((measured / 11) ** 2)), rel=1e-3)
+    assert f"measured X less the model: rms {rms:.4g}" in oscillator(*asked).out
+    assert oscillator(*asked, "-o", "axis.svg").code == 0
+    assert oscillator(*asked, "--to", "ramp").code == 2
+    assert oscillator("respond", "osc.toml", "--tf", "X/F", "--record", "osc.toml").code == 2
