@@ -150,7 +150,7 @@ class KernelReduction:
         ratio = _split_contents(shortest, self._kernel_content)
         plain = ratio.filter(lambda f: not self.has_kernels(f))
         ratio = ratio / plain * self._radicals.without_rooted_scale(plain)  # (1 + j*eta)^2 is multiplied out
-        modes = self._modes(self._shortest(shared))
+        modes = self._modes(self._shortest(shared)).filter(lambda f: not self._is_one_wave(f))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)
         num, den = self._entire(ratio, table)
@@ -163,19 +163,27 @@ class KernelReduction:
 
         So a line that ends in its own impedance ``sqrt(L/C)`` is a resistor.
         """
-        images: list[tuple[str, Factored]] = []
-        for law in self.table.dispersions:
-            root = self._radicals.either_root(-law.characteristic[0]) if law.kind == "wave" else None
-            if root is None:
-                return None
-            images.append((law.wavenumbers[0], root))
-        values = (self._radicals.reduced(_solved_for(v, images)) for v in (num, den, cancelled))
+        if len(self._images) < len(self.table.dispersions):
+            return None
+        values = (self._radicals.reduced(_solved_for(v, self._images)) for v in (num, den, cancelled))
         above, below, before = map(self._in_exponentials, values)
         if below.is_zero:
             return None
         quotient, shared = self._lowest(above, below, before)
         free = len(self.ring.names) - len(self._kernels)
         return None if any(any(f.degrees()[free:]) for f, _ in quotient.factors) else (quotient, shared)
+
+    @cached_property
+    def _images(self) -> list[tuple[str, Factored]]:
+        """The wavenumbers that are rational functions of s."""
+        waves = [law for law in self.table.dispersions if law.kind == "wave"]
+        roots = ((law.wavenumbers[0], self._radicals.either_root(-law.characteristic[0])) for law in waves)
+        return [(name, root) for name, root in roots if root is not None]
+
+    def _is_one_wave(self, factor: fmpz_mpoly) -> bool:
+        """Tell whether a polynomial in kernels is one exponential times powers, so that only 0 is a root."""
+        value = self._radicals.reduced(_solved_for(Factored.polynomial(self.ring, factor), self._images))
+        return self.has_kernels(factor) and all(len(f) == 1 for f, _ in self._in_exponentials(value).factors)
 
     def _lowest(self, above: Factored, below: Factored, before: Factored) -> tuple[Factored, Factored]:
         """Return a quotient with common factors cancelled, and these times what was cancelled before."""

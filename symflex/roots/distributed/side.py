@@ -82,7 +82,7 @@ class Side:
         self._engines = tuple(engines)
         self._digits = digits
         self.holes = holes_about(accumulation_points(bound))
-        part = without_reflections(bound, part)
+        part = without_reflections(bound, part, is_hidden=is_hidden)
         plain, mixed = split_off_kernels(part, bound.kernels)
         self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []

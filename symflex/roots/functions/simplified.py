@@ -254,25 +254,41 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
     return factors
 
 
-def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factored:
+def without_reflections(bound: BoundTransferFunction, part: Factored, *, is_hidden: bool = False) -> Factored:
     """Return a product whose roots are the same, with powers of s for what has one exponential left.
 
     A wave that meets a damper as large as its own impedance is not reflected: ``E A gamma cosh(gamma l) +
-    b s sinh(gamma l)`` is a multiple of ``s exp(gamma l)`` for ``b = A sqrt(E rho)``, and has no root but 0.
-    What may be otherwise stays as it is, all of it.
+    b s sinh(gamma l)`` is a multiple of ``s exp(gamma l)`` for ``b = A sqrt(E rho)``, and has no root but 0,
+    where it is hidden none at all: s comes of clearing gamma. What may be otherwise stays as it is; where
+    waves have several speeds, or signs of gamma are not told, all of it.
     """
     table, result = bound.kernels, Factored.number(part.ring, part.unit)
     if not table.kernels or any(law.kind != "wave" or not law.shift.is_zero for law in table.dispersions):
         return part
+    s, waves = part.ring.generator(LAPLACE), [w for law in table.dispersions for w in law.wavenumbers]
+    turning = [*waves, *(k.generator for k in table.kernels if k.function == "sinh")]
+    odd = [part.ring.index[name] for name in turning]
+    cleared, is_odd = list[tuple[Factored, Factored, int]](), 0
     for factor, exponent in part.factors:
         value = Factored.polynomial(part.ring, factor)
         kernels = [k for k in table.kernels if value.depends_on(k.generator)]
-        names = {name for law in table.dispersions for name in law.wavenumbers if value.depends_on(name)}
-        names |= {k.wavenumber for k in kernels}
+        names = {w for w in waves if value.depends_on(w)} | {k.wavenumber for k in kernels}
         image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None if names else value
         if image is None:
-            return part
-        result = result * image**exponent
+            signs = {sum(int(m[i]) for i in odd) % 2 for m in factor.monoms()}
+            if len(waves) > 1 or len(signs) > 1:
+                return part
+            is_odd = (is_odd + exponent * signs.pop()) % 2
+        elif names and not kernels:
+            cleared.append((value, image, exponent))
+            continue
+        elif is_hidden and kernels:
+            image = image.filter(lambda f: f != s)
+        result = result * (value if image is None else image) ** exponent
+    for value, image, exponent in cleared:
+        # One power of gamma stays with what changes its sign as gamma does.
+        stays = is_odd * (1 if exponent > 0 else -1)
+        result = result * value**stays * image ** (exponent - stays)
     return result
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from math import cos, exp, log, pi, sin, sqrt, tanh
 
 import pytest
@@ -75,6 +76,26 @@ def test_a_string_that_absorbs_every_wave_delays_alone():
     elements.dash = { type = "damper", between = ["right", "ground"], b = "b" }
     """
     assert not poles(text)
+
+
+def test_a_side_branch_before_an_end_without_reflections_hides_nothing():
+    # A closed branch of length 0.6 and section 0.4 on a duct of sound speed 2, half a second before its end.
+    text = 'symflex = 1\ninputs.p_0 = {}\noutputs.p_R = "b(1)"\n'
+    for p, length, section, ends in [
+        ("a", 1, 1, '"a(0) = p_0", "va(1) = vb(0) + vc(0)"'),
+        ("b", 1, 1, '"b(0) = a(1)", "b(1) = 2*vb(1)"'),
+        ("c", 0.6, 0.4, '"c(0) = a(1)", "vc(0.6) = 0"'),
+    ]:
+        equations = f'["{section}*{p}\' + s*v{p} = 0", "4*v{p}\' + {section}*s*{p} = 0"]'
+        text += f'fields.{p} = {{ unknowns = ["{p}", "v{p}"], domain = [0, {length}], '
+        text += f"equations = {equations}, conditions = [{ends}] }}\n"
+    (bound,) = pipeline.derive_bound(model := pipeline.loads(text), model.transfer_functions)
+    found = pipeline.roots(bound, Modes(2))
+    assert (found.certificate.certified, found.hidden, bound.source.hidden) == (True, (), ())
+    assert [float(r.im) for r in found.zeros if r.im > 0] == pytest.approx([pi / 0.6, 3 * pi / 0.6])
+    for s in map(complex, found.poles):
+        q = 0.3 * s
+        assert abs(cmath.cosh(q) * cmath.exp(s / 2) + 0.4 * cmath.sinh(s / 2) * cmath.sinh(q)) < 1e-12
 
 
 LAYERS = """
