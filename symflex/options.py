@@ -614,6 +614,7 @@ class ReportOptions:
         metavar="DIR",
         help="Folder to write; files of the same name are replaced, others stay.",
     )
+    live: bool = option(False, "--live", help="Write a page with sliders for every model, and link it.")
     pdf: bool | None = option(
         None, "--pdf/--no-pdf", help="Write report.pdf.  [default: if pdflatex is installed]"
     )

@@ -23,11 +23,13 @@ from matplotlib import mathtext, textpath
 from mkdocs.structure.files import File, Files
 
 from symflex import pipeline
+from symflex.budget import Silent
 from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
 from symflex.expressions import parse, parse_equation
 from symflex.figures import draw, draw_loop, render
 from symflex.library.elements import ELEMENTS
+from symflex.live.page import live_page
 from symflex.loops.of_model import characteristic_loop
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
@@ -53,6 +55,15 @@ FOLDERS: Final = {
     "frames": "Plane frames",
 }
 """Sections of the gallery."""
+MOVING: Final = {
+    "eppinger1988/two_mass.toml",
+    "eppinger1988/six_mass.toml",
+    "eppinger1988/sliding_free_beam.toml",
+    "eppinger1988/loops/two_mass_position.toml",
+    "classics/quarter_car.toml",
+    "classics/clamped_free.toml",
+}
+"""Models that have a page with sliders too."""
 FUNCTIONS_SHOWN: Final = 2
 LONGEST: Final = 12_000
 """Characters of MathML: some eight lines."""
@@ -99,6 +110,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for entry in entries():
         text = (MODELS / entry.path).read_bytes()
         files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))
+        if entry.path in MOVING:
+            model = pipeline.load(MODELS / entry.path)
+            page = live_page([(model, model.transfer_functions[:FUNCTIONS_SHOWN])], Silent())
+            files.append(File.generated(config, f"gallery/{entry.stem}.html", content=page))
         for name, content in entry.figures:
             files.append(File.generated(config, f"gallery/{entry.stem}_{name}.svg", content=content))
     return files
@@ -267,4 +282,5 @@ def _sections() -> Iterator[str]:
             if not any(name == "drawing" for name, _ in entry.figures):
                 yield entry.formula
             yield "</div>\n"
-            yield f"[Specification](gallery/{entry.stem}.toml)\n"
+            moves = f"[Move its parameters](gallery/{entry.stem}.html) · " if entry.path in MOVING else ""
+            yield f"{moves}[Specification](gallery/{entry.stem}.toml)\n"

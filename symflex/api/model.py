@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex import model as model_room
+    from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
     from symflex.data.measurement import MeasuredResponse
     from symflex.errors import Diagnostic
@@ -640,6 +641,37 @@ class Model:
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
         task, design = sweep_room.plan_sweep(self.resolved, given, frequencies)
         return face_of(Sweep, sweep_room.sweep(task, design, given, executor, workers=workers))
+
+    def live(self, *tfs: str) -> LivePage:
+        """Return a page with a slider for every parameter, like ``symflex live``; a notebook shows it.
+
+        Parameters
+        ----------
+        *tfs : str
+            Transfer functions shown, such as "X/F"; by default all.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such transfer function.
+        ModelError
+            SF251 for models with loss factors; others as of :meth:`transfer_function`.
+
+        Examples
+        --------
+        >>> wall = {"type": "spring", "between": ["x", "ground"], "k": "k"}
+        >>> body = {"type": "mass", "at": "x", "m": "m"}
+        >>> model = Model(parameters={"k": "8 N/m", "m": "2 kg"}, elements={"wall": wall, "body": body},
+        ...               inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> page = model.live()
+        >>> page.html[:15], "https:" in page.html
+        ('<!DOCTYPE html>', False)
+        """
+        from symflex.api.live import LivePage  # only pages need the rooms of numbers
+        from symflex.budget import Silent
+        from symflex.live.page import live_page
+
+        return LivePage(live_page([(self.resolved, pipeline.pick_pairs(self.resolved, tfs))], Silent()))
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""

@@ -44,6 +44,7 @@ def write_report(
     folder: str | Path = "report",
     *,
     pdf: bool | None = None,
+    live: bool = False,
     day: date | None = None,
     jobs: int = 1,
 ) -> WrittenReport:
@@ -58,6 +59,8 @@ def write_report(
         Folder to write; files of the same name are replaced, others stay.
     pdf : bool, optional
         Whether to make a PDF; by default if pdflatex is installed.
+    live : bool
+        Whether to write a page with sliders for each model, which runs a script.
     day : date, optional
         Printed; without it equal specifications give equal files.
     jobs : int
@@ -99,6 +102,7 @@ def write_report(
             ],
             output=folder,
             pdf=pdf,
+            live=live,
             day=None if day is None else day.isoformat(),
             jobs=jobs if jobs > 1 else 0,
         )

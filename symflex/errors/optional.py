@@ -11,6 +11,7 @@ from symflex.errors.exceptions import UsageError
 _LACKING: Final = "needs the library {}, which is not installed"
 OPTIONAL: Final = {
     "control": ("SF902", "{} is not installed", "pip install 'symflex[control]'"),
+    "anywidget": ("SF902", "{} is not installed", "pip install 'symflex[notebook]'"),
     "scipy": ("SF902", "{} is not installed", "pip install scipy"),
     "sympy": ("SF902", "{} is not installed", "pip install sympy"),
     "pyuff": ("SF902", "reading and writing universal files needs {}", "pip install pyuff"),

@@ -53,7 +53,7 @@ LARGEST_DRAWING: Final = 60
 """Elements of a model that is drawn."""
 LONGEST_FORMULA: Final = 60_000
 """Characters of MathML that a page shows: some forty lines."""
-SHOWN: Final = 0.7
+SHOWN: Final = 0.6
 """How large a drawing is beside the formula, as a share of its size in a report."""
 MAX_WIDTH: Final = re.compile(r' style="max-width:([0-9.]+)in"')
 STYLE_ATTRIBUTE: Final = re.compile(r' style="([^"]*)"')
@@ -190,12 +190,11 @@ def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
     tf, accuracy = member.tf, member.verification.text()
     data = {"name": tf.name, "unit": tf.unit or "", "fixed": not is_closed(tf), "accuracy": accuracy}
     if isinstance(located, str):
-        data |= {"why": located, "poles": [], "zeros": [], "infinite": tf.is_distributed}
-        return {**data, "verdict": None}
-    verdict, data["why"] = located.verdict, ""
-    data |= {"poles": _upper(located.all_poles), "zeros": _upper(located.zeros)}
-    said = {"word": verdict.word, "sentence": verdict.sentence, "proved": verdict.certified}
-    return {**data, "infinite": located.is_infinite, "verdict": said}
+        return {**data, "why": located, "poles": [], "zeros": [], "infinite": tf.is_distributed}
+    data |= {"why": "", "infinite": located.is_infinite, "certified": located.certificate.certified}
+    verdict = {"sentence": located.verdict.sentence, "word": located.verdict.word}
+    roots = {"poles": _upper(located.all_poles), "zeros": _upper(located.zeros)}
+    return {**data, **roots, "verdict": verdict if located.verdict.certified else None}
 
 
 def _upper(roots: Iterable[Root]) -> list[list[float]]:
@@ -217,7 +216,7 @@ def _band(functions: Sequence[dict[str, Any]]) -> list[float]:
 def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
     """Return the specification's text, cut: between texts stand places of values.
 
-    A place is the number of a parameter and the unit to be written with its value.
+    A place is the number of a parameter, the unit to be written with its value, and the text there.
     Parameters that other files declare have no place.
     """
     source = next((o.span.source for o in model.outputs if o.span), None)
@@ -237,7 +236,9 @@ def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
                 continue
             inner = value
         span = inner.value.span
-        places.append((span.start, span.end, [shown.index(entry.key), "" if unit else units[entry.key]]))
+        places.append(
+            (span.start, span.end, [shown.index(entry.key), "" if unit else units[entry.key], span.text])
+        )
     pieces: list[str | list[Any]] = []
     last = 0
     for start, end, place in sorted(places):

@@ -9,14 +9,19 @@ import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
+from functools import partial
 from pathlib import Path
 from typing import Final
 
+from symflex import pipeline
+from symflex.budget import Silent
 from symflex.errors import Diagnostic, SymflexError, counted
 from symflex.files.examples import file_or_example
 from symflex.files.write import check_folder, write_tree
+from symflex.live.page import live_page
 from symflex.options import ReportOptions
 from symflex.report.article import report_article
+from symflex.report.document import PageLink, Section, text
 from symflex.report.page import report_page
 from symflex.report.report import (
     Report,
@@ -27,6 +32,8 @@ from symflex.report.report import (
     name_specifications,
     write_chapters,
 )
+from symflex.report.study import attempt
+from symflex.report.study import said as error_text
 from symflex.roots import Progress
 
 
@@ -60,8 +67,31 @@ def written(
     said(f"{counted(len(named), 'model')}{data}")
     chapters = write_chapters(named, given.jobs or 0, progress, measured, outside)
     report = compose(chapters, given.day or "", publications)
+    if given.live:
+        report = with_live_pages(report, named, outside)
     published = publish(report, folder, progress, pdf=given.pdf)
     return published, replace(report, warnings=(*left_out, *report.warnings))
+
+
+def with_live_pages(report: Report, named: Mapping[str, Path], allow_outside: tuple[Path, ...]) -> Report:
+    """Return a report with a page with sliders for each model, and links to them at its beginning."""
+    pages: dict[str, bytes] = {}
+    missing: list[str] = []
+    for stem, path in named.items():
+        model = pipeline.load(path, allow_outside)
+        made = attempt(partial(live_page, [(model, model.transfer_functions)], Silent()))
+        if isinstance(made, SymflexError):
+            missing.append(f"{stem} has no page with sliders: {error_text(made)}")
+        else:
+            pages[f"live/{stem}.html"] = made.encode()
+    links = tuple(text(PageLink(name, name)) for name in pages)
+    section = Section("Pages with sliders", links, "live-pages")
+    return replace(
+        report,
+        sections=(report.sections[0], section, *report.sections[1:]),
+        files={**report.files, **pages},
+        warnings=(*report.warnings, *missing),
+    )
 
 
 def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | None = None) -> PublishedReport:

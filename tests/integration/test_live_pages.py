@@ -1,16 +1,20 @@
 """Pages with sliders, opened in Chromium without a network, against the same models in Python."""
 
 import json
+import re
+import sys
 
 import numpy as np
 import pytest
 
+import symflex
 from symflex import pipeline
 from symflex.budget import Silent
 from symflex.live.page import live_page
 from symflex.roots import Modes
 from tests.house.repository import ROOT
 from tests.integration.chromium import Chromium
+from tests.unit.codegen import hostile_names as hostile
 
 PAGES = ("eppinger1988/two_mass", "eppinger1988/sliding_free_beam")
 MORE = (
@@ -90,3 +94,99 @@ def test_a_page_shows_what_python_computes_at_the_same_values(browser, tmp_path,
 @pytest.mark.parametrize("name", MORE)
 def test_more_pages_show_what_python_computes_at_the_same_values(browser, tmp_path, name):
     compared(browser, tmp_path, name)
+
+
+BODY = """
+symflex = 1
+title = '''</title></script><script>window.pwned = 1</script><img src=x onerror="pwned=1">'''
+# A comment that stays.
+[parameters]
+m = { value = "2 kg", doc = "</script><!-- '\\u2028" }
+b = "3 N*s/m"
+k = { value = 0.05, unit = "kN/m", range = ["20 N/m", 0.4], latex = 'k_\\theta' }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+wall = { type = "spring", between = ["x", "ground"], k = "k" }
+loss = { type = "damper", between = ["x", "ground"], b = "b" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+V = "s*x"
+"""
+ACT = """(async () => {
+const one = (s) => document.querySelector(s), frame = () => new Promise(requestAnimationFrame);
+const [slider, field] = [1, 2].map((i) => one(`.parameter:nth-of-type(3) input:nth-of-type(${i})`));
+const put = async (input, value) => {
+    input.value = value;
+    for (const kind of ['input', 'change']) input.dispatchEvent(new Event(kind, { bubbles: true }));
+    await frame();
+    await frame();
+};
+%s
+})()"""
+
+
+def test_the_step_of_an_oscillator_is_that_of_textbooks_and_its_poles_are_proved(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(BODY))
+    said = browser.run(
+        ACT
+        % "await put(field, '0.08'); return [one('svg.step desc').textContent, one('.stability').className,"
+        " symflex.certified('X/F', { k: 80 })];"
+    )
+    assert said[1:] == ["stability stable", True]
+    numbers = [float(x.replace("\u2212", "-")) for x in re.findall(r"[-\u2212\d.e]+(?= at| s)", said[0])]
+    w, zeta = np.sqrt(40), 3 / (2 * np.sqrt(160))
+    for y, time in zip(numbers[::2], numbers[1::2], strict=True):
+        d = w * np.sqrt(1 - zeta**2) * time
+        decay = np.exp(-zeta * w * time) * (np.cos(d) + zeta / np.sqrt(1 - zeta**2) * np.sin(d))
+        assert y == pytest.approx((1 - decay) / 80, rel=1e-3)
+
+
+def test_values_are_undone_linked_and_copied(browser, tmp_path):
+    file = opened(browser, tmp_path, pipeline.loads(BODY))
+    ends = "await put(slider, 0); const low = symflex.parameters.k.value; await put(slider, 400);"
+    script = f"{ends} const high = symflex.parameters.k.value;"
+    script += " one('.undo').click(); await put(field, 0.07);"
+    got = browser.run(ACT % f"{script} return [low, high, symflex.specification(), location.hash];")
+    assert got[:2] == [20, 400]
+    assert "# A comment that stays." in got[2]
+    values = {p.name: float(p.value.nearly) for p in pipeline.loads(got[2]).parameters}
+    assert values == {"m": 2.0, "b": 3.0, "k": 70.0}
+    browser.open("about:blank")
+    browser.open(file.as_uri() + got[3])
+    undone = (
+        "const k = () => symflex.parameters.k.value, now = k(); one('.reset').click(); return [now, k()];"
+    )
+    assert browser.run(ACT % undone) == [70, 50]
+
+
+def test_hostile_names_and_texts_are_shown_and_run_nothing(browser, tmp_path, monkeypatch):
+    names = tuple(dict.fromkeys([*hostile.JAVASCRIPT, *hostile.ODD]))
+    model = hostile.with_prose(hostile.mass_on_springs(names), "</script><script>window.pwned = 1</script>")
+    monkeypatch.setattr("symflex.live.page._formula", lambda tf: "<p></p>")  # no name of these can be read
+    monkeypatch.setattr("symflex.live.page._pieces", lambda model, shown: [])
+    monkeypatch.setattr("symflex.codegen.export.formula_of", lambda tf: (tf.name,))
+    file = opened(browser, tmp_path, model, pipeline.loads(BODY))
+    assert browser.run("[typeof pwned, document.querySelectorAll('script').length]") == ["undefined", 1]
+    assert browser.run("document.querySelectorAll('h1')[1].textContent").startswith("</title></script>")
+    assert browser.complaints() == ([], [file.as_uri()])
+
+
+def test_a_page_without_values_says_which_are_missing_and_draws_when_they_are_there(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(BODY.replace("value = 0.05, ", "")))
+    script = (
+        "const said = one('.missing').textContent; await put(field, 4); return [said, one('.plots').hidden];"
+    )
+    assert browser.run(ACT % script) == ["The plots need values of k: type them, or move the sliders.", False]
+
+
+@pytest.mark.needs_module("anywidget")
+@pytest.mark.filterwarnings("ignore")
+def test_a_notebook_shows_the_page_in_a_frame_and_a_widget_knows_its_values(monkeypatch):
+    page = symflex.loads(BODY).live("X/F")
+    assert "<script" not in page._repr_html_()
+    assert page.widget().page == page.html
+    monkeypatch.setitem(sys.modules, "anywidget", None)
+    with pytest.raises(symflex.SymflexError, match=r"symflex\[notebook\]"):
+        page.widget()

@@ -308,6 +308,16 @@ def test_a_wrong_specification_is_an_error_with_its_place(tmp_path):
         report_on(tmp_path, wrong=SMALL.replace('"24 N/m"', '"24 N"'))
 
 
+def test_pages_with_sliders_stand_beside_a_report_and_no_script_in_it(tmp_path):
+    folder = tmp_path / "models"
+    folder.mkdir()
+    (folder / "small.toml").write_text(SMALL, encoding="utf-8")
+    written = symflex.write_report(folder, tmp_path / "report", pdf=False, live=True)
+    assert 'href="live/small.html"' in written.page.read_text(encoding="utf-8")
+    pages = (written.page, written.page.parent / "live" / "small.html")
+    assert ["<script" in page.read_text(encoding="utf-8") for page in pages] == [False, True]
+
+
 def test_a_folder_without_specifications_is_an_error(tmp_path):
     with pytest.raises(UsageError, match="SF902"):
         find_specifications([tmp_path])
