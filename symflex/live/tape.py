@@ -30,7 +30,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
@@ -66,10 +66,6 @@ ULP = 2.0**-52
 SERIES_TERMS = (20, 80)
 """Lengths of the series about 0 in which the first term is sought, as in ``kernel_function``."""
 
-ZERO = Fraction(0)
-
-Instruction = list[object]
-
 
 def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:
     """Return the tapes of a transfer function's numerator and denominator, or why there are none.
@@ -90,18 +86,11 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
     try:
         bound = bind(tf)
         located = locate(bound, Modes(modes + BEYOND) if tf.is_distributed else Everything(), digits=17)
-        poles, zeros = (list(_parts(tf, bound, i)) for i in (1, 0))
+        sides = {"poles": list(_parts(tf, bound, 1)), "zeros": list(_parts(tf, bound, 0))}
     except SymflexError as error:
         return {"refused": error.diagnostics[0].message}
     start = {"poles": _upper(located.poles), "zeros": _upper(located.zeros)}
-    return {
-        "name": tf.name,
-        "parameters": [names[p.name] for p in tf.parameters],
-        "poles": poles,
-        "zeros": zeros,
-        "start": start,
-        "modes": modes,
-    }
+    return {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "start": start, **sides}
 
 
 def _refusal(tf: AnyTransferFunction) -> str:
@@ -110,13 +99,9 @@ def _refusal(tf: AnyTransferFunction) -> str:
         return "it is evaluated by a product over its roots, whose parameters are fixed"
     if isinstance(tf, NestedTransferFunction) or tf.is_large or tf.length > TERM_LIMIT:
         return "its polynomials would have too many terms"
-    if tf.model.root is not None:
-        return "it is a function of a root of s"
-    if tf.model.imaginary:
-        return "its coefficients are complex"
-    if tf.is_zero:
-        return "it is zero"
-    return ""
+    if tf.model.root is not None or tf.model.imaginary:
+        return "it is a function of a root of s, or its coefficients are complex"
+    return "it is zero" if tf.is_zero else ""
 
 
 def _upper(roots: Sequence[Root]) -> list[list[float]]:
@@ -126,45 +111,42 @@ def _upper(roots: Sequence[Root]) -> list[list[float]]:
 
 
 def _parts(tf: TransferFunction, bound: BoundTransferFunction, number: int) -> Iterator[dict[str, object]]:
-    """Yield what numerator (0) or denominator (1) is a product of, each with its tape."""
+    """Yield what numerator (0) or denominator (1) is a product of, each with its tape.
+
+    Their degree is 0 with kernels; order is that of the zero at s = 0.
+    """
     side, ring = (tf.num, tf.den)[number], tf.ratio.ring
-    if any(side.depends_on(k.generator) for k in tf.kernels.kernels):
-        own = (bound.num, bound.den)[number]
-        function = KernelFunction(bound, own)
-        if function.power > 1:
-            message = f"a part of {tf.name} has no value of its own for every s"
-            raise UncertifiedError(Diagnostic("SF404", message))
-        factor = Factored.number(ring, 1)
-        for wave in tf.kernels.wavenumbers:
-            q = own.ring.generator(wave)
-            factor = factor * Factored.generator(ring, wave) ** (
-                function.part.exponent_of(q) - own.exponent_of(q)
-            )
-        orders = (OriginSeries(ring, tf.kernels, terms=n).order(side * factor) for n in SERIES_TERMS)
-        yield _part(
-            tf, Pieces(tf).side(number, factor), order=next((n for n in orders if n is not None), None)
-        )
+    if not any(side.depends_on(k.generator) for k in tf.kernels.kernels):
+        for polynomial, exponent in side.factors:
+            forge = forge_of(tf.model)
+            value, degree = Generators(forge, tf, is_far=False).polynomial(ring, polynomial)
+            if degree:
+                lowest = min(int(monomial[0]) for monomial in polynomial.monoms())
+                counts = {"degree": degree, "order": lowest, "multiplicity": exponent}
+                yield counts | _taped(tf, straight(forge, [value]))
         return
-    for polynomial, exponent in side.factors:
-        forge = forge_of(tf.model)
-        value, degree = Generators(forge, tf, is_far=False).polynomial(ring, polynomial)
-        if degree:
-            order = min(int(monomial[0]) for monomial in polynomial.monoms())
-            yield _part(tf, straight(forge, [value]), order=order, degree=degree, multiplicity=exponent)
+    own = (bound.num, bound.den)[number]
+    function, factor = KernelFunction(bound, own), Factored.number(ring, 1)
+    for wave in tf.kernels.wavenumbers:
+        q = own.ring.generator(wave)
+        change = function.part.exponent_of(q) - own.exponent_of(q)
+        factor = factor * Factored.generator(ring, wave) ** change
+    orders = [OriginSeries(ring, tf.kernels, terms=n).order(side * factor) for n in SERIES_TERMS]
+    order = next((n for n in orders if n is not None), None)
+    if function.power > 1 or order is None:
+        message = f"a part of {tf.name} has no value of its own for every s"
+        raise UncertifiedError(Diagnostic("SF404", message))
+    counts = {"degree": 0, "order": order, "multiplicity": 1}
+    yield counts | _taped(tf, Pieces(tf).side(number, factor))
 
 
-def _part(
-    tf: TransferFunction, code: tree.Straight, *, order: int | None, degree: int = 0, multiplicity: int = 1
-) -> dict[str, object]:
+def _taped(tf: TransferFunction, code: tree.Straight) -> dict[str, object]:
     """Return the tape of code, with the registers of its value, slope, growth and divisors."""
-    tape = _Tape({p.name: i for i, p in enumerate(tf.parameters)})
-    both = differentiated(code)
-    tape.assign(both)
+    tape, both = _Tape({p.name: i for i, p in enumerate(tf.parameters)}), differentiated(code)
+    for a in both.every:
+        tape.names[a.name] = tape.register(a.value)
     value, slope, *others = (tape.register(v) for v in (*both.values[:2], *both.values[2::2]))
     return {
-        "order": order,
-        "degree": degree,  # 0 with kernels
-        "multiplicity": multiplicity,
         "tape": tape.instructions,
         "value": value,
         "slope": slope,
@@ -178,43 +160,29 @@ class _Tape:
     """Instructions while they are written."""
 
     places: Mapping[str, int]  # of parameters
-    instructions: list[Instruction] = field(default_factory=list)
+    names: dict[str, int] = field(default_factory=dict)  # registers of assigned values
+    instructions: list[tuple[object, ...]] = field(default_factory=list)
     _known: dict[tuple[object, ...], int] = field(default_factory=dict)
-    _names: dict[str, int] = field(default_factory=dict)
 
-    def assign(self, code: tree.Straight) -> None:
-        """Write assignments."""
-        for a in code.every:
-            self._names[a.name] = self.register(a.value)
+    def _write(self, *row: object) -> int:
+        if row not in self._known:
+            self._known[row] = len(self.instructions)
+            self.instructions.append(row)
+        return self._known[row]
 
-    def _write(self, *instruction: object) -> int:
-        if instruction not in self._known:
-            self._known[instruction] = len(self.instructions)
-            self.instructions.append(list(instruction))
-        return self._known[instruction]
-
-    def _number(self, re: Fraction, im: Fraction = ZERO, pi_power: int = 0) -> int:
-        x, y = nearest_double(re, pi_power), nearest_double(im)
+    def _number(self, re: Fraction | int, im: Fraction | int = 0, pi_power: int = 0) -> int:
+        x, y = nearest_double(Fraction(re), pi_power), nearest_double(Fraction(im))
         is_exact = not pi_power and (Fraction(x), Fraction(y)) == (re, im)
         return self._write("#", x, y, 0.0 if is_exact else ULP * (abs(x) + abs(y)))
 
-    def _is_zero(self, register: int) -> bool:
-        return self.instructions[register] == ["#", 0.0, 0.0, 0.0]
+    def _is_zero(self, x: int) -> bool:
+        return self.instructions[x] == ("#", 0.0, 0.0, 0.0)
 
-    def _sum(self, x: int, y: int, sign: str = "+") -> int:
+    def _joined(self, sign: str, x: int, y: int) -> int:
+        """Write a sum, difference or product that zeros do not make needless."""
         if self._is_zero(y):
-            return x
-        return self._write(sign, x, y) if sign == "-" or not self._is_zero(x) else y
-
-    def _negative(self, x: int) -> int:
-        return x if self._is_zero(x) else self._write("-", self._number(ZERO), x)
-
-    def _product(self, x: int, y: int) -> int:
-        zero = next((z for z in (x, y) if self._is_zero(z)), None)
-        return self._write("*", x, y) if zero is None else zero
-
-    def _exponential(self, x: int, re: int, im: int) -> int:
-        return self._write("exp", self._product(x, self._number(Fraction(re), Fraction(im))))
+            return y if sign == "*" else x
+        return self._write(sign, x, y) if sign == "-" or not self._is_zero(x) else x if sign == "*" else y
 
     def register(self, node: tree.CodeNode) -> int:
         """Write what computes an expression, and return its register."""
@@ -228,49 +196,48 @@ class _Tape:
             case tree.Laplace():
                 return self._write("s")
             case tree.Assigned(name):
-                return self._names[name]
-            case tree.ToComplex(operand):
+                return self.names[name]
+            case tree.ToComplex(operand) | tree.LargerRoot(operand):
                 return self.register(operand)
-            case tree.LargerRoot(spelled):
-                return self.register(spelled)
             case tree.Negate(operand):
-                return self._negative(self.register(operand))
+                return self._joined("-", self._number(0), self.register(operand))
             case tree.Add((first, *others)):
                 total = self.register(first)
-                for term in others:
-                    sign, size = ("-", term.operand) if isinstance(term, tree.Negate) else ("+", term)
-                    total = self._sum(total, self.register(size), sign)
+                for x in others:
+                    sign, size = ("-", x.operand) if isinstance(x, tree.Negate) else ("+", x)
+                    total = self._joined(sign, total, self.register(size))
                 return total
             case tree.Multiply(factors):
-                return reduce(self._product, map(self.register, factors))
+                return reduce(partial(self._joined, "*"), map(self.register, factors))
             case tree.Divide(above, below):
-                return self._product(self.register(above), self._write("/", self.register(below)))
+                return self._joined("*", self.register(above), self._write("/", self.register(below)))
             case tree.IntegerPower(base, exponent):
-                return reduce(self._product, [self.register(base)] * exponent)
+                return reduce(partial(self._joined, "*"), [self.register(base)] * exponent)
             case tree.Apply(function, argument):
                 return self._applied(function.removeprefix("complex_"), self.register(argument))
-        message = f"{type(node).__name__} has no enclosure in doubles"
-        raise UncertifiedError(Diagnostic("SF404", message))
+        raise _no_enclosure(type(node).__name__)
 
     def _applied(self, function: str, x: int) -> int:
         match function:
             case "abs":  # what programs add there is less than a rounding: analytic functions do without
-                return self._number(ZERO)
+                return self._number(0)
             case "sqrt":
                 return x if self._is_zero(x) else self._write("sqrt", x)
             case "exp":
-                return self._exponential(x, 1, 0)
+                return self._write("exp", x)
             case "tan" | "tanh":
-                name = "sin" + function[3:]
-                return self._product(
-                    self._applied(name, x), self._write("/", self._applied("cos" + function[3:], x))
-                )
+                above, below = (self._applied(name + function[3:], x) for name in ("sin", "cos"))
+                return self._joined("*", above, self._write("/", below))
             case "cosh" | "sinh" | "cos" | "sin":
-                turn = (0, 1) if len(function) < len("cosh") else (1, 0)
-                up, down = self._exponential(x, *turn), self._exponential(x, -turn[0], -turn[1])
-                if function.startswith("cos"):
-                    return self._product(self._sum(up, down), self._number(Fraction(1, 2)))
-                half = self._number(Fraction(turn[0], 2), Fraction(-turn[1], 2))
-                return self._product(self._sum(up, down, "-"), half)
-        message = f"{function} has no enclosure in doubles"
-        raise UncertifiedError(Diagnostic("SF404", message))
+                turn = (1, 0) if function.endswith("h") else (0, 1)
+                rate, is_even = self._joined("*", x, self._number(*turn)), function.startswith("cos")
+                up, down = (self._write("exp", y) for y in (rate, self._joined("-", self._number(0), rate)))
+                # cosh = (up + down)/2, sinh = (up - down)/2, sin = (up - down)/2j
+                re, im = (1, 0) if is_even else (turn[0], -turn[1])
+                half = self._number(Fraction(re, 2), Fraction(im, 2))
+                return self._joined("*", self._joined("+" if is_even else "-", up, down), half)
+        raise _no_enclosure(function)
+
+
+def _no_enclosure(what: str) -> UncertifiedError:
+    return UncertifiedError(Diagnostic("SF404", f"{what} has no enclosure in doubles"))

@@ -663,9 +663,13 @@ class _PieceMaker:
         scales = self._scales((), {})
         value, taken = self._value(half, (), site, scales)
         growth = [forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()]
+        outside, s = self.plains[number] * taken * factor, self.ring.context.gen(0)
         laws = [c for law in self.table.dispersions for c in (*law.characteristic, law.shift)]
-        divisors = [site.value(c.denominator()) for c in laws if c.denominator().depends_on(LAPLACE)]
-        whole = forge.multiply([site.value(self.plains[number] * taken * factor), value])
+        # Powers of s stand against those of wavenumbers: what they make is a zero at s = 0, if anything.
+        plain = outside.filter(lambda f: f != s and not self._holds(f, self.waves))
+        below = [v.denominator() for v in (plain, *laws)]
+        divisors = [site.value(v) for v in below if v.depends_on(LAPLACE)]
+        whole = forge.multiply([site.value(outside), value])
         return straight(forge, [whole, forge.add(growth), *divisors])
 
     # ----------------------------------------------------------------------------------- real arithmetic
