@@ -76,7 +76,7 @@ _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", 
 _OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
 """Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
 _LEVEL = re.compile(r"\b[12]0\s*\*?\s*log(?:_?10)?\s*(?:db\b)?", re.I)
-"""What a level in dB is: of a power ten times its logarithm, so that both are those of the amplitude."""
+"""What a level in dB is: of a power ten times its logarithm."""
 _LOGARITHM = re.compile(r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|freq|[wz]\b)", re.I)
 _NO_WORD = re.compile(
     rf"{_OTHER_SIZE.pattern}|\b(?:time|zeit|temps|tiempo)\b|^t\b|^f\s*/\s*f|\b(?:shift|detuning)\b", re.I
@@ -260,7 +260,12 @@ def _spelled(written: str) -> tuple[str, float, bool]:
     )
     text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
     text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
-    text = re.sub(r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)", r"\1 \2 [\3]", _LEVEL.sub("dB", text), flags=re.I)
+    text = re.sub(
+        r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)",
+        r"\1 \2 [\3]",
+        _LEVEL.sub(lambda m: "power " * (m[0][0] == "1") + "dB", text),
+        flags=re.I,
+    )
     is_log = bool(_LOGARITHM.match(text))
     text = _LOGARITHM.sub("", text)
     sign = -1.0 if _NEGATIVE.match(text) else 1.0
@@ -441,32 +446,28 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
     groups: dict[int, list[slice]] = {}
     held = [x for x in settings if x.shape == lines.shape and all(np.ptp(x[run]) == 0 for run in runs)]
     for i, part in enumerate(parts):
-        alike = (
-            k
-            for k in groups
-            if parts[k].shape == part.shape
-            and np.allclose(parts[k], part, SAME_FREQUENCY, 0)
-            and all(x[starts[k]] == x[starts[i]] for x in held)
-        )
-        groups.setdefault(next(alike, i), []).append(runs[i])
+        alike = (k for k in groups if all(x[starts[k]] == x[starts[i]] for x in held))
+        alike = (k for k in alike if parts[k].shape == part.shape)
+        first = next((k for k in alike if np.allclose(parts[k], part, SAME_FREQUENCY, 0)), i)
+        groups.setdefault(first, []).append(runs[i])
     is_both_ways = sorted(ways[runs[k].start] for k in groups) == [-1, 1]
     made = []
     for number, (k, same) in enumerate(groups.items(), 1):
-        way = {1: "up", -1: "down"}[ways[runs[k].start]] if is_both_ways else f"sweep {number}"
-        label = " ".join(filter(None, (one.label, way if len(groups) > 1 else "")))
-        values = np.mean([one.values[run] for run in same], axis=0)
-        if one.is_magnitude:
-            size = np.mean([np.abs(one.values[run]) for run in same], axis=0)
-            values = size * np.exp(1j * minimum_phase(parts[k], size))
-        shares = None if one.coherence is None else np.mean([one.coherence[run] for run in same], axis=0)
-        columns = tuple(_below(c, runs[k]) for c in one.columns)
-        made.append(Assembled(label, parts[k], values, shares, one.unit, columns, one.is_magnitude))
-        if len(same) > 1:
-            guesses.append(f"{len(same)} sweeps with the same frequencies are averaged")
-    if len(made) > 1:
-        guesses.append(
-            f"sweeps with other frequencies or directions are kept apart: {', '.join(m.label for m in made)}"
+        way = {1: " up", -1: " down"}[ways[runs[k].start]] if is_both_ways else f" sweep {number}"
+        known = (x for x in (one.values, np.abs(one.values), one.coherence) if x is not None)
+        values, size, *shares = (np.mean([x[run] for run in same], axis=0) for x in known)
+        made.append(
+            replace(
+                one,
+                label=(one.label + way * (len(groups) > 1)).strip(),
+                frequency_hz=parts[k],
+                values=size * np.exp(1j * minimum_phase(parts[k], size)) if one.is_magnitude else values,
+                coherence=shares[0] if shares else None,
+                columns=tuple(_below(c, runs[k]) for c in one.columns),
+            )
         )
+    apart = ", or kept apart: " + ", ".join(m.label for m in made) if len(made) > 1 else ""
+    guesses.append(f"{len(runs)} sweeps: those with the same frequencies are averaged{apart}")
     return made
 
 
@@ -765,6 +766,14 @@ def _decided(
     magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: list[str], columns: Sequence[DataColumn]
 ) -> tuple[Real, Real]:
     """Return magnitude and phase [rad], with the scale and unit that names or numbers say."""
+    if magnitude.meaning.kind == "power":
+        levels = magnitude.numbers * (2 if magnitude.meaning.scale == "decibel" else 1)
+        itself = replace(magnitude, numbers=levels, meaning=replace(magnitude.meaning, kind="magnitude"))
+        radians = phase.numbers.real * (phase.meaning.factor or np.pi / 180)
+        root_fit, own_fit = (_misfit(lines, _plain_size(c), radians) for c in (magnitude, itself))
+        magnitude = itself if own_fit < root_fit else magnitude
+        which = "the response itself" if own_fit < root_fit else "the square of the magnitude"
+        guesses.append(f"{_called(magnitude, 'the power')} is {which}, which fits the phase")
     scales = ["linear", "decibel"] if magnitude.meaning.scale == "unknown" else [magnitude.meaning.scale]
     if len(scales) > 1 and np.any(magnitude.numbers.real <= 0):
         scales = ["decibel"]
@@ -856,6 +865,12 @@ def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
     return abs(float(np.log((energies[1] + 1e-12) / (energies[0] + 1e-12))))
 
 
+def _misfit(lines: Real, size: Real, phase: Real) -> float:
+    """Return how unlike a causal function, and one of minimum phase and either sign, a response is."""
+    alike = np.nan_to_num(np.abs(np.cos(phase - minimum_phase(lines, size))))
+    return _unlikeness(lines, size, phase) + float(np.mean(1 - alike))
+
+
 def minimum_phase(lines: Real, size: Real) -> Real:
     """Return the phase [rad] that the magnitude of a function without zeros on the right has.
 
@@ -921,6 +936,8 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
     return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
 
 
+MOST_COMPARED: Final = 1000
+"""Lines by which readings are compared."""
 _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
 """Words of ``--columns`` that make a response in pairs."""
 
@@ -930,7 +947,8 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
 
     Nothing is offered that a name contradicts, or the numbers; readings that fit far worse are left out.
     """
-    is_indexed = len(columns) > 2 and counts(columns[0].numbers) and _is_rising(columns[1].numbers)  # noqa: PLR2004
+    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
+    is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
     if re.search(r"\b(?:time|zeit|temps|tiempo)\b|^t\b", columns[axis].name, re.I):
         return f"'{columns[axis].name[:30]}' is no frequency: --columns t,u,y reads a record in time"
@@ -940,10 +958,14 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
     open_ones: list[int] = []
     for i, c in enumerate(columns):
-        is_other = c.meaning.kind in ("coherence", "frequency") or bool(pair and c not in pair)
-        is_other = is_other or bool(_NO_WORD.search(c.name))
+        if (
+            c.meaning.kind in ("coherence", "frequency")
+            or _NO_WORD.search(c.name)
+            or (pair and c not in pair)
+        ):
+            continue
         is_again = any(_is_same(c.numbers.real, columns[k].numbers.real) for k in open_ones)
-        if not (is_other or is_again or np.array_equal(c.numbers, columns[axis].numbers)):
+        if not is_again and not np.array_equal(c.numbers, columns[axis].numbers):
             open_ones.append(i)
     open_ones = open_ones[is_indexed and axis == 0 :] if len(open_ones) > 2 else open_ones  # noqa: PLR2004
 
@@ -966,10 +988,6 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     return f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"
 
 
-def _is_rising(numbers: npt.NDArray[Any]) -> bool:
-    return bool(np.all(np.diff(numbers.real) > 0))
-
-
 def _is_same(values: Real, other: Real) -> bool:
     """Return whether a column has the numbers of another, perhaps as a ratio where that is in dB."""
     with np.errstate(all="ignore"):
@@ -979,35 +997,30 @@ def _is_same(values: Real, other: Real) -> bool:
 
 def _may_be(column: DataColumn, word: str) -> bool:
     """Return whether neither the name of a column nor its numbers contradict a word of ``--columns``."""
-    meaning, asked = column.meaning, meaning_of(word)
+    meaning, asked, numbers = column.meaning, meaning_of(word), column.numbers.real
     if meaning.kind and (meaning.kind != asked.kind or {meaning.factor, asked.factor} == {1.0, np.pi / 180}):
         return False
-    if word == "psd":
-        return bool(meaning.kind)
+    are_sizes = bool(np.all(numbers > 0))
     if word == "mag":
-        return meaning.scale != "decibel" and not np.any(column.numbers.real <= 0)
-    if (
-        word == "mag_db"
-        and not np.any(column.numbers.real <= 0)
-        and np.ptp(column.numbers.real) < LEAST_LEVELS
-    ):
-        return meaning.scale == "decibel"
-    return word != "mag_db" or meaning.scale in ("decibel", "unknown") or not meaning.kind
+        return are_sizes and meaning.scale != "decibel"
+    if word == "mag_db" and meaning.scale != "decibel":
+        is_open = meaning.scale == "unknown" or not meaning.kind
+        return is_open and not (are_sizes and np.ptp(numbers) < LEAST_LEVELS)
+    return word != "psd" or bool(meaning.kind)
 
 
 def _likely(
     columns: Sequence[DataColumn], axis: int, open_ones: Sequence[int], margin: float
 ) -> list[tuple[tuple[str, str], tuple[int, int]]]:
     """Return the readings of two columns as one response, words and places, the likeliest first."""
+    columns = [replace(c, numbers=c.numbers[:: c.numbers.size // MOST_COMPARED + 1]) for c in columns]
     lines, costs = np.asarray(columns[axis].numbers.real, np.float64), {}
     are_known = any(columns[i].meaning.kind for i in open_ones)
     for pair, words in product(permutations(open_ones[:MOST_LISTED], 2), _READINGS):
         one, two = (columns[i] for i in pair)
         kinds = {one.meaning.kind, two.meaning.kind}
         is_other = kinds in ({""}, {"", "magnitude"}) if are_known else pair[0] > pair[1]
-        if is_other:
-            continue
-        if not all(_may_be(columns[i], word) for i, word in zip(pair, words, strict=True)):
+        if is_other or not (_may_be(one, words[0]) and _may_be(two, words[1])):
             continue
         with np.errstate(all="ignore"):
             if words[0] == "re":
@@ -1016,8 +1029,7 @@ def _likely(
             else:
                 size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
                 turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
-            off = np.nan_to_num(np.abs(np.cos(turn - minimum_phase(lines, size))))
-        costs[words, pair] = _unlikeness(lines, size, turn) + float(np.mean(1 - off))
+            costs[words, pair] = _misfit(lines, size, turn)
     best = min(costs.values(), default=0.0)
     near = [reading for reading in costs if costs[reading] <= best + margin]
     return sorted(near, key=costs.__getitem__)[:3]

@@ -252,17 +252,13 @@ def _responses(
     if asked:
         meanings = columns_asked(asked, len(columns), [c.name for c in columns])
         better = re.search(r"--columns ([^\s,]+(?:,[^\s,]+)*)", ask(columns))
-        if better and {"real", "phase"} & {m.kind for m in meanings}:
-            used = [[bool(word.strip("- ")) for word in option.split(",")] for option in (better[1], asked)]
-            if better[1] != asked and (used[0] == used[1] or not header):
+        if better and better[1] != asked and {"real", "phase"} & {m.kind for m in meanings}:
+            places = {tuple(bool(w.strip("- ")) for w in words.split(",")) for words in (asked, better[1])}
+            if len(places) == 1 or not header:
                 guesses.append(f"names and numbers look more like --columns {better[1]}")
-        # A plain f has the unit that the header gives.
-        is_kept = [
-            c.meaning.kind == m.kind == "frequency" and m.word == "f" and not m.unit
-            for c, m in zip(columns, meanings, strict=True)
-        ]
-        triples = zip(columns, meanings, is_kept, strict=True)
-        columns = [c if is_own else replace(c, meaning=m) for c, m, is_own in triples]
+        for i, (c, m) in enumerate(zip(columns, meanings, strict=True)):
+            is_kept = c.meaning.kind == m.kind == "frequency" and m.word == "f" and not m.unit
+            columns[i] = c if is_kept else replace(c, meaning=m)  # a plain f has the unit of the header
         return assembled(columns, name, header, is_asked=True)
     implied = _IMPLIED.get(Path(name).suffix.lower())
     if implied and header is None and len(columns) == 3:  # noqa: PLR2004

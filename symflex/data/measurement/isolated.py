@@ -64,12 +64,9 @@ def main(library: str, limit: int) -> None:
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    found: Arrays = {}
-    for name, array in _LIBRARIES[library](BytesIO(sys.stdin.buffer.read())).items():
-        limit -= array.nbytes
-        if limit < 0 or len(found) >= VARIABLES_LIMIT:
-            raise OverflowError
-        found[name] = array
+    found = _LIBRARIES[library](BytesIO(sys.stdin.buffer.read()))
+    if sum(array.nbytes for array in found.values()) > limit or len(found) > VARIABLES_LIMIT:
+        raise OverflowError
     np.savez(sys.stdout.buffer, np.array(list(found), "U"), *found.values())
 
 
@@ -90,14 +87,13 @@ def _sheet(file: BytesIO) -> Arrays:
 
 
 def _datasets(file: BytesIO) -> Arrays:
-    """Return the datasets of an HDF5 file with numbers or text, and the numbers among attributes."""
+    """Return the datasets of an HDF5 file with numbers or text."""
     h5py = installed("h5py")
     found: Arrays = {}
     walked = set()
 
     def walk(group: Any, path: str, depth: int) -> None:  # noqa: ANN401 (a library without types)
         walked.add(group)
-        found.update({f"{path}{k}": np.asarray(v) for k, v in group.attrs.items() if np.isscalar(v)})
         for name in group:
             if not isinstance(group.get(name, getlink=True), h5py.HardLink) or name.startswith("#"):
                 continue
@@ -125,19 +121,16 @@ def _channels(file: BytesIO) -> Arrays:
     channels = [c for g in installed("nptdms").TdmsFile.read(file).groups() for c in g.channels()]
     many = Counter(channel.name for channel in channels)
     found: Arrays = {}
-    for channel in channels:
-        name = channel.name if many[channel.name] == 1 else f"{channel.group_name} {channel.name}"
-        values, about = np.asarray(channel[:]), channel.properties
-        if values.dtype.kind not in "fciu":
-            continue
-        found[name.replace(".", " ")] = values
+    for c in channels:
+        name = c.name if many[c.name] == 1 else f"{c.group_name} {c.name}"
+        values, about = np.asarray(c[:]), c.properties
+        found |= {name.replace(".", " "): values} if values.dtype.kind in "fciu" else {}
         if step := about.get("wf_increment"):
             is_spectrum = re.search(
                 "freq|hz", f"{about.get('wf_xname')} {about.get('wf_xunit_string')}", re.I
             )
-            start = about.get("wf_start_offset", 0.0)
-            axis = {"frequency_hz": start + step * np.arange(values.size)}
-            found |= axis if is_spectrum else {"dt": np.asarray(step)}
+            axis = about.get("wf_start_offset", 0.0) + step * np.arange(values.size)
+            found |= {"frequency_hz": axis} if is_spectrum else {"dt": np.asarray(step)}
     return found
 
 

@@ -63,6 +63,9 @@ def text_files():  # noqa: PLR0915 - one statement a file
             (second,),
         )
     yield Saved("power.csv", ("f (Hz),Power ratio (10log10 dB),Phase (deg)\n" + rows(F, DB, DEG)).encode())
+    yield Saved(
+        "power_itself.csv", ("f,Power ratio (10log10 dB),Phase (deg)\n" + rows(F, DB / 2, DEG)).encode()
+    )
     yield Saved("power_plain.csv", ("f (Hz),Power,Phase (deg)\n" + rows(F, SIZE**2, DEG)).encode())
     yield Saved(
         "shift.dat",

@@ -43,6 +43,8 @@ def test_each_is_read_as_it_was_saved(tmp_path, half):
 
 GUESSES = {
     "relative_no.csv": "'Channel 2 Magnitude (dB)' over 'Channel 1 Magnitude (dB)'",
+    "power_itself.csv": "'Power ratio (10log10 dB)' is the response itself, which fits the phase",
+    "power.csv": "is the square of the magnitude, which fits the phase",
     "shift.dat": "the frequency is 'Frequency Shift (Hz)' plus 'Center Frequency (Hz)'",
     "potentiostat.par": "'E', 'I' beside the impedance: signals, no responses, and left out",
     "many.mat": "the values are h",
@@ -347,7 +349,7 @@ def test_sweeps_with_the_same_frequencies_are_averaged_and_up_and_down_kept_apar
     path.write_text("f,re,im\n" + rows(F, 2 * RE, IM) + rows(F, 0 * RE, IM))
     (found,) = read_measurement(path)
     assert found.values == pytest.approx(H)
-    assert "2 sweeps with the same frequencies are averaged" in found.guesses
+    assert "2 sweeps: those with the same frequencies are averaged" in found.guesses
     path.write_text("f,re,im\n" + rows(F, RE, IM) + rows(F[::-1], 3 * RE[::-1], 3 * IM[::-1]))
     found = read_measurement(path)
     assert [one.name for one in found] == ["up", "down"]
