@@ -255,10 +255,11 @@ def _with_axes(arrays: Arrays) -> Arrays:
         own = {k: a for k, a in beside.items() if k.lower().startswith("h")} or beside
         return {"f": next(iter(own.values()))[:, 0].real} | {k: a[:, 1] for k, a in own.items()}
     pairs = {k: a for k, a in tables.items() if a.dtype.kind in "fi" and np.any(a < 0)}
-    with_axes |= {k: a[:, 0] + 1j * a[:, 1] for k, a in pairs.items()}
-    if pairs and {"f_start", "df"} <= with_axes.keys():
+    with_axes |= {k: np.array(a, np.float64, order="C").view(np.complex128)[:, 0] for k, a in pairs.items()}
+    ends = [with_axes[k] for k in ("f_start", "df") if k in with_axes]
+    if pairs and [(e.size, e.dtype.kind in "fiu") for e in ends] == [(1, True)] * 2:
         count = len(next(iter(pairs.values())))
-        with_axes["f"] = with_axes["f_start"].item() + with_axes["df"].item() * np.arange(count)
+        with_axes["f"] = ends[0].item() + ends[1].item() * np.arange(count)
     return with_axes
 
 

@@ -426,6 +426,7 @@ def assembled(
     return made, list(dict.fromkeys(guesses))
 
 
+@np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
 def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> list[Assembled]:
     """Return the sweeps of a response that goes through its band more than once.
 
@@ -942,6 +943,7 @@ _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "pha
 """Words of ``--columns`` that make a response in pairs."""
 
 
+@np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
 def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, ...] = ()) -> str:
     """Return the hint with the option that says what columns are, or a pair, the likeliest reading first.
 
@@ -990,9 +992,8 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
 
 def _is_same(values: Real, other: Real) -> bool:
     """Return whether a column has the numbers of another, perhaps as a ratio where that is in dB."""
-    with np.errstate(all="ignore"):
-        ways = (other, 10 ** (other / 20), 20 * np.log10(other))
-        return any(np.mean(np.abs(values / way - 1) <= SAME_SIZE) > MOST_ALIKE for way in ways)
+    ways = (other, 10 ** (other / 20), 20 * np.log10(other))
+    return any(np.mean(np.abs(values / way - 1) <= SAME_SIZE) > MOST_ALIKE for way in ways)
 
 
 def _may_be(column: DataColumn, word: str) -> bool:
@@ -1022,14 +1023,13 @@ def _likely(
         is_other = kinds in ({""}, {"", "magnitude"}) if are_known else pair[0] > pair[1]
         if is_other or not (_may_be(one, words[0]) and _may_be(two, words[1])):
             continue
-        with np.errstate(all="ignore"):
-            if words[0] == "re":
-                values = one.numbers.real + 1j * two.numbers.real
-                size, turn = np.abs(values), np.unwrap(np.angle(values))
-            else:
-                size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
-                turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
-            costs[words, pair] = _misfit(lines, size, turn)
+        if words[0] == "re":
+            values = one.numbers.real + 1j * two.numbers.real
+            size, turn = np.abs(values), np.unwrap(np.angle(values))
+        else:
+            size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
+            turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
+        costs[words, pair] = _misfit(lines, size, turn)
     best = min(costs.values(), default=0.0)
     near = [reading for reading in costs if costs[reading] <= best + margin]
     return sorted(near, key=costs.__getitem__)[:3]

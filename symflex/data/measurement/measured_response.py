@@ -228,6 +228,7 @@ def are_few(wrong: npt.NDArray[np.bool_]) -> bool:
     return float(np.mean(wrong[good[0] : good[-1] + 1])) <= MOST_LEFT_OUT
 
 
+@np.errstate(invalid="ignore")  # infinite frequencies
 def _ordered(
     response: MeasuredResponse, span_of: Callable[[int, str], Span | None]
 ) -> tuple[npt.NDArray[np.intp], list[str]]:
