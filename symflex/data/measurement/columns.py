@@ -104,6 +104,7 @@ _SUFFIX = re.compile(
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
+WITHOUT_TIME: Final = "of a record in time, write the sampling time above the columns, as in '# dt: 0.01 s'"
 WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ say them"
 UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
@@ -958,6 +959,10 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return WITHOUT_AXIS
     if _NO_WORD.search(columns[axis].name):
         return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
+    steps = np.sign(np.diff(columns[axis].numbers.real))
+    most = max(np.sum(steps > 0), np.sum(steps < 0))
+    if not columns[axis].meaning.kind and most < MOST_ALIKE * steps.size:
+        return WITHOUT_TIME
     open_ones: list[int] = []
     for i, c in enumerate(columns):
         if (

@@ -43,7 +43,8 @@ SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in w
 _UNIT: Final = "|".join(SECONDS)
 TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
-    r"(?:t|tout|time|times|timestamp|zeit|temps|tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
+    r"(?:t|tout|times?|time[ _]?stamp|zeit|temps|tiempo|tempo|tid|tijd|"
+    r"\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
     rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT})[\])]?)?|x_value|"
     rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
     re.I,
@@ -166,7 +167,7 @@ def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, 
     below: list[str] = []
     for line in reversed(table.lines[:first]):
         text = line.strip().lstrip(SIGNS) if line.strip().startswith(COMMENTS) else line
-        ways = cut(text, table.delimiter), re.split(r"\t|\s{2,}|(?<=[\])])\s+", text.strip())
+        ways = cut(text, table.delimiter), re.split(r"\s*[,;\t]\s*|\s{2,}|(?<=[\])])\s+", text.strip())
         for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
             for i, name in enumerate(names[:-1]):

@@ -8,8 +8,8 @@ frequency responses; ``None`` for a file of anything else::
     0,0;0,00;0,01
     1,0;0,12;0,03
 
-An input is known by its name, else it is the first of several channels, and that is said. Channels that
-differ in their last letter or number alone, ``accel_x, accel_y``, are outputs without an input.
+An input is known by its name, else it is the first of several channels, and that is said. Where channels
+differ in their last letter or number alone, ``accel_x, accel_y``, all are outputs without an input.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ SEARCHED: Final = 300
 """Lines among which the names of columns and the first row are sought."""
 BEGIN: Final = 4
 """Samples by which it is judged where a record begins."""
+LONG: Final = 100.0
+"""Sampling time [s] from which a time without a unit may be in milliseconds or microseconds."""
 FEWEST_SAMPLES: Final = 32
 """Fewer make no response."""
 JITTER: Final = 0.02
@@ -51,13 +53,14 @@ SATURATED: Final = 4
 """Samples one after the other at an end of a channel's range, from which it looks cut off."""
 
 _INPUT = re.compile(
-    r"(?:u|in|inp|input|eingang|entr[eé]e|f|force|kraft|hammer|impact|exc|excitation|anregung|drive|actuator|"
-    r"stim|stimulus|ref|reference|r|cmd|command|set[ _]?point|torque|moment)(?:[ _]?\d+)?",
+    r"(?:u|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
+    r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
+    r"stimulus|reference|command|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
     re.I,
 )
 _RATE = re.compile(r"(?:sampl\w*|scan)[ _.]*(?:rate|freq\w*)|(?<![a-z])f_?s(?![a-z])|abtastrate", re.I)
 _INTERVAL = re.compile(
-    r"(?:sampl\w*|record)[ _.]*(?:interval|period|time|length)|"
+    r"sampl\w*[ _.]*(?:interval|period|time)|"  # "record length" is a number of samples
     r"(?<![a-z])(?:dt|delta[ _]?[tx]|[tx]_?incr\w*|t_?s)(?![a-z])",
     re.I,
 )
@@ -66,7 +69,8 @@ _HERTZ: Final = {"": 1.0, "hz": 1.0, "khz": 1e3, "mhz": 1e6, "s/s": 1.0, "sps": 
 _ALIKE = re.compile(r"[ _.-]?(?:[xyz]|\d+)$", re.I)
 _OF_AN_INSTRUMENT: Final = {"ch", "channel", "kanal", "ai", "trace", "in", "col", "column"}
 """What channels are called whatever they measure."""
-_FREQUENCY = re.compile(r"freq|fr\u00e9q|omega|\brad/s\b", re.I)
+_FREQUENCY = re.compile(r"freq|fr\u00e9q|omega", re.I)
+_SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz", re.I)
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
 _IN_BRACKETS = re.compile(r"\s*[\[(](.*?)[\])]\s*$")
 
@@ -113,7 +117,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if not is_asked and not _may_be_record(data):
         return None
     table = TextTable.of(name, data)
-    first = next((i for i in range(min(SEARCHED, len(table.lines))) if table.is_row(i)), None)
+    first = next((i for i in range(min(SEARCHED, len(table.lines))) if _is_row(table, i)), None)
     if first is None:
         return None
     width = len(cut(table.lines[first], table.delimiter))
@@ -132,6 +136,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         times = columns[at] * float(unit) + float(start)
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i != at]
         step, kept = _even(times, table, lines, guesses)
+        if step > LONG:
+            guesses.append(f"samples are {step:.6g} s apart; --columns t_us,u,y if that is another unit")
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None
@@ -143,7 +149,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
 def _is_frequency(name: str) -> bool:
     """Tell whether a name is that of a frequency or of a spectrum; a force may be called F."""
     is_named = meaning_of(name).kind == "frequency" and bare(name).lower() != "f"
-    return is_named or bool(_SPECTRUM.search(name))
+    return (is_named and not _SPEED.search(name)) or bool(_SPECTRUM.search(name))
 
 
 def _may_be_record(data: bytes) -> bool:
@@ -152,9 +158,17 @@ def _may_be_record(data: bytes) -> bool:
     if not (TIME.search(head) or _RATE.search(head) or _INTERVAL.search(head)):
         return False
     lower = data.lower()
-    if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q", b"omega", b"rad/s")):
+    if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q", b"omega")):
         return True
     return not _FREQUENCY.search(_RATE.sub("", data.decode("latin-1")))
+
+
+def _is_row(table: TextTable, index: int) -> bool:
+    """Tell whether a line begins with a number and has another, or nothing else; cells may be empty."""
+    if table.is_row(index):
+        return True
+    cells = [number(c, table.decimal) for c in cut(table.lines[index], table.delimiter)]
+    return isinstance(cells[0], float) and sum(isinstance(c, float) for c in cells) > 1 if cells else False
 
 
 def _names(table: TextTable, first: int, width: int) -> list[str]:
@@ -207,13 +221,20 @@ def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tu
         pass  # some cell is no plain number
     rows = [cut(table.lines[i], table.delimiter) for i in lines]
     read = [[number(c, table.decimal) for c in row[:width]] + [None] * (width - len(row)) for row in rows]
-    wrong = np.array([any(not isinstance(x, float) for x in row) for row in read])
+    empty = np.array([[not isinstance(x, float) for x in row] for row in read])
+    sparse = np.flatnonzero(empty.mean(axis=0) > 0.5).tolist()  # noqa: PLR2004 (most of its cells)
+    wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
         hint = "a record in time has a number in every column"
         raise DataError(Diagnostic("SF603", "a line holds something else than numbers", place, hint))
-    listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
-    guesses.append(f"left out what holds no number: line {listed}")
+    if sparse:
+        many = ", ".join(str(i + 1) for i in sparse[:12])
+        guesses.append(f"columns in which most cells hold no number are left out: {many}")
+        read = [[np.nan if i in sparse else x for i, x in enumerate(row)] for row in read]
+    if wrong.any():
+        listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
+        guesses.append(f"left out what holds no number: line {listed}")
     good = [row for row, is_wrong in zip(read, wrong.tolist(), strict=True) if not is_wrong]
     return list(np.array(good, float).T), [i for i, w in zip(lines, wrong.tolist(), strict=True) if not w]
 
@@ -315,25 +336,32 @@ def _sorted(
     channels: list[tuple[str, Real]], step: float, stem: str, name: str, guesses: list[str]
 ) -> TimeRecord:
     """Return the record with its input chosen among the channels."""
+    channels = [(c, x) for c, x in channels if not (np.isnan(x).all() or np.all(np.diff(x) == 1))]
     for channel, values in channels:
         if not np.isfinite(values).all():
             place = int(np.argmin(np.isfinite(values))) + 1
             message = f"'{name}': sample {place} of '{channel[:40]}' is not a finite number"
             raise DataError(Diagnostic("SF603", message, None, "leave the line out"))
+    for channel, values in channels:
+        if _INPUT.fullmatch(channel) and np.ptp(values) == 0 and values[0]:
+            guesses.append(f"'{channel[:30]}' is constant: a step from 0 at the first sample")
+            channels = [(c, np.append(0.0 if c == channel else x[0], x)) for c, x in channels]
+            break
     dead = [channel for channel, values in channels if np.ptp(values) == 0]
     channels = [(c, x) for c, x in channels if c not in dead]
     if dead:
         guesses.append(f"'{dead[0][:30]}' never changes and is left out")
     if not channels:
-        raise DataError(Diagnostic("SF602", f"'{name}' has a time and no channel that changes"))
+        raise DataError(Diagnostic("SF602", f"'{name}' has a time and no channel of numbers that changes"))
     for channel, values in channels:
         if cut_off := _cut_off(values):
             guesses.append(f"'{channel[:30]}' stays at {cut_off:.4g} for several samples: is it saturated?")
     named = [c for c, _ in channels if _INPUT.fullmatch(c)]
-    family = {_ALIKE.sub("", c).lower() for c, _ in channels}
+    family = Counter(_ALIKE.sub("", c).lower() for c, _ in channels)
+    alike, many = family.most_common(1)[0]
     if named:
         source = named[0]
-    elif len(channels) == 1 or (len(family) == 1 and not family & _OF_AN_INSTRUMENT):
+    elif len(channels) == 1 or (many > 1 and alike not in _OF_AN_INSTRUMENT):
         return TimeRecord(stem, step, tuple(channels), None, tuple(guesses))
     else:
         source = channels[0][0]

@@ -124,6 +124,8 @@ def test_poles_are_within_their_standard_errors(tmp_path, kind):
         ("Zeit [ms];Weg;Force", "Force", ["Weg"]),
         ("#time,accel_x,accel_y", None, ["accel_x", "accel_y"]),
         ("Time (s),Hammer (N),Accel (g)", "Hammer", ["Accel"]),
+        ("Time Stamp, Velocidad (rad/s), PWM", "PWM", ["Velocidad"]),
+        ("Time,ADC,DAC", "DAC", ["ADC"]),
     ],
 )
 def test_headers_say_which_column_is_what(head, source, outputs):
@@ -139,7 +141,7 @@ def test_headers_say_which_column_is_what(head, source, outputs):
 def test_a_rate_above_the_columns_is_the_sampling_time():
     rows = "\n".join(f"{np.sin(i):.5f},{np.cos(i):.5f}" for i in range(64))
     for line, step in (("Sampling rate: 2 kHz", 5e-4), ("Sample interval = 0.5 ms", 5e-4), ("dt,0.01", 0.01)):
-        record = read_record("a.csv", f"{line}\nforce,y\n{rows}\n".encode(), "a")
+        record = read_record("a.csv", f"Record Length,64\n{line}\nforce,y\n{rows}\n".encode(), "a")
         assert record.step_s == pytest.approx(step), line
         assert record.input[0] == "force"
 
