@@ -1,7 +1,7 @@
 // The page: values of parameters, roots that follow them, and what is drawn of both.
 
 const SVG = "http://www.w3.org/2000/svg", TAU = 2 * Math.PI, COLOURS = 6, PLOTS = ["magnitude", "phase", "map", "step"];
-const STEPS = 400, LINES = 400, INSTANTS = 400, NODES = 64;
+const NOTCHES = 400, LINES = 400, INSTANTS = 400, NODES = 64;
 const AROUND = [-30, -10, -4, -2, -1, -0.5, 0.5, 1, 2, 4, 10, 30];  // lines about a resonance, in its half widths
 
 const over = (a, b, c, d) => [(a * c + b * d) / (c * c + d * d), (b * c - a * d) / (c * c + d * d)];
@@ -199,14 +199,14 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     const isLog = (p) => p.low * p.high > 0, written = (p, x = values[p.id]) => (x === null ? NaN : Number((x / p.scale).toPrecision(12)));
     const place = (p, x) => {
         const [a, b, y] = [p.low, p.high, x].map((v) => (isLog(p) ? Math.log(Math.abs(v)) : v));
-        return STEPS * (y - a) / (b - a);
+        return NOTCHES * (y - a) / (b - a);
     };
     const at = (p, t) => Number((isLog(p) ? p.low * (p.high / p.low) ** t : p.low + (p.high - p.low) * t).toPrecision(4));
     const sync = () => {
         parameters.forEach((p, i) => {
             const x = written(p), isThere = !Number.isNaN(x);
             if (document.activeElement !== fields[i]) fields[i].value = isThere ? String(Number(x.toPrecision(6))) : "";
-            sliders[i].value = isThere ? place(p, x) : STEPS / 2;
+            sliders[i].value = isThere ? place(p, x) : NOTCHES / 2;
             sliders[i].setAttribute("aria-valuetext", isThere ? `${short(x, 6)} ${p.unit}` : "no value");
         });
         one(".undo").disabled = !earlier.length;
@@ -237,7 +237,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         sliders[i].disabled = fields[i].disabled = !p.moves;
         rows[i].classList.toggle("fixed", !p.moves);
         if (!p.moves) rows[i].title = "fixed: the functions hold its number";
-        sliders[i].addEventListener("input", () => put({ [p.id]: at(p, Number(sliders[i].value) / STEPS) * p.scale }));
+        sliders[i].addEventListener("input", () => put({ [p.id]: at(p, Number(sliders[i].value) / NOTCHES) * p.scale }));
         fields[i].addEventListener("input", () => {
             const x = fields[i].value === "" ? NaN : Number(fields[i].value);
             const isGood = Number.isFinite(x) && (p.assume === "real" || x > 0 || (x === 0 && p.assume === "nonnegative"));
