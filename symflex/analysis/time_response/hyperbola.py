@@ -35,10 +35,8 @@ MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi
 """Angle a of the path, how far the outermost hyperbolas are turned from it, and more than arg z on them."""
 TURNS = (12.0, 2000.0)
 """mu times the last time on a path: the first takes the fewest points, the second some seconds."""
-BAND = 6.0
-"""Ratio of the last time on a path to the first."""
-SPARE = 10.0
-"""ln of what bounds may be larger than values."""
+BAND, SPARE = 6.0, 10.0
+"""Ratio of the last time on a path to the first, and ln of what bounds may be larger than values."""
 
 
 def along_hyperbolas(asked: Asked) -> Sampled:
@@ -47,17 +45,16 @@ def along_hyperbolas(asked: Asked) -> Sampled:
     Raises ModelError: SF910 where the function is not known far out, as with dead times, after very many time
     constants, and at t = 0 where it is infinite.
     """
-    bound = asked.bound
+    bound, digits = asked.bound, asked.digits
     far = FunctionFarOut.of(bound, ceil(STEEPEST / bound.sheets / (pi / 2) * SECTORS))
     orders = [sum(degree_in(f, 0) * e for f, e in law.shift.factors) for law in bound.kernels.dispersions]
     if far is None or any(order >= bound.sheets for order in orders):
         raise _unavailable(bound, "not all waves decay as the root of s does")
-    values: list[arb] = []
-    for digits in (asked.digits, 2 * asked.digits, 4 * asked.digits):
-        values = []
+    for factor in (1, 2, 4):
+        values: list[arb] = []
         while len(values) < len(asked.times):
-            values = [*_last_before(asked, len(asked.times) - len(values), digits, far), *values]
-        if is_precise(values, asked.digits):
+            values = [*_last_before(asked, len(asked.times) - len(values), factor * digits, far), *values]
+        if is_precise(values, digits):
             break
         asked = asked if asked.times.is_exact else replace(asked, times=asked.times.one_by_one())
     return Sampled(tuple(values), method="hyperbolas")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, degree_in
+from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
 from symflex.algebra.exponential_sum import REAL, Exponent, combination
 from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import Value, at_centre, expansion, precision, precisions
@@ -100,15 +100,13 @@ class KernelFunction:
     @cached_property
     def is_even(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
-        return self.is_mirrored and not any(kernel.function == "exp" for kernel in self._own_kernels)
+        used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
+        return self.is_mirrored and not any(kernel.function == "exp" for kernel in used)
 
     @cached_property
     def is_mirrored(self) -> bool:
-        """Proved: F(-s) is F(s) or -F(s) times an exponential; roots mirror each other as those of even ones.
-
-        ``1 + exp(-2 s)`` is ``2 exp(-s) cosh(s)``.
-        """
-        kernels = self._own_kernels
+        """Proved: F(-s) is F(s) or -F(s) times an exponential, as of ``1 + exp(-2 s)``, so that roots do."""
+        kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
         # Another part's dispersion relation may be lopsided.
         laws = [
             law
@@ -118,21 +116,17 @@ class KernelFunction:
         ]
         decays = [k for k in kernels if k.function == "exp"]
         odd = [k.dispersion.shift for k in decays if not (k.wavenumber or k.length.depends_on("s"))]
-        shifts = [law.shift for law in laws if not law.shift.is_zero]
-        values = [value for law in laws for value in law.coefficients if value is not law.shift]
+        even = [value for law in laws for value in law.coefficients if value is not law.shift]
         places = [self.part.ring.index[k.generator] for k in decays]
+        signs = [([_parity(f) for f, _ in v.factors], [e for _, e in v.factors]) for v in (*odd, *even)]
         return (
             len(odd) == len(decays)
-            and all(any(shift is x for x in odd) for shift in shifts)
-            and all(_parity(f) is not None for value in (*values, *odd) for f, _ in value.factors)
+            and all(law.shift.is_zero or any(law.shift is x for x in odd) for law in laws)
             and all(_turned(f, places) in (f, -f) for f, _ in self.part.factors)
-            and all(sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in values)
-            and all(sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 1 for value in odd)
+            and all(None not in parities for parities, _ in signs)
+            and [sum((p or 0) * e for p, e in zip(*s, strict=True)) % 2 for s in signs]
+            == [1] * len(odd) + [0] * len(even)
         )
-
-    @property
-    def _own_kernels(self) -> list[Kernel]:
-        return [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
 
     def order(self) -> int | None:
         """Return how often s = 0 is a root of F to the :attr:`power` that makes it one function, or None."""

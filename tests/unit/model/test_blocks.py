@@ -189,46 +189,35 @@ def test_a_key_that_is_called_otherwise_elsewhere_is_one_problem(block, said):
     assert [(d.code, d.hint) for d in caught.value.diagnostics] == [("SF207", said)]
 
 
-@pytest.mark.parametrize(
-    ("inputs", "outputs", "direct"), [(2, 2, True), (1, 3, True), (3, 1, False), (1, 1, False)]
-)
+def model_of_ports(a, b, c, d=0, **changes):
+    names = [f"u_{i}" for i in range(b.shape[1])], [f"y_{i}" for i in range(len(c))]
+    block = {"type": "ss", "from": names[0], "to": names[1], "A": a, "B": b, "C": c, "D": d} | changes
+    block = {key: np.asarray(x).tolist() if key in "ABCD" else x for key, x in block.items() if x is not None}
+    inputs, outputs = {u: {} for u in names[0]}, {y.upper(): y for y in names[1]}
+    return symflex.Model(blocks={"G": block}, signals={"r": "u_0"}, inputs=inputs, outputs=outputs)
+
+
+@pytest.mark.parametrize(("inputs", "outputs", "direct"), [(2, 2, True), (1, 3, True), (3, 1, False)])
 def test_state_equations_with_ports_have_the_transfer_matrix(inputs, outputs, direct):
-    rng = np.random.default_rng(inputs)
-    a, b, c = (rng.integers(-3, 4, shape) for shape in ((3, 3), (3, inputs), (outputs, 3)))
-    d = rng.integers(-2, 3, (outputs, inputs)) * direct
-    names = [f"u_{i}" for i in range(inputs)], [f"y_{i}" for i in range(outputs)]
-    block = {
-        "type": "ss",
-        "from": names[0],
-        "to": names[1],
-        "A": a.tolist(),
-        "B": b.tolist(),
-        "C": c.tolist(),
-    }
-    block |= {"D": d.tolist()} if direct else {}
-    model = symflex.Model(
-        blocks={"G": block}, inputs={u: {} for u in names[0]}, outputs={y.upper(): y for y in names[1]}
-    )
-    s = 0.3 + 1.7j
+    a, b, c = (np.random.default_rng(1).integers(-3, 4, n) for n in ((3, 3), (3, inputs), (outputs, 3)))
+    d, s = np.arange(outputs * inputs).reshape(outputs, inputs) * direct, 0.3 + 1.7j
+    model = model_of_ports(a, b, c, d if direct else 0)
+    found = [[model.transfer_function(y, u).bind()(s) for u in model.inputs] for y in model.outputs]
     expected = c @ np.linalg.solve(s * np.eye(3) - a, b) + d
-    values = [[model.transfer_function(y.upper(), u).bind()(s) for u in names[0]] for y in names[1]]
-    assert np.array(values, complex) == pytest.approx(expected, rel=1e-12)
+    assert np.array(found, complex) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"to": ["y", "r"]}, "'r' is a signal already"),
-        ({"to": "y"}, "C of ss 'G' must be 1 x 2, found 2 x 2"),
+        ({"to": ["y_0", "r"]}, "'r' is a signal already"),
+        ({"C": [[1, 0]]}, "C of ss 'G' must be 2 x 2, found 1 x 2"),
         ({"from": ["r", "r", "r"]}, "B of ss 'G' must be 2 x 3, found 2 x 2"),
         ({"states": ["p"]}, "A of ss 'G' must be 1 x 1, found 2 x 2"),
         ({"from": None}, "ss 'G' lacks from"),
     ],
 )
 def test_ports_and_matrices_that_do_not_fit_are_one_problem(change, said):
-    identity = [[1, 0], [0, 1]]
-    block = {"type": "ss", "from": ["r", "u"], "to": ["y", "z"], "A": identity, "B": identity, "C": identity}
-    block = {key: value for key, value in (block | change).items() if value is not None}
     with pytest.raises(SpecError) as refused:
-        symflex.Model(blocks={"G": block}, signals={"r": "u"}, inputs={"u": {}}, outputs={"Y": "y + z"})
+        model_of_ports(*[np.eye(2, dtype=int)] * 3, **change)
     assert [d.message for d in refused.value.diagnostics if "unknown name" not in d.message] == [said]
