@@ -213,10 +213,15 @@ def _syntax_hint(before: str, after: str, wrong: str) -> str | None:
             return f"write a space before the unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
     if re.match(NUMBER, wrong):
         return _ONE_NUMBER
+    if wrong == '"' or (wrong == "'" and not after[1:2].isdigit()) or after[-1:] == '"':
+        return "write feet as 'ft' and inches as 'in'; 6 feet and 2 inches are '74 in'"
     after = after[len(wrong) :]
     if wrong in {".", "-"} and UNIT_START.match(before[-1:]):
         if UNIT_START.match(after):
-            return "units are multiplied by '*' or a space, as in 'kg*m^2'"
+            product = f"{before}*{re.sub(f'(?<=[a-zA-Z])[{wrong}](?=[a-zA-Z])', '*', after)}"
+            force = re.sub(r"\b(oz|lb)(?=[*](in|ft)\b(?!\^))|(?<=in[*]|ft[*])(oz|lb)\b", r"\1\3f", product)
+            masses = "" if force == product else "; 'oz' and 'lb' are masses, 'ozf' and 'lbf' forces"
+            return f"units are multiplied by '*' or a space: write '{force}'{masses}"
         power = re.match("[0-9]+", after)
         return f"write '^-{power[0]}'" if power and wrong == "-" else None
     if before[-1:].isdigit() and (

@@ -249,10 +249,10 @@ _INSTEAD: Final[dict[str, str]] = {
     "pi": "write pi before the unit, as in '2*pi rad/s'",
     "\u03c0": "write pi before the unit, as in '2*pi rad/s'",
     "dB": "write the ratio itself: x dB is 10^(x/20)",
-    "degC": "only absolute temperatures are read: use 'K'",
-    "degF": "only absolute temperatures are read: use 'K'",
-    "\u00b0C": "only absolute temperatures are read: use 'K'",
-    "\u00b0F": "only absolute temperatures are read: use 'K'",
+    "degC": "use 'K', also in 'K/W': temperatures are absolute, and a difference of 1 degC is 1 K",
+    "degF": "use 'K', also in 'K/W': temperatures are absolute, and a difference of 1 degF is 5/9 K",
+    "\u00b0C": "use 'K', also in 'K/W': temperatures are absolute, and a difference of 1 degC is 1 K",
+    "\u00b0F": "use 'K', also in 'K/W': temperatures are absolute, and a difference of 1 degF is 5/9 K",
 }
 
 # Products that data sheets print without a sign; the first factor may have a prefix.

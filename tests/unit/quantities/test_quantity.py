@@ -217,7 +217,10 @@ def test_an_error_in_a_decoded_string_underlines_the_whole_string():
 def test_a_refusal_says_what_to_write():
     for written, hint in [
         ("0.006 kg.m^2", "kg*m^2"),
-        ("3 lb-ft", "kg*m^2"),
+        ("3 lb-ft", "'3 lbf*ft'"),
+        ("3 oz-in^2", "'3 oz*in^2'"),
+        ("2 N-m-s/rad", "'2 N*m*s/rad'"),
+        ("6'2\"", "feet as 'ft'"),
         ("1 kg m-1", "write '^-1'"),
         ("1 000 m", "digits are not grouped"),
         ("1'000 m", "digits are not grouped"),
