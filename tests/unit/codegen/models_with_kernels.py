@@ -11,8 +11,8 @@ BEAM = 'E = "E", I = "I", rho = "rho", A = "A"'
 
 def spec(parameters, body):
     """Return a specification with parameters that have no values."""
-    table = "".join(f"{name} = {{}}\n" for name in parameters.split())
-    return f"symflex = 1\n[parameters]\n{table}{body}"
+    table = ", ".join(f"{name} = {{}}" for name in parameters.split())
+    return f"symflex = 1\nparameters = {{ {table} }}\n{body}"
 
 
 MODELS = {
@@ -48,69 +48,55 @@ Q = "T(0)"
     ),
     "two beams": spec(
         "E I rho A l E_2 I_2 l_2 m",
-        f"""[elements]
+        f"""inputs.F = {{ force = "p" }}
+outputs.X = "r"
+[elements]
 one = {{ type = "beam", between = ["p", "q"], {BEAM}, l = "l" }}
 two = {{ type = "beam", between = ["q", "r"], E = "E_2", I = "I_2", rho = "rho", A = "A", l = "l_2" }}
 slide = {{ type = "slider", at = "p" }}
 tip = {{ type = "mass", at = "r", m = "m" }}
-[inputs]
-F = {{ force = "p" }}
-[outputs]
-X = "r"
 """,
     ),
     "lossy beam on a foundation": spec(
         "E I rho A l eta c_f k_f a q",
-        f"""[elements]
+        f"""inputs.F = {{ force = "p" }}
+outputs.X = "r"
+[elements]
 one = {{ type = "beam", between = ["p", "r"], {BEAM}, l = "l", eta = "eta", c_f = "c_f", k_f = "k_f" }}
 slide = {{ type = "slider", at = "p" }}
 tip = {{ type = "mass", at = "r", m = "a" }}
 loss = {{ type = "damper", between = ["r", "ground"], b = "q" }}
-[inputs]
-F = {{ force = "p" }}
-[outputs]
-X = "r"
 """,
     ),
     "beam with definitions": spec(
         "E I rho A l m J",
-        f"""[definitions]
-EI = "E*I"
-M = "m + J/l^2"
-load = "rho*A"
+        f"""definitions = {{ EI = "E*I", M = "m + J/l^2", load = "rho*A" }}
+inputs.F = {{ force = "r" }}
+outputs.X = "r"
 [elements]
 one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l" }}
 tip = {{ type = "mass", at = "r", m = "m" }}
-[inputs]
-F = {{ force = "r" }}
-[outputs]
-X = "r"
 """,
     ),
     "beam under tension": spec(
         "E I rho A l N",
-        f"""[elements]
-one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l", N = "N" }}
-[inputs]
-F = {{ force = "r" }}
-[outputs]
-X = "r"
+        f"""elements.one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l", N = "N" }}
+inputs.F = {{ force = "r" }}
+outputs.X = "r"
 """,
     ),
     "rayleigh beam": spec(
         "E I rho A l c_2",
-        f"""[elements]
-one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l", theory = "rayleigh" }}
-[inputs]
-F = {{ force = "r" }}
-[outputs]
-X = "r"
-slope = "r.theta"
+        f"""inputs.F = {{ force = "r" }}
+outputs = {{ X = "r", slope = "r.theta" }}
+elements.one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l", theory = "rayleigh" }}
 """,
     ),
     "two beams of pairs": spec(
         "E I rho A l N h kappa G",
-        f"""[elements]
+        f"""inputs.F = {{ force = "t" }}
+outputs.X = "r"
+[elements]
 one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l", N = "N" }}
 [elements.two]
 type = "beam"
@@ -123,60 +109,46 @@ A = "A"
 l = "h"
 kappa = "kappa"
 G = "G"
-[inputs]
-F = {{ force = "t" }}
-[outputs]
-X = "r"
 """,
     ),
     "lossy rod": spec(
         "E A rho l eta c_f D k",
-        """[elements]
+        """inputs.F = { force = "x" }
+outputs = { X = "x", Y = "y" }
+[elements]
 bar = { type = "rod", between = ["x", "y"], E = "E", A = "A", rho = "rho", l = "l", eta = "eta", c_f = "c_f" }
 end = { type = "spring", between = ["y", "ground"], k = "k" }
 body = { type = "mass", at = "x", m = "D" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-Y = "y"
 """,
     ),
     "rod on a beam": spec(
         "E A I rho l h",
-        f"""[elements]
+        f"""inputs.F = {{ force = "x" }}
+outputs = {{ X = "x", Y = "r" }}
+[elements]
 bar = {{ type = "rod", between = ["x", "r.y"], E = "E", A = "A", rho = "rho", l = "h" }}
 one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l" }}
-[inputs]
-F = {{ force = "x" }}
-[outputs]
-X = "x"
-Y = "r"
 """,
     ),
     "string with a bead": spec(
         "N rho A l x_s m",
-        """[elements]
+        """inputs.F = { force = "y" }
+outputs.Y = "y"
+[elements]
 one = { type = "string", between = ["ground", "y"], N = "N", rho = "rho", A = "A", l = "x_s" }
 two = { type = "string", between = ["y", "ground"], N = "N", rho = "rho", A = "A", l = "l - x_s" }
 bead = { type = "mass", at = "y", m = "m" }
-[inputs]
-F = { force = "y" }
-[outputs]
-Y = "y"
 """,
     ),
     "shafts and a gear": spec(
         "G J rho l n J_m k_f",
-        """[elements]
+        """inputs.t = { torque = "a" }
+outputs.angle = "d"
+[elements]
 one = { type = "shaft", between = ["a", "b"], G = "G", J = "J", rho = "rho", l = "l" }
 gear = { type = "transformer", from = "b", to = "c", ratio = "n" }
 two = { type = "shaft", between = ["c", "d"], G = "G", J = "J", rho = "rho", l = "l/2", k_f = "k_f" }
 disc = { type = "inertia", at = "a", J = "J_m" }
-[inputs]
-t = { torque = "a" }
-[outputs]
-angle = "d"
 """,
     ),
     "delay and rod": spec(

@@ -263,19 +263,15 @@ def test_poles_of_a_portal_that_does_not_stretch_are_those_of_its_dynamic_stiffn
 
     column = 'EI = 2e6, rhoA = 50, l = "h", inextensible = true'
     portal = f"""symflex = 1
-[parameters]
-h = "3 m"
-l = "4 m"
+parameters = {{ h = "3 m", l = "4 m" }}
+inputs.F = {{ force = "b.x" }}
+outputs.X = "b.x"
 [elements]
 foot = {{ type = "fixed", at = "a" }}
 other = {{ type = "fixed", at = "d" }}
 left = {{ type = "frame", between = ["a", "b"], angle = "90 deg", {column} }}
 beam = {{ type = "frame", between = ["b", "c"], EI = 2e6, rhoA = 50, l = "l", inextensible = true }}
 right = {{ type = "frame", between = ["c", "d"], angle = "-90 deg", {column} }}
-[inputs]
-F = {{ force = "b.x" }}
-[outputs]
-X = "b.x"
 """
     found = symflex.loads(portal).transfer_functions()[0].bind().pole_zero_map(modes=3)
     assert found.verdict.word == "marginal"

@@ -91,23 +91,13 @@ def test_a_lag_divides_by_one_plus_its_time():
 
 
 PIEZO = """symflex = 1
-[parameters]
-alpha = "12 N/V"
-C = "3 F"
-k = "40 N/m"
-m = "2 kg"
-h = "4 V/m"
+parameters = { alpha = "12 N/V", C = "3 F", k = "40 N/m", m = "2 kg", h = "4 V/m" }
+outputs = { X = "x", V = "v", F = "stack.f", I = "stack.i", Sensed = "h*x" }
 [elements]
 load = { type = "mass", at = "x", m = "m" }
 stack = { type = "piezo", terminals = ["v", "ground"], between = ["ground", "x"], alpha = "alpha", REST }
 [inputs]
 DRIVE
-[outputs]
-X = "x"
-V = "v"
-F = "stack.f"
-I = "stack.i"
-Sensed = "h*x"
 """
 
 

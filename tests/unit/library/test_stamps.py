@@ -51,15 +51,11 @@ def branch_model(kind):
     holder, held, held_unit = HOLD[source]
     return f"""
 parameters = {{ p = {{ unit = "{unit}" }}, g = {{ unit = "{held_unit}" }} }}
+inputs.U = {{ {source} = "a" }}
+outputs = {{ A = "a", C = "c", Q = "part.{through}" }}
 [elements]
 part = {{ type = "{kind}", between = ["a", "c"], {value} = "p" }}
 rest = {{ type = "{holder}", between = ["c", "ground"], {held} = "g" }}
-[inputs]
-U = {{ {source} = "a" }}
-[outputs]
-A = "a"
-C = "c"
-Q = "part.{through}"
 """
 
 
@@ -130,15 +126,12 @@ def test_a_clamped_beam_delivers_minus_what_is_applied_at_its_tip_and_its_wall_b
 def test_two_beams_in_series_are_one_beam_of_the_whole_length():
     text = """
 parameters = { EI = { unit = "N*m^2" }, l = { unit = "m" }, d = { unit = "m" } }
+inputs.F = { force = "e.y" }
+outputs = { Y = "e.y", T = "e.theta" }
 [elements]
 one = { type = "massless_beam", between = ["a", "c"], EI = "EI", l = "l" }
 two = { type = "massless_beam", between = ["c", "e"], EI = "EI", l = "d" }
 hold = { type = "fixed", at = "a" }
-[inputs]
-F = { force = "e.y" }
-[outputs]
-Y = "e.y"
-T = "e.theta"
 """
     EI, length = sympy.Symbol("EI"), sympy.Symbol("l") + sympy.Symbol("d")
     assert_laws(text, "F", Y=length**3 / (3 * EI), T=length**2 / (2 * EI))
@@ -170,14 +163,11 @@ def test_a_free_body_about_an_offset_node_has_its_kinetic_energy_and_takes_what_
 def test_a_rigid_body_defaults_to_a_point_mass_at_its_node():
     text = """
 parameters = { m = { unit = "kg" }, k = { unit = "N*m/rad" } }
+inputs.F = { force = "p" }
+outputs = { Y = "p", T = "p.theta" }
 [elements]
 body = { type = "rigid_body", at = "p", m = "m" }
 hold = { type = "torsion_spring", between = ["p", "ground"], k = "k" }
-[inputs]
-F = { force = "p" }
-[outputs]
-Y = "p"
-T = "p.theta"
 """
     assert_laws(text, "F", Y=1 / (sympy.Symbol("m") * s**2), T=0)
 
@@ -186,17 +176,11 @@ def test_a_rigid_link_moves_the_node_of_a_body():
     m, J, h = symbols("m J h")
     text = """
 parameters = { m = { unit = "kg" }, J = { unit = "kg*m^2" }, h = { unit = "m" } }
+inputs.F = { force = "tip.y" }
+outputs = { Y = "tip.y", T = "tip.theta", P = "p.y", f = "arm.f", tau = "arm.tau" }
 [elements]
 body = { type = "rigid_body", at = "p", m = "m", J = "J" }
 arm = { type = "rigid_link", between = ["p", "tip"], length = "h" }
-[inputs]
-F = { force = "tip.y" }
-[outputs]
-Y = "tip.y"
-T = "tip.theta"
-P = "p.y"
-f = "arm.f"
-tau = "arm.tau"
 """
     # Force at the tip: m*s^2*y = F, J*s^2*theta = F*h, y_tip = y + h*theta.
     y = 1 / (m * s**2)
@@ -206,14 +190,12 @@ tau = "arm.tau"
 def test_a_link_of_rational_length_equals_its_value():
     text = """
 parameters = { J = { unit = "kg*m^2" }, h = { unit = "m" }, n = {} }
+inputs.F = { force = "tip.y" }
+outputs.Y = "tip.y"
 [elements]
 body = { type = "rigid_body", at = "p", m = "0", J = "J" }
 pin = { type = "pin", at = "p" }
 arm = { type = "rigid_link", between = ["p", "tip"], length = "h/(n + 1)" }
-[inputs]
-F = { force = "tip.y" }
-[outputs]
-Y = "tip.y"
 """
     J, h, n = symbols("J h n")
     assert_law(text, "Y", "F", (h / (n + 1)) ** 2 / (J * s**2))
@@ -252,14 +234,9 @@ def test_the_reaction_of_a_fixed_node_is_delivered_to_it():
 
 SOURCE = """
 parameters = {{ k = {{ unit = "{unit}" }}, g = {{}} }}
-[elements]
-drive = {{ type = "{kind}", at = "x", {value} = "g*u" }}
-load = {{ {load} }}
-[inputs]
-u = {{}}
-[outputs]
-X = "x"
-Q = "drive.{through}"
+elements = {{ drive = {{ type = "{kind}", at = "x", {value} = "g*u" }}, load = {{ {load} }} }}
+inputs.u = {{}}
+outputs = {{ X = "x", Q = "drive.{through}" }}
 """
 THROUGH_SOURCES = [
     ("force_source", "f", "N/m", 'type = "spring", between = ["x", "ground"], k = "k"', False),
@@ -303,14 +280,11 @@ def test_a_voltage_input_between_two_nodes_is_the_difference():
     R, C = symbols("R C")
     text = """
 parameters = { R = { unit = "Ohm" }, C = { unit = "F" } }
+inputs.V = { voltage = ["a", "c"] }
+outputs = { A = "a", K = "c" }
 [elements]
 r = { type = "resistor", between = ["a", "ground"], R = "R" }
 c = { type = "capacitor", between = ["c", "ground"], C = "C" }
-[inputs]
-V = { voltage = ["a", "c"] }
-[outputs]
-A = "a"
-K = "c"
 """
     assert_laws(text, "V", A=R * C * s / (1 + R * C * s), K=-1 / (1 + R * C * s))
 
@@ -319,14 +293,9 @@ def test_a_force_input_on_two_nodes_reacts_on_the_second():
     m, n = symbols("m n")
     text = """
 parameters = { m = { unit = "kg" }, n = { unit = "kg" } }
-[elements]
-a = { type = "mass", at = "a", m = "m" }
-c = { type = "mass", at = "c", m = "n" }
-[inputs]
-F = { force = ["a", "c"] }
-[outputs]
-A = "a"
-C = "c"
+elements = { a = { type = "mass", at = "a", m = "m" }, c = { type = "mass", at = "c", m = "n" } }
+inputs.F = { force = ["a", "c"] }
+outputs = { A = "a", C = "c" }
 """
     assert_laws(text, "F", A=1 / (m * s**2), C=-1 / (n * s**2))
 
@@ -334,12 +303,9 @@ C = "c"
 def test_an_element_may_bear_the_name_of_a_voltage_input():
     text = """
 parameters = { R = { unit = "Ohm" } }
-[elements]
-V = { type = "resistor", between = ["a", "ground"], R = "R" }
-[inputs]
-V = { voltage = "a" }
-[outputs]
-I = "V.i"
+elements.V = { type = "resistor", between = ["a", "ground"], R = "R" }
+inputs.V = { voltage = "a" }
+outputs.I = "V.i"
 """
     assert_law(text, "I", "V", 1 / sympy.Symbol("R"))
 
@@ -363,16 +329,12 @@ def coupling_model(kind, source, target, ratio="n"):
     load_to, _, _ = LOADS[target]
     return f"""
 parameters = {{ n = {{}}, a = {{}}, T = "1 s", k_1 = {{}}, k_2 = {{}} }}
+inputs.U = {{ {drive} = "x" }}
+outputs = {{ X = "x", Y = "y", Q = "both.{THROUGH[target]}" }}
 [elements]
 near = {{ {load_from.format(n="x", v="k_1")} }}
 far = {{ {load_to.format(n="y", v="k_2")} }}
 both = {{ type = "{kind}", from = "x", to = "y", ratio = "{ratio}" }}
-[inputs]
-U = {{ {drive} = "x" }}
-[outputs]
-X = "x"
-Y = "y"
-Q = "both.{THROUGH[target]}"
 """
 
 
@@ -438,6 +400,8 @@ def test_a_gyrator_s_ratio_may_be_a_rational_function_of_s():
 
 
 MOTOR = """
+inputs = { V = { voltage = "v" }, M = { torque = "z" } }
+outputs = { W = "s*z", I = "motor.i", T = "motor.tau" }
 [parameters]
 L = { unit = "H" }
 R = { unit = "Ohm" }
@@ -449,13 +413,6 @@ b = { unit = "N*m*s/rad" }
 motor = { type = "dc_motor", terminals = ["v", "ground"], shaft="z", L = "L", R = "R", k_t = "K", k_e = "E" }
 rotor = { type = "inertia", at = "z", J = "J" }
 loss = { type = "rotary_damper", between = ["z", "ground"], b = "b" }
-[inputs]
-V = { voltage = "v" }
-M = { torque = "z" }
-[outputs]
-W = "s*z"
-I = "motor.i"
-T = "motor.tau"
 """
 
 
@@ -481,6 +438,8 @@ def test_an_ideal_motor_without_winding_is_a_gyrator():
 # --------------------------------------------------------------------------------- values rational in s
 
 RELAXING = """
+inputs.F = { force = "x" }
+outputs = { X = "x", S = "soft.f" }
 [parameters]
 m = { unit = "kg" }
 k = { unit = "N/m" }
@@ -492,11 +451,6 @@ body = { type = "mass", at = "x", m = "m" }
 foot = { type = "mass", at = "y", m = "2*m" }
 soft = { type = "spring", between = ["x", "y"], k = "k*(1 + a*s)/(1 + d*s)" }
 EXTRA
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-S = "soft.f"
 """
 
 
@@ -533,6 +487,8 @@ def test_two_equal_relaxing_springs_side_by_side_hide_the_state_that_only_circul
 def test_the_free_slope_of_a_relaxing_beam_creeps_back_unseen():
     """Without moment at the tip the slope obeys (1 + a s) theta = 0 at rest, which moves neither y nor f."""
     text = """
+inputs.F = { force = "q.y" }
+outputs.X = "q.y"
 [parameters]
 m = { unit = "kg" }
 EI = { unit = "N*m^2" }
@@ -543,10 +499,6 @@ l = { unit = "m" }
 beam = { type = "massless_beam", between = ["p", "q"], EI = "EI*(1 + a*s)/(1 + d*s)", l = "l" }
 wall = { type = "fixed", at = "p" }
 tip = { type = "rigid_body", at = "q", m = "m" }
-[inputs]
-F = { force = "q.y" }
-[outputs]
-X = "q.y"
 """
     m, EI, a, d, length = symbols("m EI a d l")
     stiffness = 3 * EI * (1 + a * s) / (1 + d * s) / length**3

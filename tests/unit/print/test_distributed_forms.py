@@ -217,6 +217,8 @@ def test_multiples_of_an_argument_keep_whole_numbers_beside_typed_decimals():
     (tf,) = pipeline.derive_all(
         pipeline.loads("""symflex = 1
 parameters = { N = {}, mu = {}, l = {} }
+inputs.F = { unit = "N" }
+outputs.Y = "v(0.3*l)"
 [fields.v]
 domain = ["0", "0.3*l"]
 equation = "N*v'' = mu*s^2*v"
@@ -225,10 +227,6 @@ conditions = ["v(0) = 0"]
 domain = ["0.3*l", "l"]
 equation = "N*w'' = mu*s^2*w"
 conditions = ["w(l) = 0", "w(0.3*l) = v(0.3*l)", "N*(v'(0.3*l) - w'(0.3*l)) = F"]
-[inputs]
-F = { unit = "N" }
-[outputs]
-Y = "v(0.3*l)"
 """)
     )
     found = print_form(tf, "krylov")
@@ -307,12 +305,9 @@ def test_names_of_the_model_are_left_alone():
 
 def test_a_wavenumber_that_stands_nowhere_else_is_written_into_the_argument():
     # Transmission of force through a rod fixed at its end: 1/cosh, Rao 2007, chapter 9.
-    text = """[elements]
-bar = { type = "rod", between = ["x", "ground"], E = "E", A = "A", rho = "rho", l = "l" }
-[inputs]
-F = { force = "x" }
-[outputs]
-wall = "bar.f"
+    text = """inputs.F = { force = "x" }
+outputs.wall = "bar.f"
+elements.bar = { type = "rod", between = ["x", "ground"], E = "E", A = "A", rho = "rho", l = "l" }
 """
     (tf,) = pipeline.derive_all(pipeline.loads(spec("E A rho l", text)))
     assert shown(tf, "hyperbolic") == ("1", "cosh(q)")
@@ -388,12 +383,9 @@ def test_a_form_of_rational_functions_is_refused_for_a_beam():
 
 
 def test_a_form_of_beams_is_refused_for_a_rational_function():
-    text = """[elements]
-M = { type = "mass", at = "x", m = "m" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
+    text = """elements.M = { type = "mass", at = "x", m = "m" }
+inputs.F = { force = "x" }
+outputs.X = "x"
 """
     (tf,) = pipeline.derive_all(pipeline.loads(spec("m", text)))
     for form in ("hyperbolic", "krylov", "vaughan"):
@@ -452,12 +444,10 @@ symflex = 1
 parameters = { E = {}, A = {}, rho = {}, x_1 = {}, x_2 = {}, l = {} }
 inputs.F = { unit = "N" }
 outputs.X = "u_2(l)"
-
 [fields.u_1]
 domain = ["x_1", "x_2"]
 equation = "E*A*u_1'' - rho*A*s^2*u_1 = 0"
 conditions = ["u_1(x_1) = 0", "u_1(x_2) = u_2(x_2)"]
-
 [fields.u_2]
 domain = ["x_2", "l"]
 equation = "E*A*u_2'' - rho*A*s^2*u_2 = 0"
@@ -490,26 +480,22 @@ outputs.P = "p(L)"
 
 ROPE = """symflex = 1
 parameters = { T = "100 N", mu = "0.5 kg/m", l = "3 m", D_1 = "2 N*s/m", D_2 = "3 N*s/m" }
+inputs.F = { force = "b" }
+outputs.V = "s*b"
 [elements]
 rope = { type = "string", between = ["a", "b"], N = "T", rhoA = "mu", l = "l" }
 first = { type = "damper", between = ["a", "ground"], b = "D_1" }
 last = { type = "damper", between = ["b", "ground"], b = "D_2" }
-[inputs]
-F = { force = "b" }
-[outputs]
-V = "s*b"
 """
 COFLOW = """symflex = 1
 parameters = { v = "0.5 m/s", h = "0.2 1/s", g = "0.1 1/s", l = "2 m" }
+inputs.T_0 = { unit = "K" }
+outputs.Y = "T(l)"
 [fields.pipes]
 unknowns = ["T", "W"]
 domain = ["0", "l"]
 equations = ["v*T' + s*T + h*(T - W) = 0", "v*W' + s*W + g*(W - T) = 0"]
 conditions = ["T(0) = T_0", "W(0) = 0"]
-[inputs]
-T_0 = { unit = "K" }
-[outputs]
-Y = "T(l)"
 """
 
 
@@ -540,6 +526,8 @@ def test_a_length_or_wavenumber_that_cancels_is_gone(text, expected, lines):
 
 TIMOSHENKO = """symflex = 1
 parameters = { E = "210 GPa", nu = 0.3, rho = "7850 kg/m^3", d_o = "30 mm", d_i = "7 mm", L = "0.3 m" }
+inputs.F = { force = "left" }
+outputs.Y = "right"
 [definitions]
 G = "E/(2*(1 + nu))"
 kappa = "6*(1 + nu)/(7 + 6*nu)"
@@ -556,10 +544,6 @@ A = "A"
 l = "L"
 G = "G"
 kappa = "kappa"
-[inputs]
-F = { force = "left" }
-[outputs]
-Y = "right"
 """
 DECLARED = 'G = "80 GPa", kappa = 0.9, A = "6e-4 m^2", I = "3e-8 m^4", nu'
 
@@ -581,13 +565,9 @@ def test_a_hidden_mode_is_printed_in_the_arguments_of_a_form_with_definitions():
     text = f"""symflex = 1
 parameters = {{ E = "210 GPa", rho = "7850 kg/m^3", b = "20 mm", h = "5 mm", l = "0.6 m" }}
 definitions = {{ A = "b*h", I = "b*h^3/12" }}
-[elements]
-left = {{ between = ["a", "m"], {half} }}
-right = {{ between = ["m", "c"], {half} }}
-[inputs]
-F = {{ force = "m" }}
-[outputs]
-Y = "m"
+elements = {{ left = {{ between = ["a", "m"], {half} }}, right = {{ between = ["m", "c"], {half} }} }}
+inputs.F = {{ force = "m" }}
+outputs.Y = "m"
 """
     (tf,) = pipeline.derive_all(pipeline.loads(text))
     form, hidden = with_hidden(tf, print_form(tf))
@@ -676,10 +656,8 @@ parameters = { C_0 = {}, k_t = {}, c = {}, rho = {}, A = {}, t = {} }
 definitions = { h = "k_t*sqrt(c*A/(t*C_0))/A" }
 inputs.q = { unit = "C" }
 outputs.V = "q/C_0 - A*h*(u(t) - u(0))"
-[fields.u]
-domain = ["0", "t"]
-equation = "c*u'' = rho*s^2*u"
-conditions = ["c*u'(0) = h*q", "c*u'(t) = h*q"]
+[fields]
+u = { domain = ["0", "t"], equation = "c*u'' = rho*s^2*u", conditions = ["c*u'(0) = h*q", "c*u'(t) = h*q"] }
 """
 STRING = """symflex = 1
 parameters = { T = {}, mu = {}, L = {} }
