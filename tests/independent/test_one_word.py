@@ -25,9 +25,7 @@ from symflex.report.study import Study
 from symflex.sweep.sweep import sweep_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    Polynomial = Callable[[float], np.poly1d]
+    from collections.abc import Iterator
 
 s = np.poly1d([1, 0])
 ON_AXIS, EQUAL = 1e-6, 1e-4
@@ -38,15 +36,14 @@ ON_AXIS, EQUAL = 1e-6, 1e-4
 class Case:
     text: str
     gain: float
-    den: Polynomial
-    num: Polynomial
+    sides: tuple  # denominator and numerator
 
 
 LOOPS: dict[str, Case] = {}
 
 
-def loop(name, den, num, K, parameters, inputs, outputs, elements="", more=""):
-    """Note a loop: ``den`` and ``num`` by the gain, the rest in the words of a specification."""
+def loop(name, sides, K, parameters, inputs, outputs, elements="", more=""):
+    """Note a loop: ``sides`` are denominator and numerator by the gain, the rest a specification."""
     gain = f'"{K}"' if isinstance(K, str) else f'{{ value = "{K[0]}", assume = "real" }}'
     text = f"""symflex = 1
 parameters = {{ K = {gain}, {parameters} }}
@@ -60,10 +57,10 @@ kind = "locus"
 gain = "K"
 """
     number = float((K if isinstance(K, str) else K[0]).split()[0])
-    LOOPS[name] = Case(text, number, den, lambda K: np.poly1d(num(K)))
+    LOOPS[name] = Case(text, number, sides(number))
 
 
-def torque(name, den, num, K, tau, outputs='W = "s*phi"', shaft="one", more=""):
+def torque(name, sides, K, tau, outputs='W = "s*phi"', shaft="one", more=""):
     """Note a loop that acts on the first of one or two inertias by a torque ``tau``."""
     is_speed = "w" in tau
     unit = "N*m*s/rad" if is_speed else "N*m/rad"
@@ -71,7 +68,7 @@ def torque(name, den, num, K, tau, outputs='W = "s*phi"', shaft="one", more=""):
     elements += f't = {{ type = "torque_source", at = "phi", tau = "{tau}" }}\n{more}'
     parameters = 'J = "2 kg*m^2", k = "40 N*m/rad", d = "0.3 N*m*s/rad", T = "0.5 s", T_i = "4 s"'
     inputs = 'w = { unit = "rad/s" }' if is_speed else 'r = { unit = "rad" }'
-    loop(name, den, num, f"{K} {unit}", parameters, inputs, outputs, elements)
+    loop(name, sides, f"{K} {unit}", parameters, inputs, outputs, elements)
 
 
 ONE = 'j = { type = "inertia", at = "phi", J = "J" }\n'
@@ -84,26 +81,19 @@ J, LINK = 2 * s**2, np.poly1d([0.3, 40])
 PAIR, UNDAMPED_PAIR = (J + LINK) ** 2 - LINK**2, (J + 40) ** 2 - 1600
 PHI, PSI, SPEED, POSITION = 'PHI = "phi"', 'PSI = "psi"', "K*(w - s*phi)", "K*(r - phi)"
 
-torque("speed", lambda K: s * (2 * s + K), lambda K: K * s, 3, SPEED)
-torque("speed to angle", lambda K: s * (2 * s + K), lambda K: [K], 3, SPEED, PHI)
-torque("speed of the wrong sign", lambda K: s * (2 * s - K), lambda K: -K * s, 3, "K*(s*phi - w)")
-torque("speed with friction", lambda K: s * (2 * s + 0.3 + K), lambda K: K * s, 3, SPEED, shaft="rubbed")
+torque("speed", lambda K: (s * (2 * s + K), K * s), 3, SPEED)
+torque("speed to angle", lambda K: (s * (2 * s + K), [K]), 3, SPEED, PHI)
+torque("speed of the wrong sign", lambda K: (s * (2 * s - K), -K * s), 3, "K*(s*phi - w)")
+torque("speed with friction", lambda K: (s * (2 * s + 0.3 + K), K * s), 3, SPEED, shaft="rubbed")
 torque(
-    "PI of speed",
-    lambda K: s * (J + K * s + 2 * K),
-    lambda K: s * (K * s + 2 * K),
-    3,
-    "K*(1 + 1/(T*s))*(w - s*phi)",
+    "PI of speed", lambda K: (s * (J + K * s + 2 * K), s * (K * s + 2 * K)), 3, "K*(1 + 1/(T*s))*(w - s*phi)"
 )
-torque("I of speed", lambda K: s * (J + 2 * K), lambda K: 2 * K * s, 3, "K/(T*s)*(w - s*phi)")
-torque(
-    "speed of two", lambda K: PAIR + K * s * (J + LINK), lambda K: K * s * (J + LINK), 3, SPEED, shaft="two"
-)
+torque("I of speed", lambda K: (s * (J + 2 * K), 2 * K * s), 3, "K/(T*s)*(w - s*phi)")
+torque("speed of two", lambda K: (PAIR + K * s * (J + LINK), K * s * (J + LINK)), 3, SPEED, shaft="two")
 for size in (0.1, 3):
     torque(
         f"speed of the other, {size}",
-        lambda K: PAIR + K * s * LINK,
-        lambda K: K * s * LINK,
+        lambda K: (PAIR + K * s * LINK, K * s * LINK),
         size,
         "K*(w - s*psi)",
         'W = "s*psi"',
@@ -111,47 +101,37 @@ for size in (0.1, 3):
     )
 torque(
     "speed of two undamped",
-    lambda K: UNDAMPED_PAIR + K * s * (J + 40),
-    lambda K: K * s * (J + 40),
+    lambda K: (UNDAMPED_PAIR + K * s * (J + 40), K * s * (J + 40)),
     3,
     SPEED,
     shaft="undamped",
 )
 torque(
     "speed, pushing off the other",
-    lambda K: UNDAMPED_PAIR + K * s * J,
-    lambda K: K * s * J,
+    lambda K: (UNDAMPED_PAIR + K * s * J, K * s * J),
     3,
     SPEED,
     shaft="undamped",
     more='t_2 = { type = "torque_source", at = "psi", tau = "-K*(w - s*phi)" }\n',
 )
-torque("position", lambda K: J + K, lambda K: [K], 3, POSITION, PHI)
+torque("position", lambda K: (J + K, [K]), 3, POSITION, PHI)
 PD = "K*(r - phi) - K*T*s*phi"
-torque("PD", lambda K: J + 0.5 * K * s + K, lambda K: [K], 3, PD, PHI)
-torque("PD seen as a speed", lambda K: J + 0.5 * K * s + K, lambda K: K * s, 3, PD)
-torque(
-    "PI of position",
-    lambda K: J * s + K * s + 2 * K,
-    lambda K: [K, 2 * K],
-    3,
-    "K*(1 + 1/(T*s))*(r - phi)",
-    PHI,
-)
+torque("PD", lambda K: (J + 0.5 * K * s + K, [K]), 3, PD, PHI)
+torque("PD seen as a speed", lambda K: (J + 0.5 * K * s + K, K * s), 3, PD)
+torque("PI of position", lambda K: (J * s + K * s + 2 * K, [K, 2 * K]), 3, "K*(1 + 1/(T*s))*(r - phi)", PHI)
 for size in (0.1, 3):
     torque(
         f"PID, {size}",
-        lambda K: J * s + K * (0.5 * s**2 + s + 0.25),
-        lambda K: K * np.array([0.5, 1, 0.25]),
+        lambda K: (J * s + K * (0.5 * s**2 + s + 0.25), K * np.array([0.5, 1, 0.25])),
         size,
         "K*(1 + T*s + 1/(T_i*s))*(r - phi)",
         PHI,
     )
-torque("position of two", lambda K: PAIR + K * (J + LINK), lambda K: K * (J + LINK), 3, POSITION, PHI, "two")
-torque("position of the other", lambda K: PAIR + K * LINK, lambda K: K * LINK, 3, "K*(r - psi)", PSI, "two")
+torque("position of two", lambda K: (PAIR + K * (J + LINK), K * (J + LINK)), 3, POSITION, PHI, "two")
+torque("position of the other", lambda K: (PAIR + K * LINK, K * LINK), 3, "K*(r - psi)", PSI, "two")
 
 
-def motor(name, den, num, K, voltage, inputs, outputs):
+def motor(name, sides, K, voltage, inputs, outputs):
     """Note a loop that acts on a motor by its voltage; ``Z`` is its winding's impedance."""
     elements = ONE + (
         'm = { type = "dc_motor", terminals = ["v", "ground"], shaft = "phi", R = "R", L = "L", '
@@ -159,17 +139,16 @@ def motor(name, den, num, K, voltage, inputs, outputs):
         f'u = {{ type = "voltage_source", between = ["v", "ground"], v = "{voltage}" }}\n'
     )
     parameters = 'R = "2 Ohm", L = "0.1 H", k_t = "0.5 N*m/A", J = "2 kg*m^2", T = "1 s"'
-    loop(name, den, num, K, parameters, inputs, outputs, elements)
+    loop(name, sides, K, parameters, inputs, outputs, elements)
 
 
 Z = np.poly1d([0.1, 2])
 MOTOR = 2 * s**2 * Z + 0.25 * s
 W, R, I_R = ('w = { unit = "rad/s" }', 'r = { unit = "rad" }', 'i_r = { unit = "A" }')
-motor("motor's speed", lambda K: MOTOR + K * s / 2, lambda K: K * s / 2, "3 V*s/rad", SPEED, W, 'W = "s*phi"')
+motor("motor's speed", lambda K: (MOTOR + K * s / 2, K * s / 2), "3 V*s/rad", SPEED, W, 'W = "s*phi"')
 motor(
     "PI of a motor's speed",
-    lambda K: s * MOTOR + K * (s + 1) * s / 2,
-    lambda K: K * (s + 1) * s / 2,
+    lambda K: (s * MOTOR + K * (s + 1) * s / 2, K * (s + 1) * s / 2),
     "3 V*s/rad",
     "K*(1 + 1/(T*s))*(w - s*phi)",
     W,
@@ -177,30 +156,20 @@ motor(
 )
 motor(
     "I of a motor's speed",
-    lambda K: s * MOTOR + K * s / 2,
-    lambda K: K * s / 2,
+    lambda K: (s * MOTOR + K * s / 2, K * s / 2),
     "30 V*s/rad",
     "K/(T*s)*(w - s*phi)",
     W,
     'W = "s*phi"',
 )
 for size in (3, 300):
-    motor(
-        f"motor's position, {size}",
-        lambda K: MOTOR + K / 2,
-        lambda K: [K / 2],
-        f"{size} V/rad",
-        POSITION,
-        R,
-        PHI,
-    )
+    motor(f"motor's position, {size}", lambda K: (MOTOR + K / 2, [K / 2]), f"{size} V/rad", POSITION, R, PHI)
 CURRENT = "K*(i_r - m.i)"
-motor("current", lambda K: MOTOR + K * J, lambda K: K * J, "3 V/A", CURRENT, I_R, 'I = "m.i"')
-motor("current to angle", lambda K: MOTOR + K * J, lambda K: [K / 2], "3 V/A", CURRENT, I_R, PHI)
+motor("current", lambda K: (MOTOR + K * J, K * J), "3 V/A", CURRENT, I_R, 'I = "m.i"')
+motor("current to angle", lambda K: (MOTOR + K * J, [K / 2]), "3 V/A", CURRENT, I_R, PHI)
 motor(
     "PI of current",
-    lambda K: s * MOTOR + K * (s + 1) * J,
-    lambda K: K * (s + 1) * J,
+    lambda K: (s * MOTOR + K * (s + 1) * J, K * (s + 1) * J),
     "3 V/A",
     "K*(1 + 1/(T*s))*(i_r - m.i)",
     I_R,
@@ -208,44 +177,38 @@ motor(
 )
 
 
-def circuit(name, den, num, first):
+def circuit(name, sides, first):
     elements = first + (
         'l = { type = "inductor", between = ["a", "ground"], L = "L" }\n'
         'u = { type = "voltage_source", between = ["v", "ground"], v = "K*(i_r - l.i)" }\n'
     )
-    loop(name, den, num, "3 V/A", 'R = "2 Ohm", C = "2 F", L = "0.1 H"', I_R, 'I = "l.i"', elements)
+    loop(name, sides, "3 V/A", 'R = "2 Ohm", C = "2 F", L = "0.1 H"', I_R, 'I = "l.i"', elements)
 
 
 circuit(
-    "current in a coil",
-    lambda K: Z + K,
-    lambda K: [K],
-    'r = { type = "resistor", between = ["v", "a"], R = "R" }\n',
+    "current in a coil", lambda K: (Z + K, [K]), 'r = { type = "resistor", between = ["v", "a"], R = "R" }\n'
 )
 circuit(
     "current through a capacitor",
-    lambda K: 2 * s * (0.1 * s + K) + 1,
-    lambda K: 2 * s * K,
+    lambda K: (2 * s * (0.1 * s + K) + 1, 2 * s * K),
     'c = { type = "capacitor", between = ["v", "a"], C = "C" }\n',
 )
 
 
-def block(name, den, num, K, signals, outputs='Y = "y"', blocks=""):
+def block(name, sides, K, signals, outputs='Y = "y"', blocks=""):
     more = f"signals = {{ {signals} }}\n" + (f"blocks = {{ {blocks} }}" if blocks else "")
-    loop(name, den, num, f"{K}", 'T = "1 s", K_v = 4', "r = {}", outputs, "", more)
+    loop(name, sides, f"{K}", 'T = "1 s", K_v = 4', "r = {}", outputs, "", more)
 
 
-block("integrator", lambda K: s + K, lambda K: [K], 3, 'y = "K*(r - y)/(T*s)"')
-block("double integrator", lambda K: s**2 + K, lambda K: [K], 3, 'y = "K*(r - y)/(T*s)^2"')
-block("triple integrator", lambda K: s**3 + K, lambda K: [K], 3, 'y = "K*(r - y)/(T*s)^3"')
+block("integrator", lambda K: (s + K, [K]), 3, 'y = "K*(r - y)/(T*s)"')
+block("double integrator", lambda K: (s**2 + K, [K]), 3, 'y = "K*(r - y)/(T*s)^2"')
+block("triple integrator", lambda K: (s**3 + K, [K]), 3, 'y = "K*(r - y)/(T*s)^3"')
 for size in (3, 8, 9):  # Routh: 8 is the boundary
-    block(
-        f"three lags, {size}", lambda K: (s + 1) ** 3 + K, lambda K: [K], size, 'y = "K*(r - y)/(1 + T*s)^3"'
-    )
+    block(f"three lags, {size}", lambda K: ((s + 1) ** 3 + K, [K]), size, 'y = "K*(r - y)/(1 + T*s)^3"')
 for size in (0.5, 1, 3):
-    block(f"unstable plant, {size}", lambda K: s - 1 + K, lambda K: [K], size, 'y = "K*(r - y)/(T*s - 1)"')
+    block(f"unstable plant, {size}", lambda K: (s - 1 + K, [K]), size, 'y = "K*(r - y)/(T*s - 1)"')
 for size in (0.5, 2):
-    block(f"positive feedback, {size}", lambda K: s + 1 - K, lambda K: [K], size, 'y = "K*(r + y)/(1 + T*s)"')
+    block(f"positive feedback, {size}", lambda K: (s + 1 - K, [K]), size, 'y = "K*(r + y)/(1 + T*s)"')
 for name, hidden, power in [
     ("T*s", s, 1),
     ("T*s", s, 3),
@@ -258,93 +221,78 @@ for name, hidden, power in [
     for size in (3, 9):
         block(
             f"{name} hidden, {power}, {size}",
-            lambda K, h=hidden, n=power: h * ((s + 1) ** n + K),
-            lambda K, h=hidden: K * h,
+            lambda K, h=hidden, n=power: (h * ((s + 1) ** n + K), K * h),
             size,
             f'u = "({name})/(1 + T*s)^{power}*K*(r - y)", y = "u/({name})"',
         )
 BEHIND = 'y = "K*(r - y)/(1 + T*s)", z = "y/({})"'
-block(
-    "integrator before",
-    lambda K: s * (s + 1 + K),
-    lambda K: [K],
-    3,
-    'a = "r/(T*s)", y = "K*(a - y)/(1 + T*s)"',
-)
+block("integrator before", lambda K: (s * (s + 1 + K), [K]), 3, 'a = "r/(T*s)", y = "K*(a - y)/(1 + T*s)"')
 block(
     "unstable before",
-    lambda K: (s - 1) * (s + 1 + K),
-    lambda K: [K],
+    lambda K: ((s - 1) * (s + 1 + K), [K]),
     3,
     'a = "r/(T*s - 1)", y = "K*(a - y)/(1 + T*s)"',
 )
-block("integrator behind", lambda K: s * (s + 1 + K), lambda K: [K], 3, BEHIND.format("T*s"), 'Z = "z"')
-block("integrator nobody reads", lambda K: s * (s + 1 + K), lambda K: K * s, 3, BEHIND.format("T*s"))
+block("integrator behind", lambda K: (s * (s + 1 + K), [K]), 3, BEHIND.format("T*s"), 'Z = "z"')
+block("integrator nobody reads", lambda K: (s * (s + 1 + K), K * s), 3, BEHIND.format("T*s"))
 block(
     "double pair behind",
-    lambda K: (s**2 + 1) ** 2 * (s + 1 + K),
-    lambda K: [K],
+    lambda K: ((s**2 + 1) ** 2 * (s + 1 + K), [K]),
     3,
     BEHIND.format("(1 + T^2*s^2)^2"),
     'Z = "z"',
 )
-block("oscillator", lambda K: s**2 + 1 + K, lambda K: [K], 3, 'y = "K*(r - y)/(1 + T^2*s^2)"')
+block("oscillator", lambda K: (s**2 + 1 + K, [K]), 3, 'y = "K*(r - y)/(1 + T^2*s^2)"')
 block(
     "cascade",
-    lambda K: s * (s + 4) + 4 * K,
-    lambda K: [4 * K],
+    lambda K: (s * (s + 4) + 4 * K, [4 * K]),
     3,
     'a = "K*(r - x)", v = "K_v*(a - v)/(T*s)", x = "v/(T*s)"',
     'X = "x"',
 )
 block(
     "inner loop of a cascade",
-    lambda K: s * (s + K),
-    lambda K: K * s,
+    lambda K: (s * (s + K), K * s),
     3,
     'v = "K*(r - v)/(T*s)", x = "v/(T*s)"',
     'V = "v"',
 )
 block(
     "cascade with PI",
-    lambda K: s**3 + 4 * (s + 1) * (s + K),
-    lambda K: 4 * K * (s + 1),
+    lambda K: (s**3 + 4 * (s + 1) * (s + K), 4 * K * (s + 1)),
     3,
     'a = "K*(r - x)", u = "K_v*(1 + 1/(T*s))*(a - v)", v = "u/(T*s)", x = "v/(T*s)"',
     'X = "x"',
 )
 block(
     "lag of a block",
-    lambda K: s * (s + 1) + K,
-    lambda K: [K],
+    lambda K: (s * (s + 1) + K, [K]),
     3,
     'y = "K*H*(r - y)/(T*s)"',
     blocks='H = { type = "lag", T = "T" }',
 )
 
 
-def force(name, den, num, K, f, inputs, outputs, more=""):
+def force(name, sides, K, f, inputs, outputs, more=""):
     elements = 'm = { type = "mass", at = "x", m = "m" }\n'
     elements += f'f = {{ type = "force_source", at = "x", f = "{f}" }}\n{more}'
-    loop(name, den, num, K, 'm = "1 kg", k = "9 N/m"', inputs, outputs, elements)
+    loop(name, sides, K, 'm = "1 kg", k = "9 N/m"', inputs, outputs, elements)
 
 
 OTHER = 'm_2 = { type = "mass", at = "z", m = "m" }\n'
 TIED = 'k_1 = { type = "spring", between = ["NODE", "ground"], k = "k" }\n'
 VELOCITY = ("2 N*s/m", "K*(w - s*x)", 'w = { unit = "m/s" }', 'V = "s*x"')
-force("velocity", lambda K: s * (s + K), lambda K: K * s, *VELOCITY)
-force("velocity beside a free mass", lambda K: s**3 * (s + K), lambda K: K * s**3, *VELOCITY, OTHER)
+force("velocity", lambda K: (s * (s + K), K * s), *VELOCITY)
+force("velocity beside a free mass", lambda K: (s**3 * (s + K), K * s**3), *VELOCITY, OTHER)
 force(
     "velocity beside an oscillator",
-    lambda K: s * (s**2 + 9) * (s + K),
-    lambda K: K * s * (s**2 + 9),
+    lambda K: (s * (s**2 + 9) * (s + K), K * s * (s**2 + 9)),
     *VELOCITY,
     OTHER + TIED.replace("NODE", "z"),
 )
 force(
     "acceleration",
-    lambda K: s**2 * (1 + K),
-    lambda K: K * s**2,
+    lambda K: (s**2 * (1 + K), K * s**2),
     "2 kg",
     "K*(a - s^2*x)",
     'a = { unit = "m/s^2" }',
@@ -353,8 +301,7 @@ force(
 for size in (2, -2):
     force(
         f"rate feedback, {size}",
-        lambda K: s**2 + K * s + 9,
-        lambda K: [1],
+        lambda K: (s**2 + K * s + 9, [1]),
         (f"{size} N*s/m",),
         "F - K*s*x",
         'F = { unit = "N" }',
@@ -365,8 +312,8 @@ for size in (2, -2):
 
 def expected(case: Case) -> tuple[str, bool]:
     """Return the word, and whether some hidden pole is not in the open left half plane."""
-    poles, hidden = list(np.roots(case.den(case.gain).c)), []
-    for zero in np.roots(case.num(case.gain).c):
+    poles, hidden = list(np.roots(np.poly1d(case.sides[0]).c)), []
+    for zero in np.roots(np.poly1d(case.sides[1]).c):
         near = min(range(len(poles)), key=lambda i: abs(poles[i] - zero), default=None)
         if near is not None and abs(poles[near] - zero) < EQUAL:
             hidden.append(poles.pop(near))
