@@ -394,12 +394,9 @@ def test_exported_code_has_the_values_too(name):
 
 PROPORTIONAL = """
 symflex = 1
-[parameters]
-K = "3 N/m^2"
-e_1 = "2 N*m^2"
-e_2 = "4 N*m^2"
-m_1 = "0.5 kg/m"
-m_2 = "1 kg/m"
+parameters = { K = "3 N/m^2", e_1 = "2 N*m^2", e_2 = "4 N*m^2", m_1 = "0.5 kg/m", m_2 = "1 kg/m" }
+inputs.M = { unit = "N*m" }
+outputs.U = "u(0.5 m)"
 [fields.w]
 unknowns = ["u", "v"]
 domain = ["0", "1 m"]
@@ -408,10 +405,6 @@ conditions = [
   "u(0) = 0", "u''(0) = 0", "v(0) = 0", "v''(0) = 0",
   "u(1 m) = 0", "e_1*u''(1 m) = M", "v(1 m) = 0", "v''(1 m) = 0",
 ]
-[inputs]
-M = { unit = "N*m" }
-[outputs]
-U = "u(0.5 m)"
 """
 
 

@@ -16,38 +16,24 @@ from tests.independent.test_tapers import propagated
 
 HEAD = """
 symflex = 1
-[parameters]
-E = "2 Pa"
-rho = "3 kg/m^3"
-l = "1.5 m"
-c = 0.6
-g = "9.81 m/s^2"
+parameters = { E = "2 Pa", rho = "3 kg/m^3", l = "1.5 m", c = 0.6, g = "9.81 m/s^2" }
 """
 ROD = """
+inputs.F = { force = "tip" }
+outputs.y = "tip"
 [elements]
 rod = { type = "rod", between = ["ground", "tip"], E = "E", rho = "rho", l = "l", A = "l^2*(1 - c*x/l)^2" }
-[inputs]
-F = { force = "tip" }
-[outputs]
-y = "tip"
 """
 STRING = """
-[fields.w]
-domain = ["0", "l"]
-equation = "(g*x*w')' = s^2*w"
-conditions = ["w(l) = u"]
-[inputs]
-u = { unit = "m" }
-[outputs]
-tip = "w(0)"
+inputs.u = { unit = "m" }
+outputs.tip = "w(0)"
+[fields]
+w = { domain = ["0", "l"], equation = "(g*x*w')' = s^2*w", conditions = ["w(l) = u"] }
 """
 WEDGE = """
-[elements]
-arm = { type = "beam", between = ["root", "tip"], E = "E", rho = "rho", l = "l", I = "I", A = "A" }
-[inputs]
-u = { displacement = "root" }
-[outputs]
-y = "tip"
+elements.arm = { type = "beam", between = ["root", "tip"], E = "E", rho = "rho", l = "l", I = "I", A = "A" }
+inputs.u = { displacement = "root" }
+outputs.y = "tip"
 """
 
 
@@ -111,6 +97,9 @@ def test_a_wedge_moves_like_bessel_functions_from_its_tip(is_turned):
 
 LOSSY = """
 symflex = 1
+definitions = { E_c = "E*(1 + eta*s)", taper = "1/2" }
+inputs.T = { torque = "hub.theta" }
+outputs.y = "tip"
 [parameters]
 E = "200 GPa"
 rho = "7800 kg/m^3"
@@ -118,9 +107,6 @@ A_0 = "16 cm^2"
 I_0 = "21.3 cm^4"
 l = "1 m"
 eta = "20 us"
-[definitions]
-E_c = "E*(1 + eta*s)"
-taper = "1/2"
 [elements]
 pin = { type = "pin", at = "hub" }
 arm.type = "beam"
@@ -132,10 +118,6 @@ arm.I = "I_0*(1 - taper*x/l)^3"
 arm.A = "A_0*(1 - taper*x/l)"
 J = { type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }
 b = { type = "rotary_damper", between = ["hub.theta", "ground"], b = "3 N*m*s/rad" }
-[inputs]
-T = { torque = "hub.theta" }
-[outputs]
-y = "tip"
 """
 
 
@@ -167,18 +149,12 @@ def test_a_damped_arm_with_a_hub_moves_as_collocation_says():
 
 CABLE = """
 symflex = 1
-[parameters]
-mu = "0.35 kg/m"
-g = "9.81 m/s^2"
-l = "12 m"
-m = "15 kg"
+parameters = { mu = "0.35 kg/m", g = "9.81 m/s^2", l = "12 m", m = "15 kg" }
+inputs.z = { displacement = "top" }
+outputs.mid = "cable.y(l/2)"
 [elements]
 cable = { type = "string", between = ["top", "load"], N = "(m + mu*(l - x))*g", rhoA = "mu", l = "l" }
 load = { type = "mass", at = "load", m = "m" }
-[inputs]
-z = { displacement = "top" }
-[outputs]
-mid = "cable.y(l/2)"
 """
 
 

@@ -85,20 +85,6 @@ def test_of_matched_zeros_at_infinity_one_stays_and_small_s_decides_the_gain():
     assert found(exp(s * float(H))) * s == pytest.approx(3.5, rel=1e-6)
 
 
-def test_poles_in_z_are_exponentials_of_those_in_s():
-    found = sampled_transfer_function(rational("1/((s + 5)^2*(s^2 + 2*s + 50))"), Sampling(H))
-    ring = exp(-1 / 50) * np.exp(7j / 50)
-    expected = [exp(-0.1), exp(-0.1), ring.conjugate(), ring]
-    found_poles = sorted((complex(p) for p in found.poles), key=lambda p: (abs(p.imag) > 0, p.imag))
-    assert found_poles == pytest.approx(expected, rel=1e-15)
-
-
-def test_the_zero_of_a_sampled_double_integrator_is_minus_one():
-    found = sampled_transfer_function(rational("1/s^2"), Sampling(H))  # h^2/2 (z + 1)/(z - 1)^2
-    assert [complex(z) for z in found.zeros] == [-1]
-    assert found.coefficients()[0] == pytest.approx([1 / 5000, 1 / 5000], rel=1e-15)
-
-
 def test_the_response_behind_a_dead_time_is_right_at_samples():
     for samples in [0.0, 0.3, 1.0, 2.7]:
         # y' = -2 y + u(t - T): a step of the input makes (1 - exp(-2 (t - T)))/2.
@@ -126,15 +112,6 @@ def test_a_sum_of_dead_times_is_sampled_too():
     assert got == pytest.approx(
         [step(k / 20 - 0.03) + 2 * step(k / 20 - 0.075) for k in range(40)], abs=1e-13
     )
-
-
-def test_a_wave_that_only_travels_is_a_dead_time():
-    # exp(-s T)/s, as a ramp arrives; sampled with the wave between two samples.
-    found = sampled_transfer_function(delayed("0.0125", "1/s"), Sampling(H))
-    z = np.exp(0.7j)
-    late = 0.0125 / float(H)
-    expected = float(H) * ((1 - late) + late / z) / (z - 1)
-    assert found(z) == pytest.approx(expected, rel=1e-14)
 
 
 def test_what_has_no_difference_equation_is_refused():

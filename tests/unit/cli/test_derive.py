@@ -55,18 +55,10 @@ def test_zpk_without_a_value_says_which(shell):
     assert "error[SF229]: parameter 'm' has no value" in done.err
 
 
-def test_latex_is_one_equation_per_transfer_function(shell):
-    assert shell("derive", "x.toml", "--format", "latex").out.count(r"\begin{equation}") == 2
-
-
 def test_an_unknown_form_or_transfer_function_is_a_usage_error_with_a_hint(shell):
     for option, value, meant in (("--form", "polinomial", "polynomial"), ("--tf", "X/G", "X/F")):
         done = shell("derive", "x.toml", option, value)
         assert (done.code, f"did you mean '{meant}'?" in done.err) == (2, True), value
-
-
-def test_what_cancelled_is_named(shell):
-    assert "hidden: s cancelled" in shell("derive", TWO_MASS, "--tf", "V_act/F").out
 
 
 @pytest.mark.parametrize("name", ["eppinger1988/base_flexure", "classics/rod_tip_mass"])

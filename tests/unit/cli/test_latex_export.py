@@ -56,19 +56,6 @@ def test_a_width_or_form_that_does_not_apply_is_a_usage_error(shell):
         assert "error[SF902]" in done.err, arguments
 
 
-def test_a_function_is_normalised_as_asked(shell):
-    for form, denominator in (
-        # m s^2 + k over m, over k, and as it is.
-        ("monic", r"s^{2} + \frac{k}{m}"),
-        ("constant", r"\frac{m}{k} s^{2} + 1"),
-        ("polynomial", r"m s^{2} + k"),
-    ):
-        assert (
-            f"{{{denominator}}}"
-            in shell("export", "x.toml", "--to", "latex", "--tf", "X/F", "--form", form).out
-        ), (form, denominator)
-
-
 @pytest.mark.slow
 def test_a_folder_holds_a_file_for_every_function_and_table(chain):
     done = chain("export", "chain.toml", "--to", "latex", "-o", "paper/")
@@ -85,13 +72,6 @@ def test_a_folder_holds_a_file_for_every_function_and_table(chain):
     assert needs["bode.pgf"] == "pgf"
     assert needs["X_over_F.tex"] == "amsmath"
     assert needs["X_over_F_poles.tex"] == "amsmath,array,booktabs,siunitx"
-
-
-def test_an_existing_folder_needs_no_slash(chain):
-    (chain.folder / "paper").mkdir()
-    arguments = ("--to", "latex", "--tf", "X/F", "--no-figures", "-o", "paper")
-    assert chain("export", "chain.toml", *arguments).code == 0
-    assert (chain.folder / "paper" / "X_over_F.tex").exists()
 
 
 def test_the_files_make_the_same_document_as_the_document(chain):

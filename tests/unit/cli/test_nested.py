@@ -75,21 +75,6 @@ def test_a_nested_beam_says_what_its_functions_are(shell, spec):
     assert "h(0) = h'(0) = " in done.out
 
 
-def test_exported_code_is_of_the_nested_form_and_verified(shell, spec):
-    for target in ("numpy", "c", "matlab", "julia", "js", "array-api", "jax"):
-        done = shell("export", spec, "--to", target, "--representation", "nested")
-        assert done.code == 0, target
-        assert "verified: worst relative error" in done.out, target
-        assert "Z_2 = " in done.out, target
-
-
-def test_a_latex_document_says_that_roots_are_left_out(shell, spec):
-    done = shell("export", spec, "--to", "latex", "--form", "nested")
-    assert done.code == 0
-    assert "in nested form; hidden modes were not looked for" in done.out
-    assert "poles and zeros of X/F are left out" in done.err
-
-
 def test_equal_factors_are_a_power_and_opposite_terms_are_gone(shell, spec):
     from pathlib import Path
 

@@ -1,4 +1,3 @@
-import runpy
 import tomllib
 from importlib.resources import files
 
@@ -51,29 +50,18 @@ def test_a_figure_is_named_after_specification_and_kind_by_default_and_drawn_by_
 
 def test_a_figure_that_cannot_be_made_is_a_usage_error(shell):
     for arguments, code in (
-        (("bod",), "SF902"),
-        (("bode", "-o", "a.gif"), "SF902"),
-        (("bode", "-o", "no/such/folder/a.pdf"), "SF903"),
-        (("bode", "--tf", "X/G"), "SF902"),
-        (("bode", "--font", "tims"), "SF902"),
-        (("bode", "--width", "wide"), "SF902"),
-        (("bode", "--width", "20"), "SF902"),
-        (("bode", "--band", "2", "1"), "SF902"),
-        (("bode", "--band", "0", "1"), "SF902"),
-        (("nyquist", "--band", "0", "1"), "SF902"),
-        (("poles_zeros", "--band", "nan", "1"), "SF902"),
-        (("bode", "--band", "1", "2 kg"), "SF902"),
-        (("bode", "--band", "1", "2", "--xlim", "1", "2"), "SF902"),
-        (("bode", "--xlim", "0", "1"), "SF902"),
-        (("bode", "--ylim", "0", "inf"), "SF902"),
-        (("bode", "--ylim", "0 kg", "1"), "SF902"),
-        (("bode", "--phase", "10", "-10"), "SF902"),
-        (("nyquist", "--phase", "-10", "10"), "SF902"),
-        (("nyquist", "--xlim", "nan", "1"), "SF902"),
-        (("poles_zeros", "--ylim", "1", "1"), "SF902"),
-        (("poles_zeros", "--xlim", "-1 m", "1"), "SF902"),
-        (("modes", "--ylim", "-1", "1"), "SF902"),
-    ):
+        (("bod",), "SF902"), (("bode", "-o", "a.gif"), "SF902"),
+        (("bode", "-o", "no/such/folder/a.pdf"), "SF903"), (("bode", "--tf", "X/G"), "SF902"),
+        (("bode", "--font", "tims"), "SF902"), (("bode", "--width", "wide"), "SF902"),
+        (("bode", "--width", "20"), "SF902"), (("bode", "--band", "2", "1"), "SF902"),
+        (("bode", "--band", "0", "1"), "SF902"), (("nyquist", "--band", "0", "1"), "SF902"),
+        (("poles_zeros", "--band", "nan", "1"), "SF902"), (("bode", "--band", "1", "2 kg"), "SF902"),
+        (("bode", "--band", "1", "2", "--xlim", "1", "2"), "SF902"), (("bode", "--xlim", "0", "1"), "SF902"),
+        (("bode", "--ylim", "0", "inf"), "SF902"), (("bode", "--ylim", "0 kg", "1"), "SF902"),
+        (("bode", "--phase", "10", "-10"), "SF902"), (("nyquist", "--phase", "-10", "10"), "SF902"),
+        (("nyquist", "--xlim", "nan", "1"), "SF902"), (("poles_zeros", "--ylim", "1", "1"), "SF902"),
+        (("poles_zeros", "--xlim", "-1 m", "1"), "SF902"), (("modes", "--ylim", "-1", "1"), "SF902"),
+    ):  # fmt: skip
         done = shell("plot", "x.toml", *arguments)
         assert done.code == 2, (arguments, code)
         assert f"error[{code}]" in done.err, (arguments, code)
@@ -137,16 +125,6 @@ def test_every_target_is_exported_to_stdout(shell):
         assert done.out, target
 
 
-def test_an_exported_module_computes_the_receptance(shell):
-    assert (
-        shell("export", "x.toml", "--to", "numpy", "--tf", "X/F", "-o", "x_over_f.py").err
-        == "wrote x_over_f.py\n"
-    )
-    space = runpy.run_path(str(shell.folder / "x_over_f.py"))
-    # 1/(m s^2 + k) at s = j, with m = 2 and k = 18
-    assert space["X_over_F"](1j) == pytest.approx(1 / 16)
-
-
 def test_code_that_could_not_be_verified_is_a_warning_and_ends_with_code_4_when_strict(shell):
     done = shell("export", "symbolic.toml", "--to", "numpy")
     assert done.code == 0
@@ -159,25 +137,6 @@ def test_a_target_of_two_files_writes_both(shell):
     assert (done.code, done.err) == (0, "wrote plant.c\nwrote plant.h\n")
     assert '#include "plant.h"' in (shell.folder / "plant.c").read_text()
     assert "plant_X_over_F_freq(" in (shell.folder / "plant.h").read_text()
-
-
-def test_state_equations_are_written_and_run(shell):
-    assert shell("export", "x.toml", "--to", "state-space", "-o", "states.py").err == "wrote states.py\n"
-    space = runpy.run_path(str(shell.folder / "states.py"))
-    a, b, c, _ = space["state_space"]()
-    # m x'' + k x = F with m = 2 and k = 18
-    assert (a.tolist(), b.tolist()) == ([[0, 1], [-9, 0]], [[0], [0.5]])
-    assert c[0].tolist() == [1, 0]
-
-
-def test_hidden_states_are_left_out_when_asked_for(shell):
-    text = 'symflex = 1\ninputs.F = { force = "x" }\noutputs.V = "s*x"\n[elements]\n'
-    (shell.folder / "free.toml").write_text(text + 'a = { type = "mass", at = "x", m = "2 kg" }\n', "utf-8")
-    whole = shell("export", "free.toml", "--to", "state-space").out
-    small = shell("export", "free.toml", "--to", "state-space", "--minimal").out
-    assert "np.zeros((2, 2))" in whole
-    assert "np.zeros((1, 1))" in small
-    assert "Every state is controllable and observable" in small
 
 
 def test_an_unknown_target_or_an_option_of_another_one_is_a_usage_error(shell):

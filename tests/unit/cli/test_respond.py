@@ -63,12 +63,6 @@ def test_without_an_end_a_step_is_followed_until_it_has_died_away(oscillator):
     assert float(found["value"][-1]) * 800 == pytest.approx(1, abs=1.01 * left)
 
 
-def test_a_value_that_is_set_is_used(oscillator):
-    arguments = ["--tf", "X/F", "--until", "0.5", "--points", "2", "--json", "--set", "k=400 N/m"]
-    document = oscillator("respond", "osc.toml", *arguments).json
-    assert float(document["value"][1]) == pytest.approx(step_of_oscillator(0.5, k=400.0), rel=1e-11)
-
-
 def test_text_says_what_is_an_impulse(oscillator):
     out = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "impulse", "--until", "1 s").out
     assert "also, at 0 s, an impulse of weight 0.5" in out
@@ -148,19 +142,6 @@ def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
     done = oscillator("shape", "osc.toml", "-o", "left.svg")
     assert "ZV shaper, 2 impulses" in done.out
     assert (tmp_path / "left.svg").exists()
-
-
-def test_a_sampled_module_steps_as_the_closed_form_does(oscillator, tmp_path):
-    done = oscillator(
-        "export", "osc.toml", "--tf", "X/F", "--to", "state-space", "--sample", "10ms", "-o", "step.py"
-    )
-    assert done.code == 0
-    names = runpy.run_path(str(tmp_path / "step.py"))
-    w = np.zeros(2)
-    for _ in range(50):
-        w = names["A"] @ w + names["B"] @ [1.0]
-    assert names["SAMPLE_TIME"] == 0.01
-    assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.5), rel=1e-12)
 
 
 def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):

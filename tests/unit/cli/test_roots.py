@@ -34,19 +34,10 @@ def test_json_has_the_documented_keys(shell):
     assert all(set(root) == ROOT_KEYS for root in document["poles"] + document["zeros"])
 
 
-def test_json_lists_both_members_of_a_pair_as_decimal_strings(shell):
-    poles = shell("roots", "x.toml", "--tf", "X/F", "--digits", "5", "--json").json["poles"]
-    assert [(p["re"], p["im"]) for p in poles] == [("0", "3.0000"), ("0", "-3.0000")]
-
-
 def test_the_digits_of_the_specification_are_the_default(shell):
     text = (shell.folder / "x.toml").read_text() + "[analysis]\ndigits = 7\n"
     (shell.folder / "seven.toml").write_text(text)
     assert shell("roots", "seven.toml", "--json").json["poles"][0]["im"] == "3.000000"
-
-
-def test_modes_asks_for_the_lowest(shell):
-    assert shell("roots", "x.toml", "--modes", "1", "--json").json["region"] == {"kind": "modes", "count": 1}
 
 
 def test_a_band_is_in_hertz_or_carries_a_unit(shell):
@@ -110,19 +101,8 @@ def test_a_transfer_function_that_is_zero_has_only_hidden_modes(shell):
     assert [root["im"][:2] for root in document["hidden"]] == ["3.", "-3"]
 
 
-def test_roots_of_a_distributed_system_are_certified(beam):
-    done = beam("roots", "beam.toml", "--modes", "2")
-    assert done.out.startswith("V_act/F   certified: 10 of 10 roots enclosed; marginal\n")
-    assert done.code == 0
-
-
 def test_what_is_proved_is_enough_for_the_strict(shell):
     assert shell("roots", "x.toml", "--strict").code == 0
-
-
-def test_json_of_a_distributed_system_is_certified(beam):
-    document = beam("roots", "beam.toml", "--modes", "2", "--json").json
-    assert (document["certified"], document["poles"][1]["certified"]) == (True, True)
 
 
 def test_the_default_region_of_a_distributed_system_is_explained(beam):
@@ -137,11 +117,6 @@ def test_a_budget_is_for_lumped_systems_too(shell):
     certificate = document.json["certificate"]
     assert (document.code, certificate["budget_exceeded"], certificate["found"]) == (5, True, 0)
     assert certificate["counted"] > 0
-
-
-def test_a_million_modes_exceed_a_budget(beam):
-    done = beam("roots", "beam.toml", "--modes", "1000000")
-    assert (done.code, "SF505" in done.err) == (5, True)
 
 
 @pytest.fixture

@@ -133,19 +133,13 @@ def test_every_kind_of_kernel_agrees_with_balls(kind, tmp_path):
 
 SMALL = """
 symflex = 1
-[parameters]
-m = "2 kg"
-b = { unit = "N*s/m" }
-k = "18 N/m"
+parameters = { m = "2 kg", b = { unit = "N*s/m" }, k = "18 N/m" }
+inputs.F = { force = "x" }
+outputs = { X = "x", V = "s*x" }
 [elements]
 body = { type = "mass", at = "x", m = "m" }
 loss = { type = "damper", between = ["x", "ground"], b = "b" }
 spring = { type = "spring", between = ["x", "ground"], k = "k" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-V = "s*x"
 """
 
 
@@ -178,19 +172,12 @@ def test_a_pole_is_not_finite_and_nothing_is_written_for_no_frequencies(small):
 
 BEAM = """
 symflex = 1
-[parameters]
-E = "200 GPa"
-I = "4e-9 m^4"
-rho = "7850 kg/m^3"
-A = "4.8e-4 m^2"
-l = "1.086 m"
+parameters = { E = "200 GPa", I = "4e-9 m^4", rho = "7850 kg/m^3", A = "4.8e-4 m^2", l = "1.086 m" }
+inputs.F = { force = "p" }
+outputs.V = "s*p"
 [elements]
 arm = { type = "beam", between = ["p", "q"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
 slide = { type = "slider", at = "p" }
-[inputs]
-F = { force = "p" }
-[outputs]
-V = "s*p"
 """
 
 
@@ -403,15 +390,6 @@ def test_the_header_tells_the_verified_error_units_and_what_omega_is():
 def test_the_text_is_the_same_each_time():
     first, second = of_either("beam"), exported(BEAM)
     assert (first.text, first.companions[".h"]) == (second.text, second.companions[".h"])
-
-
-def test_a_transfer_function_given_twice_is_written_once():
-    model = pipeline.loads(SMALL)
-    tfs = pipeline.derive_all(model)
-    once, twice = (
-        C99.export(model, given, stem="plant", is_alone=False, samples=5) for given in (tfs, [*tfs, *tfs])
-    )
-    assert once.text == twice.text
 
 
 def test_a_name_that_cannot_be_included_is_refused():

@@ -9,7 +9,6 @@ import symflex
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia import JULIA, module_name
 from symflex.codegen.matlab import MATLAB, NAMES, main_name
-from symflex.codegen.module_text import identifiers
 from tests.unit.codegen.exportable import DERIVATIONS, derived
 
 TARGETS = {"matlab": (MATLAB, 88), "julia": (JULIA, 92)}
@@ -115,13 +114,6 @@ def test_the_name_of_a_main_function_is_one_that_matlab_takes():
 def test_the_name_of_a_module_begins_its_words_with_capitals():
     names = {"beam": "Beam", "my-beam 2": "MyBeam2", "2x": "P2x", "base": "Base_", "///": "TransferFunctions"}
     assert {wanted: module_name(wanted) for wanted in names} == names
-
-
-def test_cut_identifiers_stay_apart():
-    wanted = {str(i): "stiffness_of_the_bearing" for i in range(120)}
-    found = list(identifiers(wanted, {"stiffness_"}, longest=10).values())
-    assert len(set(found)) == 120
-    assert max(map(len, found)) == 10
 
 
 def test_lines_of_code_end_after_operators():

@@ -7,15 +7,8 @@ from symflex.errors import BudgetError, ModelError
 
 HEAD = """
 symflex = 1
-[parameters]
-E = "70 GPa"
-I = "1e-8 m^4"
-rho = "2700 kg/m^3"
-A = "1e-4 m^2"
-l = "1 m"
-T_d = "1 ms"
-[blocks]
-D = { type = "delay", T = "T_d" }
+parameters = { E = "70 GPa", I = "1e-8 m^4", rho = "2700 kg/m^3", A = "1e-4 m^2", l = "1 m", T_d = "1 ms" }
+blocks.D = { type = "delay", T = "T_d" }
 """
 FIELD = """
 [fields.w]
@@ -101,15 +94,10 @@ X = "u1(l)"
 def test_an_unknown_without_derivatives_is_refused_at_its_field(unknowns, equations, static):
     text = f"""
 symflex = 1
-[fields.f]
-unknowns = {unknowns}
-domain = ["0", "1"]
-equations = {equations}
-conditions = ["a(0) = u"]
-[inputs]
-u = {{}}
-[outputs]
-Y = "{static}(1)"
+inputs.u = {{}}
+outputs.Y = "{static}(1)"
+[fields]
+f = {{ unknowns = {unknowns}, domain = ["0", "1"], equations = {equations}, conditions = ["a(0) = u"] }}
 """
     with pytest.raises(ModelError, match=f"SF305.*no derivative of {static}") as caught:
         pipeline.derive_all(pipeline.loads(text))

@@ -48,16 +48,12 @@ def test_a_value_set_in_another_unit_stands_in_that_unit():
 
 BEAM = """
 symflex = 1
-[parameters]
-k = "35 kN/m"
-m = "3 kg"
+parameters = { k = "35 kN/m", m = "3 kg" }
+inputs.F = { force = "x" }
+outputs.X = "x"
 [elements]
 body = { type = "mass", at = "x", m = "m" }
 wall = { type = "spring", between = ["x", "ground"], k = "k" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """
 
 
@@ -75,14 +71,12 @@ def test_a_pitch_stands_as_it_was_declared_also_where_it_is_read_in_radians():
     model = pipeline.loads("""
 symflex = 1
 parameters = { J = "2 kg*m^2", h = "10 mm/rev", m = "3 kg" }
+inputs.T = { torque = "phi" }
+outputs.X = "x"
 [elements]
 rotor = { type = "inertia", at = "phi", J = "J" }
 screw = { type = "transformer", from = "phi", to = "x", ratio = "h" }
 table = { type = "mass", at = "x", m = "m" }
-[inputs]
-T = { torque = "phi" }
-[outputs]
-X = "x"
 """)
     assert r"\num{10}~mm/rev" in parameter_table(model)
     assert repr(model.parameters[1]) == "<ModelParameter h: 10 mm/rev>"
@@ -95,11 +89,7 @@ def test_transfer_functions_and_parameters_have_the_units_that_were_written():
 symflex = 1
 parameters = { K_i = "2 V/A", K_w = "0.2 A*s/rad", w_c = "30 rad/s", k = "2 W/(m*K)", l = "1 m" }
 inputs = { w = { unit = "rad/s" }, q = { unit = "W/m^2" } }
-[outputs]
-i = "K_w*w"
-v = "K_i*K_w*w"
-z = "w_c/(s + w_c)*w"
-T = "q*l/k"
+outputs = { i = "K_w*w", v = "K_i*K_w*w", z = "w_c/(s + w_c)*w", T = "q*l/k" }
 """)
     assert [p.unit for p in model.parameters[:3]] == ["V/A", "A*s/rad", "rad/s"]
     units = {tf.name: tf.unit for tf in pipeline.derive_all(model)}

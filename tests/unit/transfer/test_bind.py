@@ -314,11 +314,6 @@ def test_values_read_before_stay_as_they_are_and_all_stand_in_declared_order():
     )
 
 
-def test_a_parameter_that_is_not_in_the_function_may_be_given_and_is_kept():
-    bound = pipeline.bind(derive(TURNING, "Y", "U"), {"n": 7})
-    assert [name for name, _ in bound.values] == ["f", "w", "n"]
-
-
 HIDING = f"""{HEADER}a = 1
 c = 2
 d = {{ value = 3, assume = "real" }}

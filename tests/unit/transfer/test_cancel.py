@@ -113,13 +113,6 @@ def test_what_a_denominator_is_divided_by_is_no_common_factor():
         assert shared.factors == ()
 
 
-def test_numbers_in_front_are_kept():
-    result, _ = cancel(
-        Factored.number(RING, Fraction(3, 7)) * product([((S + K) * B, 1)]), product([((S + K) * K, 1)])
-    )
-    assert to_sympy(result) == sympy.Rational(3, 7) * SYMBOLS[2] / SYMBOLS[1]
-
-
 def test_coprime_quotients_keep_their_factors_as_they_were_grouped():
     numerator, denominator = product([((S + K) * (S - K), 1)]), product([((B * S + K) * (S**2 + B), 2)])
     result, shared = cancel(numerator, denominator)

@@ -33,19 +33,6 @@ class Levels:
         return double_value(self.enclosed, s, patience)
 
 
-def test_a_value_that_is_right_at_first_is_not_asked_for_again():
-    function = Levels(lambda bits, s: s * acb(2, 3))
-    assert function(1 - 1j) == 5 + 1j
-    assert function.asked == []
-
-
-def test_one_bit_more_than_a_double_has_is_enough():
-    for bits, asked in [(DOUBLE_BITS, []), (DOUBLE_BITS - 1, [2 * FIRST_BITS])]:
-        function = Levels(lambda level, s, bits=bits: accurate(0.75, bits if level == FIRST_BITS else 100))
-        assert function(1j) == 0.75, bits
-        assert function.asked == asked, bits
-
-
 def test_the_precision_is_doubled_up_to_a_last_one_and_then_the_value_counts_as_zero():
     function = Levels(lambda bits, s: accurate(0.75, 10))
     assert function(1j) == 0
@@ -55,13 +42,6 @@ def test_the_precision_is_doubled_up_to_a_last_one_and_then_the_value_counts_as_
 def test_a_value_that_is_never_finite_is_a_pole():
     value = Levels(lambda bits, s: FAIL)(1j)
     assert (value.real, isnan(value.imag)) == (inf, True)
-
-
-def test_late_accuracy_is_waited_for():
-    for bits in [3072, 6144]:
-        function = Levels(lambda level, s, bits=bits: s if level >= bits else FAIL)
-        assert function(0.5 + 0.25j) == 0.5 + 0.25j, bits
-        assert function.asked[-1] == bits, bits
 
 
 def test_where_no_number_is_given_no_number_is_returned():
@@ -85,14 +65,6 @@ def undefined(at):
     return answer
 
 
-def test_a_limit_is_sought_after_as_many_doublings_as_said():
-    for patience, asked in [(0, []), (1, [192]), (2, [192, 384])]:
-        function = Levels(undefined(lambda offset: acb(2, 5) + offset))
-        assert function(PLACE, patience) == 2 + 5j, patience
-        assert function.asked[: len(asked)] == asked, patience
-        assert [bits for bits in function.asked[len(asked) :] if bits < 768] == [], patience
-
-
 def test_a_function_that_vanishes_at_such_a_point_is_zero_there():
     assert Levels(undefined(lambda offset: offset * acb(2, 5)))(PLACE, 0) == 0
 
@@ -106,12 +78,6 @@ def test_a_function_that_grows_towards_such_a_point_has_a_pole_there():
 def test_a_function_that_is_no_number_about_such_a_point_has_no_limit():
     value = Levels(lambda bits, s: FAIL)(PLACE, 0)
     assert (value.real, isnan(value.imag)) == (inf, True)
-
-
-def test_a_finite_value_of_few_bits_is_made_better_before_it_is_a_limit():
-    function = Levels(lambda bits, s: accurate(0.75, 10 if bits < 400 else 100))
-    assert function(PLACE, 0) == 0.75
-    assert function.asked == [192, 384, 768]
 
 
 def power(order, s):

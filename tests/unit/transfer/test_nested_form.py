@@ -22,11 +22,9 @@ from symflex.expressions import (
     format_expression,
     parse,
 )
-from symflex.model import with_numbers
 from symflex.print.forms.nested import nested_form
 from symflex.print.json_format import derive_json
 from symflex.transfer import bind, bind_nested
-from symflex.transfer.of_model import derive_nested
 from tests.property.networks import networks, to_toml
 from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference
 
@@ -258,17 +256,6 @@ def test_a_value_where_a_member_vibrates_between_fixed_ends_is_a_limit():
     for w in (1.0, 1.5, math.pi / 2):
         expected = math.sin(2 * w) * math.sin(w) / (w * math.sin(3 * w))
         assert bound(1j * w) == pytest.approx(expected, rel=1e-12, abs=1e-15)
-
-
-def test_numbers_in_place_lead_to_the_same_values_as_symbols():
-    model = pipeline.load("derivations/eppinger1988/robot_axis.toml")
-    pair = model.transfer_functions[0]
-    (one,), (other,) = (
-        derive_nested(with_numbers(model, in_kernels=True), [pair]),
-        pipeline.derive_nested(model, [pair]),
-    )
-    assert one.parameters == ()
-    assert bind_nested(one)(2 + 300j) == bind_nested(other)(2 + 300j)
 
 
 def test_the_representation_is_chosen_by_the_number_of_terms():

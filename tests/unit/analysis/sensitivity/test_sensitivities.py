@@ -430,13 +430,6 @@ def test_a_square_root_at_zero_has_no_slope():
     assert found == {"k": "undecided", "c": "certified", "T": "certified"}
 
 
-def test_zeros_move_too():
-    text = OSCILLATOR.replace('outputs.X = "x"', 'outputs.X = "s*m*x + b*x"')
-    (zero,) = {s.index for s in moved(pipeline.loads(text)) if s.kind == "zero"}
-    found = {s.parameter.name: s for s in moved(pipeline.loads(text)) if s.kind == "zero" and s.index == zero}
-    assert {n: float(s.normalised.real) for n, s in found.items()} == {"m": -1, "b": 1, "k": 0}
-
-
 def test_an_output_that_is_zero_has_no_roots_to_move():
     text = OSCILLATOR.replace('outputs.X = "x"', 'outputs.X = "0*x"')
     assert moved(pipeline.loads(text)) == ()

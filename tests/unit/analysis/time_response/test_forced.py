@@ -43,11 +43,6 @@ def test_between_and_after_samples_the_input_is_a_line_and_then_constant():
     assert found.values.tolist() == [0.25, 1.0, 5.0]
 
 
-def test_before_the_first_sample_nothing_happens():
-    found = forced_response(rational("1/(s + 1)"), [1, 2], [1, 1], [Fraction(1, 2), 1, 3])
-    assert found.values.tolist() == pytest.approx([0.0, 0.0, 1 - np.exp(-2)])
-
-
 def test_an_input_through_a_delay_is_the_input_later():
     text = 'symflex = 1\nblocks.D = { type = "delay", T = "0.5 s" }\ninputs.u = {}\noutputs.y = "D*u"'
     bound = loads(text).transfer_function("y", "u").bind().bound
