@@ -100,16 +100,9 @@ SOURCES = {
 PLANAR = ("rigid_body", "rigid_link", "massless_beam", "fixed", "slider", "pin")
 CONTROLLED = {"vcvs": ("mu", ""), "vccs": ("g", "A/V"), "ccvs": ("r", "Ohm"), "cccs": ("beta", "")}
 COUPLINGS = (
-    "dc_motor",
-    "voice_coil",
-    "transformer",
-    "gyrator",
-    "planetary_gear",
-    "piston",
-    "coupled_inductors",
-    "op_amp",
-    *CONTROLLED,
-)
+    "dc_motor", "voice_coil", "transformer", "gyrator", "planetary_gear", "piston", "coupled_inductors",
+    "op_amp", *CONTROLLED,
+)  # fmt: skip
 ELEMENTS = (*TWO_TERMINAL, *ONE_TERMINAL, *SOURCES, *PLANAR, *COUPLINGS)
 UNITS_OF = {
     **{kind: {entry[1]: entry[2]} for kind, entry in (TWO_TERMINAL | ONE_TERMINAL).items()},
@@ -775,16 +768,8 @@ CARRIED = ("beam", "axial", "shaft")
 """What the members of a network carry: bending, displacements along or across a line, angles."""
 MEMBERS = ("beam", "rod", "shaft", "string")
 UNITS = {
-    "rho": "kg/m^3",
-    "l": "m",
-    "eta": "s",
-    "G": "Pa",
-    "A": "m^2",
-    "N": "N",
-    "E": "Pa",
-    "I": "m^4",
-    "J": "m^4",
-}
+    "rho": "kg/m^3", "l": "m", "eta": "s", "G": "Pa", "A": "m^2", "N": "N", "E": "Pa", "I": "m^4", "J": "m^4",
+}  # fmt: skip
 LUMPS = (("spring", "damper", "mass"), ("torsion_spring", "rotary_damper", "inertia"))
 """By the power of s in force or torque per displacement or angle."""
 

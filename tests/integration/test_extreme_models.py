@@ -92,22 +92,13 @@ COMMANDS = {
     "report": ("report", "--no-pdf", "-o", "r"),
 }
 TRIED = (
-    ("a delay of 1e12 s", "roots"),
-    ("a delay of 1e-12 s", "rational"),
-    ("a rod with a tip of 1e12 kg", "bode"),
-    ("a rod of 1e-12 m", "modes"),
-    ("a rod of 1e12 m", "roots"),
-    ("a rod of 1e12 m", "export"),
-    ("a band at 1e29 Hz", "measure"),
-    ("a band of 21 decades", "bode"),
-    ("a band of 21 decades", "report"),
-    ("a hundred thousand modes", "modes"),
-    ("eight coupled symbolic masses", "check"),
-    ("eight coupled symbolic masses", "export"),
-    ("thirty coupled masses", "derive"),
-    ("a power of a power", "roots"),
-    ("a power of a power", "export"),
-)
+    ("a delay of 1e12 s", "roots"), ("a delay of 1e-12 s", "rational"),
+    ("a rod with a tip of 1e12 kg", "bode"), ("a rod of 1e-12 m", "modes"), ("a rod of 1e12 m", "roots"),
+    ("a rod of 1e12 m", "export"), ("a band at 1e29 Hz", "measure"), ("a band of 21 decades", "bode"),
+    ("a band of 21 decades", "report"), ("a hundred thousand modes", "modes"),
+    ("eight coupled symbolic masses", "check"), ("eight coupled symbolic masses", "export"),
+    ("thirty coupled masses", "derive"), ("a power of a power", "roots"), ("a power of a power", "export"),
+)  # fmt: skip
 """Every model and every command, those together that take a way of their own."""
 DOCUMENTED = {0, 2, 3, 4, 5}
 LONG = 120

@@ -17,20 +17,9 @@ KINDS = {
     "string": ('type = "string"', "N rho A", "c_f k_f"),
 }
 UNITS = {
-    "E": "Pa",
-    "G": "Pa",
-    "kappa": "",
-    "I": "m^4",
-    "rho": "kg/m^3",
-    "A": "m^2",
-    "N": "N",
-    "eta": "s",
-    "c_f": "N*s/m^2",
-    "k_f": "N/m^2",
-    "l": "m",
-    "m": "kg",
-    "k": "N/m",
-}
+    "E": "Pa", "G": "Pa", "kappa": "", "I": "m^4", "rho": "kg/m^3", "A": "m^2", "N": "N", "eta": "s",
+    "c_f": "N*s/m^2", "k_f": "N/m^2", "l": "m", "m": "kg", "k": "N/m",
+}  # fmt: skip
 POINTS = (0.4 + 1.3j, 2.1 - 0.6j, 0.02 + 3.1j)
 
 # Between p and q: one part with all its options, the same turned round; a plain one, and cut in two.

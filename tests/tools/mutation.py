@@ -30,15 +30,8 @@ from random import Random
 
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = [
-    "docs",
-    "derivations",
-    "benchmarks",
-    "README.md",
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "mkdocs.yml",
-    ".ci",
-]
+    "docs", "derivations", "benchmarks", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "mkdocs.yml", ".ci",
+]  # fmt: skip
 SETTINGS = """
 [tool.mutmut]
 source_paths = ["symflex"]

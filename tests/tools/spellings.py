@@ -38,24 +38,11 @@ WORD = re.compile(r"(?<![\w.])(?<!\d )([A-Za-z]\w*)(?![\w.'])")
 PLAIN = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)(?:\s+(.*))?\Z")
 EXACT = Context(prec=100)
 OTHER_UNITS = {
-    "Pa": ("kPa", -3),
-    "GPa": ("MPa", 3),
-    "m": ("mm", 3),
-    "mm": ("um", 3),
-    "m^2": ("mm^2", 6),
-    "m^4": ("mm^4", 12),
-    "kg": ("g", 3),
-    "kg/m^3": ("g/cm^3", -3),
-    "N/m": ("kN/m", -3),
-    "kN/m": ("N/m", 3),
-    "N*m/rad": ("mN*m/rad", 3),
-    "N*s/m": ("kN*s/m", -3),
-    "s": ("ms", 3),
-    "ms": ("s", -3),
-    "ohm": ("mOhm", 3),
-    "H": ("mH", 3),
-    "F": ("uF", 6),
-}
+    "Pa": ("kPa", -3), "GPa": ("MPa", 3), "m": ("mm", 3), "mm": ("um", 3), "m^2": ("mm^2", 6),
+    "m^4": ("mm^4", 12), "kg": ("g", 3), "kg/m^3": ("g/cm^3", -3), "N/m": ("kN/m", -3), "kN/m": ("N/m", 3),
+    "N*m/rad": ("mN*m/rad", 3), "N*s/m": ("kN*s/m", -3), "s": ("ms", 3), "ms": ("s", -3), "ohm": ("mOhm", 3),
+    "H": ("mH", 3), "F": ("uF", 6),
+}  # fmt: skip
 """Units, others for the same, and by which power of ten the number changes."""
 
 

@@ -244,18 +244,9 @@ def test_a_nested_function_evaluates_over_an_array_too(model):
 
 def test_a_value_may_be_any_number_or_a_quantity(colocated):
     for k in (
-        120_000,
-        120_000.0,
-        Fraction(120_000),
-        Decimal(120_000),
-        "120 kN/m",
-        "120000",
-        np.float64(1.2e5),
-        np.float32(1.2e5),
-        np.int64(120_000),
-        np.array(1.2e5),
-        sympy.Integer(120_000),
-    ):
+        120_000, 120_000.0, Fraction(120_000), Decimal(120_000), "120 kN/m", "120000", np.float64(1.2e5),
+        np.float32(1.2e5), np.int64(120_000), np.array(1.2e5), sympy.Integer(120_000),
+    ):  # fmt: skip
         assert colocated.bind(k=k).bound.values == colocated.bind(k=120_000).bound.values, k
         stiffness = symflex.loads(TEXT, values={"k": k}).parameters[2]
         assert (stiffness.name, stiffness.value.rational) == ("k", 120_000), k
@@ -314,23 +305,15 @@ def test_an_impossible_choice_is_a_usage_error(model, colocated):
         signals={"y": "K/s*(r - y)"}, parameters={"K": 1}, inputs={"r": {}}, outputs={"Y": "y"}
     )
     for call in [
-        lambda: bound.poles(modes=-1),
-        lambda: bound.poles(mode=0),
-        lambda: bound.zeros(band=(2, 1)),
-        lambda: bound.zeros(band=(math.nan, 1)),
-        lambda: bound.residues(band=np.array([1.0, math.inf])),
-        lambda: bound.pole_zero_map(region=(1, -1, 0, 1)),
-        lambda: bound.poles(digits=0),
-        lambda: bound.residues(digits=math.nan),
-        lambda: bound.step_response([1.0], digits=0),
-        lambda: bound.mode_shape(1, digits=-3),
-        lambda: bound.to_frd([1j, 2j]),
-        lambda: bound.discretise(math.inf),
-        lambda: feedback.stability("K", digits=0),
-        lambda: feedback.stability("K", up_to_hz=math.inf),
-        lambda: feedback.stability("K", up_to_hz=-1),
+        lambda: bound.poles(modes=-1), lambda: bound.poles(mode=0), lambda: bound.zeros(band=(2, 1)),
+        lambda: bound.zeros(band=(math.nan, 1)), lambda: bound.residues(band=np.array([1.0, math.inf])),
+        lambda: bound.pole_zero_map(region=(1, -1, 0, 1)), lambda: bound.poles(digits=0),
+        lambda: bound.residues(digits=math.nan), lambda: bound.step_response([1.0], digits=0),
+        lambda: bound.mode_shape(1, digits=-3), lambda: bound.to_frd([1j, 2j]),
+        lambda: bound.discretise(math.inf), lambda: feedback.stability("K", digits=0),
+        lambda: feedback.stability("K", up_to_hz=math.inf), lambda: feedback.stability("K", up_to_hz=-1),
         lambda: bound.step_info(digits=100_000),
-    ]:
+    ]:  # fmt: skip
         assert refusal(call) == "UsageError SF902"
     for band in [(50, 1), (0, 50), (1, math.inf)]:  # the search would begin at 0 and never end
         expected = "SF804" if math.isfinite(band[1]) else "SF902"

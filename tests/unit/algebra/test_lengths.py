@@ -18,18 +18,10 @@ def recombined(found, i):
 
 def test_every_length_is_the_combination_its_coordinates_say():
     for lengths in [
-        [L],
-        [L, X],
-        [L, X, L - X],
-        [L / 2, L],
-        [L / 3, L / 2],
-        [L, L * Fraction(2, 3), X, X - L],
-        [L / D, L / D * 2],
-        [L * X, L, X],
-        [L / D / 2, X / D**2 * Fraction(5, 3), L / D / 3],
-        [L * 5, L * 3, X],
-        [L - X, X - D, L - D],
-    ]:
+        [L], [L, X], [L, X, L - X], [L / 2, L], [L / 3, L / 2], [L, L * Fraction(2, 3), X, X - L],
+        [L / D, L / D * 2], [L * X, L, X], [L / D / 2, X / D**2 * Fraction(5, 3), L / D / 3],
+        [L * 5, L * 3, X], [L - X, X - D, L - D],
+    ]:  # fmt: skip
         found = length_base(lengths)
         for i, length in enumerate(lengths):
             assert (recombined(found, i) - length).is_zero, lengths

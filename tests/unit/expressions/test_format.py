@@ -76,29 +76,18 @@ def test_no_pair_of_parentheses_can_be_left_out(tree):
 
 def test_a_tree_prints_as_a_person_writes_it():
     for tree, expected in [
-        (Sum((a, b, Negative(c))), "a + b - c"),
-        (Sum((Negative(a), b)), "-a + b"),
-        (Sum((a, Negative(Sum((b, c))))), "a - (b + c)"),
-        (Negative(Sum((a, b))), "-(a + b)"),
-        (Product((a, Sum((b, c)))), "a*(b + c)"),
-        (Product((Quotient(a, b), c)), "a/b*c"),
-        (Product((a, Quotient(b, c))), "a*(b/c)"),
-        (Product((a, Negative(b))), "a*-b"),
-        (Product((Negative(a), b)), "(-a)*b"),
-        (Negative(Product((a, b))), "-a*b"),
-        (Quotient(a, Product((b, c))), "a/(b*c)"),
-        (Quotient(Quotient(a, b), c), "a/b/c"),
-        (Power(Negative(a), n(2)), "(-a)^2"),
-        (Negative(Power(a, n(2))), "-a^2"),
-        (Power(Power(a, b), c), "(a^b)^c"),
-        (Power(a, Power(b, c)), "a^b^c"),
-        (Power(a, Quotient(n(1), n(2))), "a^(1/2)"),
-        (Power(Derivative("w", 1), n(2)), "w'^2"),
-        (Call("w", Quotient(Name("l"), n(2)), 2), "w''(l/2)"),
-        (Attribute("motor", "i"), "motor.i"),
-        (Sum((a, Number(Fraction(-3)))), "a - 3"),
-        (Product((a, Number(Fraction(-3)))), "a*-3"),
-    ]:
+        (Sum((a, b, Negative(c))), "a + b - c"), (Sum((Negative(a), b)), "-a + b"),
+        (Sum((a, Negative(Sum((b, c))))), "a - (b + c)"), (Negative(Sum((a, b))), "-(a + b)"),
+        (Product((a, Sum((b, c)))), "a*(b + c)"), (Product((Quotient(a, b), c)), "a/b*c"),
+        (Product((a, Quotient(b, c))), "a*(b/c)"), (Product((a, Negative(b))), "a*-b"),
+        (Product((Negative(a), b)), "(-a)*b"), (Negative(Product((a, b))), "-a*b"),
+        (Quotient(a, Product((b, c))), "a/(b*c)"), (Quotient(Quotient(a, b), c), "a/b/c"),
+        (Power(Negative(a), n(2)), "(-a)^2"), (Negative(Power(a, n(2))), "-a^2"),
+        (Power(Power(a, b), c), "(a^b)^c"), (Power(a, Power(b, c)), "a^b^c"),
+        (Power(a, Quotient(n(1), n(2))), "a^(1/2)"), (Power(Derivative("w", 1), n(2)), "w'^2"),
+        (Call("w", Quotient(Name("l"), n(2)), 2), "w''(l/2)"), (Attribute("motor", "i"), "motor.i"),
+        (Sum((a, Number(Fraction(-3)))), "a - 3"), (Product((a, Number(Fraction(-3)))), "a*-3"),
+    ]:  # fmt: skip
         assert format_expression(tree) == expected, tree
 
 

@@ -256,15 +256,8 @@ def test_a_band_that_is_none_is_refused(tfs):
 
 def test_limits_of_an_axis_that_are_none_are_refused():
     for ends in (
-        (1, 0),
-        (2, 2),
-        (np.nan, 1),
-        (0, np.nan),
-        (-np.inf, 0),
-        (0, np.inf),
-        (-1e300, 1e300),
-        (1, 1 + 1e-12),
-    ):
+        (1, 0), (2, 2), (np.nan, 1), (0, np.nan), (-np.inf, 0), (0, np.inf), (-1e300, 1e300), (1, 1 + 1e-12),
+    ):  # fmt: skip
         for axis in ("x", "y", "phase"):
             assert refusal(AxisLimits, **{axis: ends}) == "UsageError SF902", (axis, ends)
 

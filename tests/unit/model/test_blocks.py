@@ -11,19 +11,11 @@ from symflex.errors import SpecError
 INNER = 'symflex = 1\n[inputs]\nF = {}\n[outputs]\nX = "F/(s + 2)"\n'
 SECRET = "tresor"
 COMMANDS = {
-    "check": (),
-    "derive": (),
-    "roots": (),
-    "rational": (),
-    "sweep": ("--over", "k=1,2"),
-    "stability": ("--gain", "k"),
-    "colocation": ("--tf", "X/F", "--with", "X/F"),
-    "plot": ("bode", "-o", "figure.svg"),
-    "export": ("--to", "numpy"),
-    "audit": (),
-    "measure": ("--tf", "X/F", "-o", "measured.csv"),
-    "report": ("--no-pdf", "-o", "report"),
-}
+    "check": (), "derive": (), "roots": (), "rational": (), "sweep": ("--over", "k=1,2"),
+    "stability": ("--gain", "k"), "colocation": ("--tf", "X/F", "--with", "X/F"),
+    "plot": ("bode", "-o", "figure.svg"), "export": ("--to", "numpy"), "audit": (),
+    "measure": ("--tf", "X/F", "-o", "measured.csv"), "report": ("--no-pdf", "-o", "report"),
+}  # fmt: skip
 
 
 def outer(path):

@@ -368,24 +368,16 @@ def test_an_abbreviation_cannot_be_called_as_the_laplace_variable():
 
 
 HOSTILE = {
-    "a call into Python": "__import__('os').system('true')",
-    "an empty text": "",
-    "only an equals sign": "=",
-    "an equation of nothing": "0 = 0",
-    "primes alone": "'''' = ''",
-    "a derivative of a number": "3''(0) = 0",
-    "a derivative of a derivative": "w'(0)'(0) = 0",
-    "a field at a field": "w(w(0)) = 0",
-    "a field at two points": "w(0, l) = 0",
-    "division by a field": "1/w(0) = F",
-    "division by zero": "w(0)/0 = F",
-    "a point at infinity": "w(1/0) = 0",
+    "a call into Python": "__import__('os').system('true')", "an empty text": "", "only an equals sign": "=",
+    "an equation of nothing": "0 = 0", "primes alone": "'''' = ''", "a derivative of a number": "3''(0) = 0",
+    "a derivative of a derivative": "w'(0)'(0) = 0", "a field at a field": "w(w(0)) = 0",
+    "a field at two points": "w(0, l) = 0", "division by a field": "1/w(0) = F",
+    "division by zero": "w(0)/0 = F", "a point at infinity": "w(1/0) = 0",
     "a point that is a huge power": "w(l^64^64) = 0",
     "a hundred thousand parentheses": "(" * 100_000 + "w(0)" + ")" * 100_000 + " = 0",
-    "ten thousand primes": "w" + "'" * 10_000 + "(0) = 0",
-    "a right-to-left override": "w\u202e(0) = 0",
+    "ten thousand primes": "w" + "'" * 10_000 + "(0) = 0", "a right-to-left override": "w\u202e(0) = 0",
     "a NUL": "w\\u0000(0) = 0",
-}
+}  # fmt: skip
 
 
 def test_a_hostile_condition_or_equation_is_refused():

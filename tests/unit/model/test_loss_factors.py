@@ -277,31 +277,14 @@ def test_what_needs_another_s_is_refused():
     tf = model.transfer_function("X", "F")
     bound = tf.bind()
     for call in (
-        lambda: bound.step_response([0.0, 1.0]),
-        bound.step_response,
-        bound.step_info,
-        bound.input_shaper,
-        bound.residues,
-        bound.rational,
-        bound.sensitivities,
-        bound.explain_zeros,
-        bound.state_space,
-        bound.to_scipy,
-        bound.dcgain,
-        lambda: bound.discretise(0.01),
-        lambda: bound.mode_shape(1),
-        lambda: bound.frequency_response([0.0, 1.0]),
-        lambda: bound(1.0 + 1j),
-        lambda: bound(-1j),
-        lambda: tf.form("zpk"),
-        tf.state_space,
-        model.state_space,
-        lambda: model.stability("k_1"),
-        lambda: model.sweep({"k_1": [1.0, 2.0]}),
-        model.export_c,
-        model.export_matlab,
+        lambda: bound.step_response([0.0, 1.0]), bound.step_response, bound.step_info, bound.input_shaper,
+        bound.residues, bound.rational, bound.sensitivities, bound.explain_zeros, bound.state_space,
+        bound.to_scipy, bound.dcgain, lambda: bound.discretise(0.01), lambda: bound.mode_shape(1),
+        lambda: bound.frequency_response([0.0, 1.0]), lambda: bound(1.0 + 1j), lambda: bound(-1j),
+        lambda: tf.form("zpk"), tf.state_space, model.state_space, lambda: model.stability("k_1"),
+        lambda: model.sweep({"k_1": [1.0, 2.0]}), model.export_c, model.export_matlab,
         model.export_state_space,
-    ):
+    ):  # fmt: skip
         assert refusal(call) == "ModelError SF251"
     assert refusal(lambda: tf.bind(j=2.0)) == "UsageError SF902"
 

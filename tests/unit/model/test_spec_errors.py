@@ -66,12 +66,9 @@ def test_a_common_mistake_is_pointed_at_with_what_to_write() -> None:
     for text, found, hint in [
         ("m = 60 kg\n", "60 kg", 'put it in quotes: "60 kg"'),
         ("m = 60 kg # mass\n", "60 kg", 'put it in quotes: "60 kg"'),
-        ("m == 3\n", "==", "write a single '='"),
-        ("on = True\n", "True", "write true"),
-        ("on = FALSE\n", "FALSE", "write false"),
-        ("m = none\n", "none", "leave the key out"),
-        ("m = .5\n", ".5", "begin with a digit: 0.5"),
-        ("m = 5.\n", "5.", "put a digit after the point: 5.0"),
+        ("m == 3\n", "==", "write a single '='"), ("on = True\n", "True", "write true"),
+        ("on = FALSE\n", "FALSE", "write false"), ("m = none\n", "none", "leave the key out"),
+        ("m = .5\n", ".5", "begin with a digit: 0.5"), ("m = 5.\n", "5.", "put a digit after the point: 5.0"),
         ("m = 0,5\n", "0,5", "write a decimal point: 0.5"),
         ("m = \u22125\n", "\u22125", "write '-' for U+2212: -5"),
         ("m\u00fc = 5\n", "m\u00fc", "names are ASCII: write 'mue'"),
@@ -80,21 +77,16 @@ def test_a_common_mistake_is_pointed_at_with_what_to_write() -> None:
         ('m = "60 kg\n', '"60 kg', 'add the closing quote: "'),
         ("m = '60 kg\n", "'60 kg", "add the closing quote: '"),
         ('m = """60\nkg\n', '"""60', 'add the closing quote: """'),
-        ("m = [1, 2\n", "[", "add the closing ']'"),
-        ("m = { a = 1\n", "{", "add the closing '}'"),
-        ("[elements\n", "[", "add the closing ']'"),
-        ("a.b]\nx = 1\n", "a.b]", "begin it with '['"),
-        ("m: 3\n", ":", "write '=' instead of ':'"),
-        ('m "3"\n', 'm "3"', "write '=' between key and value"),
+        ("m = [1, 2\n", "[", "add the closing ']'"), ("m = { a = 1\n", "{", "add the closing '}'"),
+        ("[elements\n", "[", "add the closing ']'"), ("a.b]\nx = 1\n", "a.b]", "begin it with '['"),
+        ("m: 3\n", ":", "write '=' instead of ':'"), ('m "3"\n', 'm "3"', "write '=' between key and value"),
         ("V_act/F = 3\n", "V_act/F", 'put it in quotes: "V_act/F"'),
-        ("m =\n", "=", 'write a number, or text in quotes: "..."'),
-        ("= 3\n", "=", "write key = value"),
+        ("m =\n", "=", 'write a number, or text in quotes: "..."'), ("= 3\n", "=", "write key = value"),
         ("m = { a = 1, }\n", "}", "remove the comma"),
-        ("[a] b = 1\n", "[a] b = 1", "begin a new line after [a]"),
-        ("m = [on, 1]\n", "on", "write true"),
+        ("[a] b = 1\n", "[a] b = 1", "begin a new line after [a]"), ("m = [on, 1]\n", "on", "write true"),
         ("m = 1\nm = 2\n", "m", "it is first defined in line 1"),
         ("[a]\n[b]\n[a]\n", "a", "it is first defined in line 1"),
-    ]:
+    ]:  # fmt: skip
         problem = only(text)
         assert problem.span is not None, text
         assert (problem.span.text, problem.hint) == (found, hint), text

@@ -143,18 +143,11 @@ def test_an_empty_text_is_an_empty_root_at_its_start() -> None:
 
 def test_a_number_is_exact_and_keeps_its_literal() -> None:
     for literal, value in [
-        ("0.1", Fraction(1, 10)),
-        ("1e3", Fraction(1000)),
-        ("1_000", Fraction(1000)),
-        ("0xFF", Fraction(255)),
-        ("0o17", Fraction(15)),
-        ("0b101", Fraction(5)),
-        ("-2.50E-1", Fraction(-1, 4)),
-        ("+7", Fraction(7)),
+        ("0.1", Fraction(1, 10)), ("1e3", Fraction(1000)), ("1_000", Fraction(1000)), ("0xFF", Fraction(255)),
+        ("0o17", Fraction(15)), ("0b101", Fraction(5)), ("-2.50E-1", Fraction(-1, 4)), ("+7", Fraction(7)),
         ("3.141592653589793238462643383279", Fraction(3141592653589793238462643383279, 10**30)),
-        ("1e400", Fraction(10**400)),
-        ("9" * 400, Fraction(10**400 - 1)),
-    ]:
+        ("1e400", Fraction(10**400)), ("9" * 400, Fraction(10**400 - 1)),
+    ]:  # fmt: skip
         found = entry(f"x = {literal}\n", "x").value
         assert isinstance(found, NumberValue), literal
         assert (found.value, found.literal) == (value, literal), literal

@@ -121,23 +121,12 @@ def test_the_text_is_canonical() -> None:
 
 def test_a_value_is_written_as() -> None:
     for value, written in [
-        (Fraction(1, 3), '"1/3"'),
-        (Fraction(-22, 7), '"-22/7"'),
-        (Fraction(-1, 8), "-0.125"),
-        (Fraction(6, 2), "3"),
-        (Decimal("1.50"), "1.50"),
-        (Decimal("1E+5"), "1E+5"),
-        (1e-7, "1e-07"),
-        (1e300, "1e+300"),
-        (float("inf"), "inf"),
-        (Decimal("-Infinity"), "-inf"),
-        (True, "true"),
-        ("x", '"x"'),
-        (r"\frac{a}{b}", r"'\frac{a}{b}'"),
-        ("\\'", '"\\\\\'"'),
-        ("\x1b[0m\n", '"\\u001b[0m\\n"'),
-        ((), "[]"),
-    ]:
+        (Fraction(1, 3), '"1/3"'), (Fraction(-22, 7), '"-22/7"'), (Fraction(-1, 8), "-0.125"),
+        (Fraction(6, 2), "3"), (Decimal("1.50"), "1.50"), (Decimal("1E+5"), "1E+5"), (1e-7, "1e-07"),
+        (1e300, "1e+300"), (float("inf"), "inf"), (Decimal("-Infinity"), "-inf"), (True, "true"),
+        ("x", '"x"'), (r"\frac{a}{b}", r"'\frac{a}{b}'"), ("\\'", '"\\\\\'"'),
+        ("\x1b[0m\n", '"\\u001b[0m\\n"'), ((), "[]"),
+    ]:  # fmt: skip
         assert write({"a": value}) == f"a = {written}\n", value
 
 

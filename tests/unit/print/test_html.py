@@ -29,19 +29,10 @@ F = { force = "x" }
 X = "x"
 """
 MARKUP = [
-    "<script>alert(1)</script>",
-    "<img src=x onerror=alert(1)>",
-    '" onmouseover="alert(1)',
-    "</td></table><h1>",
-    "<!--",
-    "]]>",
-    "&lt;b&gt; &#36;x&#36;",
-    "$\\href{javascript:alert(1)}{x}$",
-    "$$x$$",
-    "\\(x\\) \\[y\\]",
-    "\\begin{equation}x\\end{equation}",
-    "$\\def\\frac#1{}$",
-]
+    "<script>alert(1)</script>", "<img src=x onerror=alert(1)>", '" onmouseover="alert(1)',
+    "</td></table><h1>", "<!--", "]]>", "&lt;b&gt; &#36;x&#36;", "$\\href{javascript:alert(1)}{x}$", "$$x$$",
+    "\\(x\\) \\[y\\]", "\\begin{equation}x\\end{equation}", "$\\def\\frac#1{}$",
+]  # fmt: skip
 
 
 class Reader(HTMLParser):

@@ -14,19 +14,10 @@ from tests.unit.print.test_html import MARKUP, SPEC
 from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
 
 MORE = [
-    r"\input{/etc/passwd}",
-    r"\write18{ls}",
-    r"\immediate\write18{ls}",
-    r"\openout3=a \write3{b}",
-    r"\def\x{y}\x",
-    r"\catcode`\%=12",
-    r"^^5cinput ^^M",
-    r"\end{document}",
-    r"\csname input\endcsname",
-    r"}\par\input{x}{",
-    "% comment\n\\input{x}",
-    r"\directlua{os.execute('ls')}",
-]
+    r"\input{/etc/passwd}", r"\write18{ls}", r"\immediate\write18{ls}", r"\openout3=a \write3{b}",
+    r"\def\x{y}\x", r"\catcode`\%=12", r"^^5cinput ^^M", r"\end{document}", r"\csname input\endcsname",
+    r"}\par\input{x}{", "% comment\n\\input{x}", r"\directlua{os.execute('ls')}",
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -7,21 +7,11 @@ from symflex.print.latex import label_of
 
 # By hand, after the habits of journals: variables italic, words in subscripts upright, Greek as letters.
 MADE = {
-    "m": "m",
-    "omega": r"\omega",
-    "omega_p1": r"\omega_{p1}",
-    "zeta_z5": r"\zeta_{z5}",
-    "k_amp": r"k_{\mathrm{amp}}",
-    "m_1": "m_{1}",
-    "m1": "m_{1}",
-    "x_s": "x_{s}",
-    "k_tau": r"k_{\tau}",
-    "EI": r"\mathit{EI}",
-    "gain": r"\mathit{gain}",
-    "V_tip_max": r"V_{\mathrm{tip},\mathrm{max}}",
-    "Omega_0": r"\Omega_{0}",
-    "Alpha": r"\mathit{Alpha}",
-}
+    "m": "m", "omega": r"\omega", "omega_p1": r"\omega_{p1}", "zeta_z5": r"\zeta_{z5}",
+    "k_amp": r"k_{\mathrm{amp}}", "m_1": "m_{1}", "m1": "m_{1}", "x_s": "x_{s}", "k_tau": r"k_{\tau}",
+    "EI": r"\mathit{EI}", "gain": r"\mathit{gain}", "V_tip_max": r"V_{\mathrm{tip},\mathrm{max}}",
+    "Omega_0": r"\Omega_{0}", "Alpha": r"\mathit{Alpha}",
+}  # fmt: skip
 
 
 # fmt: off

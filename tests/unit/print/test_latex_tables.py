@@ -14,19 +14,12 @@ from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
 
 # By hand, from siunitx's names of units.
 UNITS = {
-    "N*s/m": r"\newton\second\per\metre",
-    "V*s/rad": r"\volt\second\per\radian",
-    "kg*m^2": r"\kilogram\metre\squared",
-    "1/s": r"\per\second",
-    "m/(N*s)": r"\metre\per\newton\per\second",
-    "1/(N*m*s^2)": r"\per\newton\per\metre\per\second\squared",
-    "m^(1/2)": r"\metre\tothe{1/2}",
-    "m^4": r"\metre\tothe{4}",
-    "kN/m": r"\kilo\newton\per\metre",
-    "rad*s^-1": r"\radian\per\second",
-    "Ohm": r"\ohm",
-    "1": "",
-}
+    "N*s/m": r"\newton\second\per\metre", "V*s/rad": r"\volt\second\per\radian",
+    "kg*m^2": r"\kilogram\metre\squared", "1/s": r"\per\second", "m/(N*s)": r"\metre\per\newton\per\second",
+    "1/(N*m*s^2)": r"\per\newton\per\metre\per\second\squared", "m^(1/2)": r"\metre\tothe{1/2}",
+    "m^4": r"\metre\tothe{4}", "kN/m": r"\kilo\newton\per\metre", "rad*s^-1": r"\radian\per\second",
+    "Ohm": r"\ohm", "1": "",
+}  # fmt: skip
 
 
 def test_a_unit_is_spelt_for_siunitx():

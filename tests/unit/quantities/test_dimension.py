@@ -44,36 +44,16 @@ def test_dimensions_have_an_order():
 
 def test_a_common_dimension_prints_as_engineers_write_it():
     for dimension, printed in [
-        (DIMENSIONLESS, "1"),
-        (MASS, "kg"),
-        (LENGTH, "m"),
-        (LENGTH / TIME, "m/s"),
-        (LENGTH / TIME**2, "m/s^2"),
-        (FORCE, "N"),
-        (FORCE / LENGTH, "N/m"),
-        (MASS / TIME, "N*s/m"),
-        (FORCE * LENGTH, "N*m"),
-        (FORCE * LENGTH * TIME, "N*m*s"),
-        (FORCE * LENGTH**2, "N*m^2"),
-        (FORCE / LENGTH**2, "Pa"),
-        (FORCE * LENGTH / TIME, "W"),
-        (VOLTAGE, "V"),
-        (CURRENT, "A"),
-        (VOLTAGE / CURRENT, "Ohm"),
-        (VOLTAGE * TIME / CURRENT, "H"),
-        (CURRENT * TIME / VOLTAGE, "F"),
-        (DIMENSIONLESS / TIME, "1/s"),
-        (MASS * LENGTH**2, "kg*m^2"),
-        (VOLTAGE * TIME, "V*s"),
-        (FORCE * LENGTH / CURRENT, "V*s"),
-        (FORCE / CURRENT, "N/A"),
-        (LENGTH / FORCE, "m/N"),
-        (LENGTH / FORCE / TIME, "m/(N*s)"),
-        (LENGTH / FORCE / TIME**2, "m/(N*s^2)"),
-        (MASS / LENGTH**3, "kg/m^3"),
-        (LENGTH**2, "m^2"),
-        (LENGTH**4, "m^4"),
-    ]:
+        (DIMENSIONLESS, "1"), (MASS, "kg"), (LENGTH, "m"), (LENGTH / TIME, "m/s"),
+        (LENGTH / TIME**2, "m/s^2"), (FORCE, "N"), (FORCE / LENGTH, "N/m"), (MASS / TIME, "N*s/m"),
+        (FORCE * LENGTH, "N*m"), (FORCE * LENGTH * TIME, "N*m*s"), (FORCE * LENGTH**2, "N*m^2"),
+        (FORCE / LENGTH**2, "Pa"), (FORCE * LENGTH / TIME, "W"), (VOLTAGE, "V"), (CURRENT, "A"),
+        (VOLTAGE / CURRENT, "Ohm"), (VOLTAGE * TIME / CURRENT, "H"), (CURRENT * TIME / VOLTAGE, "F"),
+        (DIMENSIONLESS / TIME, "1/s"), (MASS * LENGTH**2, "kg*m^2"), (VOLTAGE * TIME, "V*s"),
+        (FORCE * LENGTH / CURRENT, "V*s"), (FORCE / CURRENT, "N/A"), (LENGTH / FORCE, "m/N"),
+        (LENGTH / FORCE / TIME, "m/(N*s)"), (LENGTH / FORCE / TIME**2, "m/(N*s^2)"),
+        (MASS / LENGTH**3, "kg/m^3"), (LENGTH**2, "m^2"), (LENGTH**4, "m^4"),
+    ]:  # fmt: skip
         assert str(dimension) == printed, dimension
 
 

@@ -8,24 +8,9 @@ from tests.tools.tables import larks, written
 
 LARKS = larks()
 WORDS = [
-    *"()+-*/^=.' ",
-    "**",
-    "2",
-    "0.5e-3",
-    "1",
-    ".5",
-    "pi",
-    "kg",
-    "m",
-    "w''",
-    "arm.y",
-    "\u00b7",
-    "\u00b2",
-    "\u2009",
-    "#",
-    "_a",
-    "\u03c0",
-]
+    *"()+-*/^=.' ", "**", "2", "0.5e-3", "1", ".5", "pi", "kg", "m", "w''", "arm.y", "\u00b7", "\u00b2",
+    "\u2009", "#", "_a", "\u03c0",
+]  # fmt: skip
 
 
 @pytest.fixture(params=LARKS, ids=lambda path: path.parent.name)

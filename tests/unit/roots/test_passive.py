@@ -752,19 +752,11 @@ equations = ["v' = -(R + s*L)*i", "i' = -(G + s*C)*v"]
 conditions = ["v(0) = V - Z*i(0)", "i(l) = 0"]
 """
 LINES = {
-    "": True,
-    "0.05 ohm/m -> -0.05 ohm/m": False,
-    "1 mS/m -> -1 mS/m": False,
-    "50 ohm -> -50 ohm": False,
-    "Z*i(0) -> M*s*i(0)": True,
-    " - Z*i(0) -> ": True,
-    "V - Z*i(0) -> V + M*s*i(0)": False,
-    "i(l) = 0 -> i(l) = v(l)/Z + D*s*v(l)": True,
-    "i(l) = 0 -> v(l) = M*s*i(l)": True,
-    "i(l) = 0 -> i(l) = D*s*v(l) - v(l)/Z": False,
-    "i(l) = 0 -> i(l) = v(0)/Z": False,
-    "s*L -> -s*L": False,
-}
+    "": True, "0.05 ohm/m -> -0.05 ohm/m": False, "1 mS/m -> -1 mS/m": False, "50 ohm -> -50 ohm": False,
+    "Z*i(0) -> M*s*i(0)": True, " - Z*i(0) -> ": True, "V - Z*i(0) -> V + M*s*i(0)": False,
+    "i(l) = 0 -> i(l) = v(l)/Z + D*s*v(l)": True, "i(l) = 0 -> v(l) = M*s*i(l)": True,
+    "i(l) = 0 -> i(l) = D*s*v(l) - v(l)/Z": False, "i(l) = 0 -> i(l) = v(0)/Z": False, "s*L -> -s*L": False,
+}  # fmt: skip
 """Changes of a line, and whether it is passive: what has a resistance loses energy where that is positive."""
 
 

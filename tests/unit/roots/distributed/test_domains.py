@@ -101,34 +101,19 @@ def test_from_a_part_of_a_ring_holes_are_cut_out():
 
 def test_a_root_is_in_a_ring_by_its_distance_from_0():
     for re, im, size, inside in [
-        (3, 0, 0, True),
-        (0, 3, 0, True),
-        (0.9, 0, 0, False),
-        (8, 0, 0, False),
-        (3, 4, 0, True),
-        (-3, -0.1, 0, True),
-        (1, 0, 0.01, None),
-        (0, 7.389056, 0.001, None),
-        (0, 1.0000001, 1e-9, True),
+        (3, 0, 0, True), (0, 3, 0, True), (0.9, 0, 0, False), (8, 0, 0, False), (3, 4, 0, True),
+        (-3, -0.1, 0, True), (1, 0, 0.01, None), (0, 7.389056, 0.001, None), (0, 1.0000001, 1e-9, True),
         (0, 0.9999999, 1e-9, False),
-    ]:
+    ]:  # fmt: skip
         assert decider(Cell(0.0, 2.0, -pi, pi))(root(re, im, size)) is inside
 
 
 def test_a_root_is_in_a_cell_by_its_argument_too():
     for angle, size, inside in [
-        (1.25, 0, True),
-        (0.99, 0, False),
-        (1.51, 0, False),
-        (-1.25, 0, False),
-        (1.0, 0.01, None),
-        (1.5, 0.01, None),
-        (1.0000001, 1e-9, True),
-        (0.9999999, 1e-9, False),
-        (1.4999999, 1e-9, True),
-        (1.5000001, 1e-9, False),
-        (1.25 - pi, 0, False),
-    ]:
+        (1.25, 0, True), (0.99, 0, False), (1.51, 0, False), (-1.25, 0, False), (1.0, 0.01, None),
+        (1.5, 0.01, None), (1.0000001, 1e-9, True), (0.9999999, 1e-9, False), (1.4999999, 1e-9, True),
+        (1.5000001, 1e-9, False), (1.25 - pi, 0, False),
+    ]:  # fmt: skip
         z = 2 * cexp(1j * angle)
         is_inside = decider(Cell(0.5, 1.0, 1.0, 1.5))
         assert is_inside(root(z.real, z.imag, size)) is inside
