@@ -65,6 +65,11 @@ def test_a_chain_of_six_masses_agrees_with_scipy():
     assert np.max(np.abs(found.values - expected.ravel())) < 1e-11 * np.max(np.abs(expected))
 
 
+def test_derivatives_of_an_impulse_are_said():
+    found = time_response(rational("s^2/(s + 1)"), "impulse", SampleTimes.of([1.0]))
+    assert [float(i.weight) for i in found.impulses] == [-1.0, 1.0]  # s^2/(s + 1) = s - 1 + 1/(s + 1)
+
+
 def test_a_step_at_an_accelerance_is_an_impulse_less_than_the_impulse():
     found = time_response(rational("s^2/(s + 1)"), "step", SampleTimes.of([1.0]))
     assert [float(i.weight) for i in found.impulses] == [1.0]  # s/(s + 1) = 1 - 1/(s + 1)
