@@ -386,13 +386,17 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     };
 
     const plane = (sets, state) => {
-        const plot = plots.map, roots = sets.flatMap(([, s]) => [...s.poles, ...s.zeros]), tall = Math.max(1e-9, ...roots.map(length));
+        const plot = plots.map, every = sets.flatMap(([, s]) => [...s.poles, ...s.zeros]), poles = sets.flatMap(([, s]) => s.poles).map(length);
+        // A zero far from all poles would leave them in a corner.
+        const tall = Math.max(1e-9, ...(Math.max(...poles) > 0 ? poles : every.map(length))), roots = every.filter((r) => length(r) <= 3 * tall);
+        const beyond = [...state.poles, ...state.zeros].filter((r) => length(r) > 3 * tall).length;
         axes.re = ends([...roots.map((r) => r.re), -0.02 * tall, 0.02 * tall], axes.re);
         axes.im = ends([-1, 1].map((k) => k * Math.max(...roots.map((r) => r.im), 0.2 * tall)), axes.im);
         plot.axes({ ends: axes.re, label: "Re s [rad/s]" }, { ends: axes.im, label: "Im s [rad/s]" });
         const zero = plot.px(0), { left, right, top, bottom } = plot;
         const parts = [drawn("rect", { class: "right", x: zero, y: top, width: Math.max(right - zero, 0), height: bottom - top }),
             drawn("path", { class: "axis", d: `M${zero} ${top}V${bottom}M${left} ${plot.py(0)}H${right}` })];
+        if (beyond) parts.push(drawn("text", { x: left + 8, y: top + 16 }, `${beyond} zero${beyond > 1 ? "s" : ""} beyond`));
         for (const [, s, ghost] of sets) parts.push(...[s.zeros, s.poles].map((list, k) => plot.marks(list, k === 1, colour(focus) + ghost)));
         plot.show(parts, `${state.poles.length} poles and ${state.zeros.length} zeros in the upper half plane and on the real axis; a table lists the poles.`);
     };
@@ -414,7 +418,8 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         axes.step = ends([0, ...curves.flatMap(([y]) => [...y].map((v) => Math.max(-most, Math.min(most, v))).filter(Number.isFinite))], axes.step);
         plot.axes({ ends: [0, until], label: "time [s]" }, { ends: axes.step, label: `response${unitOf(f)}` });
         const [y] = curves.at(-1) ?? [], told = (k) => `${short(y[k])} at ${short(times[k])} s`;
-        plot.show(curves.map(([v, kind]) => plot.curve(times, v, kind)), y ? `${f.name}: ${told(INSTANTS >> 1)}, ${told(INSTANTS)}.` : "not known");
+        const last = (v) => v.findIndex((z) => Math.abs(z) > 2 * most) + 1 || v.length;  // what grows ends at the edge
+        plot.show(curves.map(([v, kind]) => plot.curve(times.slice(0, last(v)), v, kind)), y ? `${f.name}: ${told(INSTANTS >> 1)}, ${told(INSTANTS)}.` : "not known");
     };
 
     const words = (state, f) => {
@@ -436,7 +441,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         one(".modes tbody").replaceChildren(...[...state.poles].sort((a, b) => length(a) - length(b)).map((p, i) => {
             const size = length(p), row = document.createElement("tr"), times = p.multiplicity > 1 ? ` (${p.multiplicity} times)` : "";
             const how = p.proved ? `proved${p.radius ? `, ± ${short(p.radius, 2)} rad/s` : ""}` : "traced";
-            row.append(...[`${i + 1}`, short(isHertz() ? size / TAU : size, 6), size ? short(-p.re / size || 0) : "–", p.re ? `${short(-1 / p.re)} s` : "∞",
+            row.append(...[`${i + 1}`, short(isHertz() ? size / TAU : size, 6), size ? short(-p.re / size || 0) : "–", p.re > 0 ? "grows" : p.re ? `${short(-1 / p.re)} s` : "∞",
                 how + times].map((textContent) => Object.assign(document.createElement("td"), { textContent })));
             return row;
         }));

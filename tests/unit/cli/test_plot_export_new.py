@@ -228,7 +228,7 @@ def test_figures_that_templates_propose_are_drawn(shell):
 
 
 def test_a_template_is_printed_without_a_file_name_and_overwrites_no_file(shell):
-    assert shell("new", "two_mass").out.startswith("symflex = 1\n")
+    assert shell("new", "two_mass").out.startswith("#:schema symflex.schema.json\nsymflex = 1\n")
     before = (shell.folder / "x.toml").read_text()
     done = shell("new", "two_mass", "-o", "x.toml")
     assert (done.code, (shell.folder / "x.toml").read_text()) == (2, before)

@@ -106,8 +106,9 @@ def test_it_refuses_the_broken_specifications_of_which_no_name_unit_or_equation_
 def test_two_language_servers_accept_the_worked_models_and_refuse_a_misspelt_key(tmp_path):
     (tmp_path / "schema.json").write_text(json.dumps(SCHEMA), encoding="utf-8")
     for i, path in enumerate(WORKED):
-        text = f"#:schema schema.json\n{path.read_text(encoding='utf-8')}"
-        (tmp_path / f"{i}.toml").write_text(text, encoding="utf-8")
+        first, _, text = path.read_text(encoding="utf-8").partition("\n")
+        assert first.startswith("#:schema "), path
+        (tmp_path / f"{i}.toml").write_text(f"#:schema schema.json\n{text}", encoding="utf-8")
     files = [path.name for path in tmp_path.glob("*.toml")]
     commands = (
         ["tombi", "lint", "--offline", "--error-on-warnings"],
