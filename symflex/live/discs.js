@@ -7,9 +7,7 @@
 
 const UP = 1.0 + 1.8e-15, DOWN = 1.0 - 9e-16, U4 = 4.5e-16, TINY = 1e-301;
 
-const discs = (count) => ({
-    x: new Float64Array(count), y: new Float64Array(count), r: new Float64Array(count),
-});
+const discs = (n) => ({ x: new Float64Array(n), y: new Float64Array(n), r: new Float64Array(n) });
 
 // |x + j y|, too small by less than 2^-51 of it; where squares underflow, too large.
 function modulus(x, y) {
@@ -24,9 +22,7 @@ function distance(x, y, r) {
 }
 
 function put(m, k, x, y, r) {
-    m.x[k] = x;
-    m.y[k] = y;
-    m.r[k] = r;
+    [m.x[k], m.y[k], m.r[k]] = [x, y, r];
 }
 
 function sum(m, k, a, b, sign) {
@@ -72,9 +68,10 @@ for (let i = 1021; i >= 0; i--) POWERS[i] = 0.5 * POWERS[i + 1];
 for (let i = 1; i < 20; i++) INVERSE[i] = 1.0 / i;
 
 // exp(x) for |x| <= 700 with a relative error below 2^-50; 0 below, where it is less than TINY.
-// x = k ln 2 + r: LN2_HIGH ends with 20 zero bits, so k LN2_HIGH is exact for these k. Two differences round by
-// 0.36 u each; |r| < 0.35. Taylor's remainder r^14/14! is below u/20. Horner's steps are 1 + r (.)/n: the last
-// adds u exp(r) and 2 u |r (.)|, those before it less than |r|/2 of as much: below 4 u in all, 6 u of exp(r).
+// x = k ln 2 + r: LN2_HIGH ends with 20 zero bits, so k LN2_HIGH is exact for these k; two differences round
+// by 0.36 u each, and |r| < 0.35. Taylor's remainder r^14/14! is below u/20. Horner's steps are 1 + r (.)/n:
+// the last adds u exp(r) and 2 u |r (.)|, those before it less than |r|/2 of as much: below 4 u in all, and 6 u
+// of exp(r).
 function exponential(x) {
     if (x < -700.0) return 0.0;
     if (!(x <= 700.0)) return Infinity;
@@ -94,10 +91,10 @@ for (let n = 1; n < 10; n++) {
 let sine = 0.0;
 
 // cos(x), and sin(x) in `sine`, for |x| <= 10^6 with errors below 2^-50; else NaN.
-// x = k pi/2 + r: each of three parts of pi/2 has 33 bits, so their products with k are exact; three differences
-// round by 0.8 u each, what the parts leave is below 10^-31 k. |r| < 0.8. Taylor's remainders r^20/20! and
-// r^21/21! are below u/100. The last steps round cos by u and by 3 u r^2/2, sin by u |r| and by 4 u |r|^3/6;
-// those before them by less than a tenth of that: below 5 u in all.
+// x = k pi/2 + r: each of three parts of pi/2 has 33 bits, so their products with k are exact; three
+// differences round by 0.8 u each, what the parts leave is below 10^-31 k, and |r| < 0.8. Taylor's remainders
+// r^20/20! and r^21/21! are below u/100. The last steps round cos by u and by 3 u r^2/2, sin by u |r| and by
+// 4 u |r|^3/6; those before them by less than a tenth of that: below 5 u in all.
 function cosine(x) {
     if (!(Math.abs(x) <= 1e6)) {
         sine = NaN;

@@ -44,27 +44,20 @@ from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.program.forge import straight
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.roots import Everything, Modes
-from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
 from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
-    from symflex.roots import Root
     from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
 
 MODES = 10
-"""Number of modes that a page follows."""
-
-BEYOND = 2
-"""Modes known beyond them, between which the edge of the window is placed."""
+"""Number of modes that a page follows; the edge of its window lies between that and the next ones."""
 
 ULP = 2.0**-52
 """Bound of the relative error of a number that is rounded to a double."""
-
-SERIES_TERMS = (20, 80)
-"""Lengths of the series about 0 in which the first term is sought, as in ``kernel_function``."""
 
 
 def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:
@@ -85,11 +78,15 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
         return {"refused": reason}
     try:
         bound = bind(tf)
-        located = locate(bound, Modes(modes + BEYOND) if tf.is_distributed else Everything(), digits=17)
+        located = locate(bound, Modes(modes + 2) if tf.is_distributed else Everything(), digits=17)
         sides = {"poles": list(_parts(tf, bound, 1)), "zeros": list(_parts(tf, bound, 0))}
     except SymflexError as error:
         return {"refused": error.diagnostics[0].message}
-    start = {"poles": _upper(located.poles), "zeros": _upper(located.zeros)}
+    # One of each conjugate pair, and those at 0 left out.
+    start = {
+        kind: [[z.real, z.imag] for z in map(complex, getattr(located, kind)) if z and z.imag >= 0]
+        for kind in sides
+    }
     return {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "start": start, **sides}
 
 
@@ -102,12 +99,6 @@ def _refusal(tf: AnyTransferFunction) -> str:
     if tf.model.root is not None or tf.model.imaginary:
         return "it is a function of a root of s, or its coefficients are complex"
     return "it is zero" if tf.is_zero else ""
-
-
-def _upper(roots: Sequence[Root]) -> list[list[float]]:
-    """Return roots but those at 0, one of each conjugate pair."""
-    points = [complex(root) for root in roots if not root.is_zero]
-    return [[z.real, z.imag] for z in points if z.imag >= 0]
 
 
 def _parts(tf: TransferFunction, bound: BoundTransferFunction, number: int) -> Iterator[dict[str, object]]:
@@ -215,7 +206,8 @@ class _Tape:
                 return reduce(partial(self._joined, "*"), [self.register(base)] * exponent)
             case tree.Apply(function, argument):
                 return self._applied(function.removeprefix("complex_"), self.register(argument))
-        raise _no_enclosure(type(node).__name__)
+        message = f"{type(node).__name__} has no enclosure in doubles"
+        raise UncertifiedError(Diagnostic("SF404", message))
 
     def _applied(self, function: str, x: int) -> int:
         match function:
@@ -236,8 +228,4 @@ class _Tape:
                 re, im = (1, 0) if is_even else (turn[0], -turn[1])
                 half = self._number(Fraction(re, 2), Fraction(im, 2))
                 return self._joined("*", self._joined("+" if is_even else "-", up, down), half)
-        raise _no_enclosure(function)
-
-
-def _no_enclosure(what: str) -> UncertifiedError:
-    return UncertifiedError(Diagnostic("SF404", f"{what} has no enclosure in doubles"))
+        raise UncertifiedError(Diagnostic("SF404", f"{function} has no enclosure in doubles"))
