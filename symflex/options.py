@@ -517,7 +517,7 @@ class FitOptions:
     first_hz: float = option(
         0.0, "--from", type=float, least=0, help="First frequency of data without any [Hz], with --step."
     )
-    step_hz: float | None = option(None, "--step", type=float, help="Their distance [Hz].")
+    step_hz: float | None = option(None, "--step", type=float, least=0, help="Their distance [Hz].")
     averages: float | None = option(
         None,
         "--averages",

@@ -126,6 +126,8 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
     from symflex.data.measurement import read_measurement
 
     read: list[MeasuredResponse] = []
+    if given.first_hz and not given.step_hz:
+        raise UsageError(Diagnostic("SF902", "--from gives the first frequency and needs --step"))
     axis = (given.first_hz, given.step_hz) if given.step_hz else None
     for path in given.data:
         responses = read_measurement(str(path), given.columns, _estimate(given), axis)

@@ -51,7 +51,7 @@ endings are read as text in columns where they are text.
 SAVE_AS: Final = {
     **dict.fromkeys((".xls", ".ods"), "save the sheet as .xlsx or .csv"),
     **dict.fromkeys((".s3p", ".s4p"), "save two of its ports as .s2p"),
-    ".wav": "symflex reads frequency responses, not time series",
+    ".wav": "save the samples as columns, time_s,u,y",
     ".toml": "this is a specification, not measured data",
 }
 """What to do with files that are not read."""

@@ -102,7 +102,9 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
         read = ((str(entry.get("id4", "")).strip(), np.asarray(entry["data"]).real) for entry in powers)
         columns = [DataColumn(title, ColumnMeaning("power"), numbers) for title, numbers in read]
         (power,), said = assembled([axis, *columns], name, None)
-        response = MeasuredResponse(stem, power.frequency_hz, power.values, guesses=tuple(said))
+        response = MeasuredResponse(
+            stem, power.frequency_hz, power.values, guesses=tuple(said), is_magnitude=True
+        )
         return (checked_response(response, name, lambda *_: None),)
     if not responses:
         types = sorted({int(entry.get("func_type", 0)) for entry in sets})
