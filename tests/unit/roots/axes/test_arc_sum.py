@@ -2,7 +2,7 @@
 
 from cmath import exp, rect
 from itertools import product
-from math import cos, pi, sin
+from math import cos, log, pi, sin
 from random import Random
 
 import numpy as np
@@ -168,6 +168,19 @@ def test_any_sum_turns_as_samples_of_it_do():
         listed = [(p, q, powers) for (p, q), powers in terms.items()]
         found = ArcSum(tuple(term(*each) for each in listed)).turn(arb(radius))
         assert float(found) == pytest.approx(sampled_turn(listed, radius), abs=1e-6), terms
+
+
+def test_the_largest_term_is_that_of_the_largest_size():
+    for seed in range(40):
+        terms, radius = drawn(seed), 0.4
+        summed = ArcSum(tuple(term(*each) for each in terms))
+        arc = _Arc(summed.terms, summed._sizes, arb(radius))
+        for t in (0.0, 0.3, 0.8, 1.0):
+            x = rect(radius, pi / 4 * t)
+            # Of the highest power of each term.
+            tops = [(p * x + q * x * x, max(powers), powers[max(powers)]) for p, q, powers in terms]
+            sizes = [e.real + n * log(radius) + log(abs(c)) for e, n, c in tops]
+            assert arc._largest_at(t) == np.argmax(sizes), seed
 
 
 def lossless_sum(random, squares):

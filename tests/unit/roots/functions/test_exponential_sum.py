@@ -2,14 +2,16 @@
 
 from functools import cache
 from itertools import product
+from math import log, sqrt
 
 import mpmath
+import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
 from symflex.balls import expansion, precision
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]
@@ -103,6 +105,27 @@ def test_sums_have_the_values_and_slopes_of_polynomials_in_kernels():
                 found = made.values.value(i, series)
                 found = found[1] if isinstance(found, acb_series) else acb(0)
                 assert close(found, slope) if slope else found.contains(0), (i, s)
+
+
+def test_the_largest_term_is_the_largest():
+    for (made, _), s in product(models(), (5.0, 4 + 9j, 40j)):
+        with precision(120):
+            place = made.values.at(acb(s))
+            for i, terms in enumerate(made.sums):
+                own = zip(made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True)
+                sizes = [float((abs(c) * (1 if e is None else abs(e.exp()))).mid()) for c, e in own]
+                largest = list(terms.terms).index(made.values.largest([i], place))
+                assert sizes[largest] == pytest.approx(max(sizes)), (i, s)
+
+
+def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels_if_there_are_any():
+    # cosh^3 sin^2 cos and sin^3 sinh^3 of q = sqrt(s/2): abs(3 + 3 j) abs(q)
+    for make, place, fastest in ((beam, 0, 12 * sqrt(2)), (rod, 1, 3 * 32), (delay, 0, 3 * 16)):
+        with precision(64):
+            assert DoubleSums(make().values).fastest(complex(log(32), place)) == pytest.approx(fastest)
+    with precision(64):
+        for sums in (lambda s, **_: [s + 3], lambda **_: []):
+            assert DoubleSums(Polynomials(ROD, sums).values).fastest(1 + 0j) == 0.0
 
 
 def test_a_ball_of_places_has_a_ball_of_values():
