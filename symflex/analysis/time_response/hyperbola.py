@@ -105,17 +105,19 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
             waits.append([(s * t).exp() for t in inner])
         sums = (acb_mat(starts).transpose() * acb_mat(waits)).entries()[: end - start]
         values = [arb(step) * arb(mu) / (2 * arb.pi()) * total.real for total in sums]
+    errors: list[arb] = []
     with precision(64):
         most, edge = ball(max(power + 1, Fraction(1))), arb(step) * count
         scale = size.most * turned * arb(mu) ** ball(power + 1) / arb.pi()
         scale *= (1 - shift / (mu * arb(nearest))) ** -asked.integrations
         scale *= arb(nearest) ** ball(min(power, Fraction(0)))
-        for i, t in enumerate(times.enclosed(start)[: end - start]):
+        for t in times.enclosed(start)[: end - start]:
             steep = mu * t * arb(MIDDLE).sin()
             between = 2 * (mu * t * arb(MIDDLE - ASIDE).sin()).bessel_k(most)
             between /= (2 * arb.pi() * arb(ASIDE) / step).expm1()
             slope = steep * edge.sinh() - most
             beyond = (most * edge - steep * edge.cosh()).exp() / slope
             reach = (scale * ((mu - shift) * t).exp() * (between + beyond)).upper()
-            values[i] += arb(0, reach if slope > 0 and reach.is_finite() else arb("inf"))
-    return values
+            errors.append(arb(0, reach if slope > 0 and reach.is_finite() else arb("inf")))
+    with precision(bits):
+        return [value + error for value, error in zip(values, errors, strict=True)]

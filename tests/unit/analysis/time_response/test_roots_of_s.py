@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mpmath
 import pytest
+from flint import arb
 from mpmath import erf, erfc, exp, gamma, inf, mpf, nsum, pi, sqrt
 
 from symflex import loads
@@ -40,6 +41,11 @@ def test_responses_are_proved_and_those_of_textbooks(expression):
     assert response.certified
     with mpmath.workdps(40):
         assert response.values == pytest.approx([float(exact(mpf(t))) for t in times], rel=1e-12, abs=1e-12)
+
+
+def test_as_many_digits_are_proved_as_are_asked_for():
+    (value,) = function("u/sqrt(s*k)").step_response([3.0], digits=60).enclosures
+    assert value.overlaps(2 * (3 / arb.pi()).sqrt()) and value.rad() < 1e-59
 
 
 def test_values_at_the_beginning_are_limits():
