@@ -121,7 +121,10 @@ def _json_variables(data: bytes) -> Arrays:
             else:
                 value = {key: [x.get(key) for x in rows] for key in keys}
         if not isinstance(value, dict):
-            found[path or "array"] = _json_array(value)
+            array = _json_array(value)
+            are_pairs = array.ndim == 2 and array.shape[1] == 2 and array.dtype.kind in "fi"  # noqa: PLR2004
+            are_values = are_pairs and _meaning(path.rpartition(".")[2].lower()).kind == "complex"
+            found[path or "array"] = array.astype(float).view(complex)[:, 0] if are_values else array
             return
         for key, inner in value.items():
             walk(inner, f"{path}{key}" if key.startswith("(") or not path else f"{path}.{key}", depth + 1)
@@ -134,14 +137,12 @@ def _json_variables(data: bytes) -> Arrays:
 
 
 def _json_array(value: object) -> Array:
-    if not isinstance(value, list):
-        return np.array(value)
-    cells = [np.nan if x is None else x for x in value]
+    cells = [np.nan if x is None else x for x in value] if isinstance(value, list) else []
     if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
         require(len(cells) * max(texts) <= MAX_BYTES // 4, "it holds a list of long texts")
         numbers = [number(x) if isinstance(x, str) else x for x in cells]
         cells = cells if None in numbers else numbers
-    return np.array(cells)
+    return np.array(cells if isinstance(value, list) else value)
 
 
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {

@@ -23,6 +23,7 @@ PAIRS = [[h.real, h.imag] for h in H]
 PARTS = {"re": RE.tolist(), "im": IM.tolist()}
 NOTATIONS = {
     "pairs": {"frequency": F.tolist(), "H": PAIRS, "tf": "X/F"},
+    "positive": {"f": F.tolist(), "H": [[3, 4]] * F.size},
     "text": {"frequency_hz": F.tolist(), "values": [f"{h.real}{h.imag:+}j" for h in H]},
     "a table": [{"f": f, "mag": a, "phase_deg": p} for f, a, p in zip(F, SIZE, DEG, strict=True)],
     "objects": {"f": F.tolist(), "H": [{"re": h.real, "im": h.imag} for h in H]},
@@ -34,7 +35,8 @@ def test_json_of_arrays_is_read_in_every_notation(tmp_path):
     for case, content in NOTATIONS.items():
         (tmp_path / "a.json").write_text(json.dumps(content))
         found = read_measurement(tmp_path / "a.json")
-        assert all(one.values == pytest.approx(H) for one in found), case
+        values = 3 + 4j if case == "positive" else H
+        assert all(one.values == pytest.approx(values) for one in found), case
         assert len(found) == 1 + (case == "runs"), case
 
 
