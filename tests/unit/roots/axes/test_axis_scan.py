@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 from mpmath import cos, findroot, mp, mpf, sin, tan, tanh
 
-from symflex.roots.axes.axis_scan import (
-    sign_changes,
-)
+from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed_models import ROD, SLIDING_FREE, bound

@@ -15,12 +15,7 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding, LogarithmicLine, _angle, _whole
 from symflex.roots.counting.local_series import BLURRED, LocalSeries, SeriesSteps, _followed
-from symflex.roots.counting.winding import (
-    Cell,
-    RootOnPathError,
-    Winding,
-    total_turn,
-)
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, total_turn
 from symflex.roots.functions.kernel_function import ROOM, Sample, angle, deviation
 from tests.unit.roots.known_functions import KnownFunction, exact
 

@@ -10,18 +10,8 @@ from mpmath import mp, mpc
 from symflex.algebra import Factored
 from symflex.balls import precision
 from symflex.errors import ModelError, UncertifiedError
-from symflex.roots.functions.kernel_function import (
-    KernelFunction,
-    _spectral_size,
-)
-from tests.unit.roots.distributed_models import (
-    DELAY_LOOP,
-    FREE,
-    ON_A_FOUNDATION,
-    ROD,
-    SLIDING_FREE,
-    bound,
-)
+from symflex.roots.functions.kernel_function import KernelFunction, _spectral_size
+from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 
 BITS = 160
 

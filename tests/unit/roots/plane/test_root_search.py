@@ -1,5 +1,6 @@
 """Searching the plane for roots of polynomials that are known: close, multiple, on axes and beside holes."""
 
+from itertools import pairwise
 from math import inf, log, pi
 
 import pytest
@@ -72,6 +73,20 @@ def test_a_ring_holds_all_roots_in_the_upper_half_plane():
         )
         assert found.missing == 0, kind
         assert all(root.certified and root.multiplicity == 1 for root in found.roots), kind
+
+
+def test_a_ring_whose_border_meets_roots_is_widened_on_all_sides_each_time():
+    one, cells = search(mixed), []
+
+    def refused(cell):
+        cells.append(cell)
+        raise RootOnPathError
+
+    one._search = refused
+    assert one.ring(0.0, 1.0, 0.2, 1.0).missing == 1
+    for inner, outer in pairwise(cells):
+        assert outer.low < inner.low < inner.high < outer.high
+        assert outer.right < inner.right < inner.left < outer.left
 
 
 def test_of_an_even_function_a_quarter_is_searched_and_roots_next_to_the_axis_lie_on_it():

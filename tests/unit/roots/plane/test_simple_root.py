@@ -8,13 +8,7 @@ from itertools import product
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.plane.local_roots import (
-    BOX_SHARE,
-    SMALLER,
-    _box,
-    _is_alone,
-    prove_simple,
-)
+from symflex.roots.plane.local_roots import BOX_SHARE, SMALLER, _box, _is_alone, prove_simple
 from tests.unit.roots.known_functions import KnownFunction
 
 

@@ -4,9 +4,7 @@ import pytest
 from flint import acb, acb_poly, arb
 
 from symflex.balls import precision
-from symflex.roots.polynomials.discs import (
-    propose_by_laguerre,
-)
+from symflex.roots.polynomials.discs import _polygon_moduli, propose_by_laguerre
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +33,8 @@ def test_every_root_of_the_upper_half_plane_is_guessed_once():
         for roots in [
             (5.0,),
             (-1 + 2j,),
+            # z^4 + 4: from 0 no slope leads on.
+            (1 + 1j, -1 + 1j),
             (1.0, -2.0, 3 + 4j),
             (1e-6, 1.0, 1e6, -1e3 + 1e-2j),
             (-0.01 + 1j, -0.02 + 2j, -0.03 + 3j, -0.04 + 4j, -7.0),
@@ -67,3 +67,17 @@ def test_a_polynomial_lost_in_rounding_altogether_has_still_as_many_guesses_or_n
     # z^2 + (0 +- 1): whatever it is, it is said as none or as two.
     found = propose_by_laguerre(acb_poly([acb(arb(0, 1)), 0, 1]))
     assert found is None or sum(1 if g.imag == 0 else 2 for g in found) == 2
+
+
+def test_the_newton_polygon_tells_the_moduli_within_doubles():
+    # Sides of the hull of each (Bini 1996): all powers; from 0 to 1 to 2 to 3; with 1 below, and on the hull
+    for coefficients, moduli in (
+        ([16, 0, 0, 0, 1], [2, 2, 2, 2]),
+        ([1e-3, 1, 1, 1e-4], [1e-3, 1, 1e4]),
+        ([4, 1e-3, 1], [2, 2]),
+        ([4, 2, 1], [2, 2]),
+        ([0, 0, -5, 1], [5, 5, 5]),
+        ([1, 100, 1, 1, 1e-6], [0.01, 10, 10, 1e6]),
+    ):
+        found = _polygon_moduli(acb_poly(coefficients), len(coefficients) - 1)
+        assert found == pytest.approx(moduli), coefficients
