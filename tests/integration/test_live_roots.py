@@ -10,7 +10,7 @@ from importlib import resources
 
 import numpy as np
 import pytest
-from flint import acb, arb, ctx
+from flint import acb, ctx
 
 from symflex import pipeline
 from symflex.live.tape import tape_of
@@ -98,31 +98,27 @@ def refuted(tf, values, state):
     """Yield what balls say against a state: proved roots that are none, and counts that are wrong."""
     bound = bind(tf, {name: Fraction(value) for name, value in values.items()})
     for kind, part in (("poles", bound.den), ("zeros", bound.num)):
-        proved = [z for z in state[kind] if z["proved"] and (z["re"] or z["im"])]
         reach = float(state["reach"][kind].replace("Infinity", "inf"))
-        end = reach if math.isfinite(reach) else 1.0
-        region = Band(Fraction(0), Fraction(end / (2 * math.pi))) if tf.is_distributed else Everything()
+        region = Band(Fraction(0), Fraction(reach / (2 * math.pi))) if math.isfinite(reach) else Everything()
         found = locate(bound, region, 25, with_zeros=kind == "zeros")
-        points = [complex(r) for r in getattr(found, kind)]
-        own = [complex(z["re"], z["im"]) for z in proved]
-        for z, centre in zip(proved, own, strict=True):
-            near = sum(abs(p - centre) <= z["radius"] + 1e-15 * abs(centre) for p in points)
-            # Near points where roots accumulate balls look for none.
-            is_right = near == 1 or (
-                tf.is_distributed and step_in_balls(bound, part, centre) < 2 * z["radius"]
-            )
-            if not is_right or z["radius"] > 1e-8 * abs(centre):
-                yield tf.name, kind, z
-        if state["certified"][kind] and found.certificate.certified:
-            holes = [(complex(e.re, e.im), e.radius) for e in found.excluded]
-            ours = [(p, z["multiplicity"] * (1 + (p.imag > 0))) for z, p in zip(proved, own, strict=True)]
-            theirs = [(complex(r), r.multiplicity) for r in getattr(found, kind)]
-            counts = [
-                sum(n for p, n in each if 0 < abs(p) < reach and all(abs(p - c) > r for c, r in holes))
-                for each in (ours, theirs)
-            ]
-            if counts[0] != counts[1]:
-                yield tf.name, kind, counts, points
+        theirs = [(complex(r), r.multiplicity) for r in getattr(found, kind)]
+        ours = []
+        for z in state[kind]:
+            centre = complex(z["re"], z["im"])
+            ours.append((centre, z["multiplicity"] * (1 + (z["im"] > 0))))
+            if z["proved"] and centre:
+                near = sum(abs(p - centre) <= z["radius"] + 1e-15 * abs(centre) for p, _ in theirs)
+                # Balls look for none near points where roots accumulate.
+                is_right = near == 1 or step_in_balls(bound, part, centre) < 2 * z["radius"]
+                if not is_right or z["radius"] > 1e-8 * abs(centre):
+                    yield tf.name, kind, z
+        holes = [(complex(e.re, e.im), e.radius) for e in found.excluded]
+        counts = {
+            sum(n for p, n in each if 0 < abs(p) < reach and all(abs(p - c) > r for c, r in holes))
+            for each in (ours, theirs)
+        }
+        if state["certified"][kind] and found.certificate.certified and len(counts) > 1:
+            yield tf.name, kind, counts, ours
 
 
 def check(node, rows, least):
@@ -139,41 +135,28 @@ def test_roots_of_a_lumped_and_of_a_distributed_model_are_proved_and_right_where
     check(node, [row for name in ("two_mass", "rod_tip_mass") for row in walks(node, name, 3, 1.0)], 1.0)
 
 
-LUMPED = ("quarter_car", "six_mass", "lumped_bending_beam", "two_mass_force", "base_flexure_position")
-BEAMS = (
-    "clamped_free",
-    "sliding_free_beam",
-    "one_link_arm",
-    "shaft_discs",
-    "timoshenko_cantilever",
-    "tension",
-)
-OTHERS = (
-    "delayed",
-    "two_beams",
-    "l_frame",
-    "robot_axis",
-    "kelvin_voigt_cantilever",
-    "sliding_free_beam_force",
-)
+LUMPED = "quarter_car six_mass lumped_bending_beam two_mass_force base_flexure_position"
+BEAMS = "clamped_free sliding_free_beam one_link_arm shaft_discs timoshenko_cantilever tension"
+OTHERS = "delayed two_beams l_frame robot_axis kelvin_voigt_cantilever sliding_free_beam_force"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [*LUMPED, *BEAMS, *OTHERS])
+@pytest.mark.parametrize("name", f"{LUMPED} {BEAMS} {OTHERS}".split())
 def test_proved_roots_and_counts_are_those_in_balls_at_random_positions(node, name):
     check(node, walks(node, name, 4, 1.0), 0.75 if name in OTHERS else 1.0)
 
 
 def test_a_pole_that_crosses_the_axis_turns_the_verdict(node):
-    # s^2 + b s + k/m: stable for a positive damper, and on either side of it for a negative one.
-    model = pipeline.loads(DAMPED)
-    (tf,) = pipeline.derive_all(model)
-    at = [{"m": 1.0, "k": 100.0, "b": b} for b in (0.3, -0.3, 30.0)]
+    # s^2 + b s/m + k/m: damped, growing, overdamped; b^2 = 4 m k has one double pole, which no disc tells.
+    (tf,) = pipeline.derive_all(pipeline.loads(DAMPED))
+    at = [{"m": 1.0, "k": 100.0, "b": b} for b in (0.3, -0.3, 30.0, 20.0)]
     tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
     key = node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[0])}, {json.dumps(at)})")
     node.run()
-    assert [state["stability"] for state in node.values[key]] == ["stable", "unstable", "stable"]
-    assert [len(state["poles"]) for state in node.values[key]] == [1, 1, 2]
+    states = node.values[key]
+    assert [state["stability"] for state in states] == ["stable", "unstable", "stable", "unknown"]
+    assert [state["certified"]["poles"] for state in states] == [True, True, True, False]
+    assert [len(state["poles"]) for state in states[:3]] == [1, 1, 2]
 
 
 def test_functions_whose_parameters_are_fixed_are_refused_with_a_reason():
@@ -182,10 +165,6 @@ def test_functions_whose_parameters_are_fixed_are_refused_with_a_reason():
 
 
 # ------------------------------------------------------------------------------------------- arithmetic
-
-
-def members(x, y, r):
-    return [acb(x, y) + acb(r) * acb(0, arb(k) / 4).exp_pi_i() for k in range(0, 8, 2)] + [acb(x, y)]
 
 
 def test_discs_hold_what_their_members_become(node):
@@ -197,27 +176,29 @@ def test_discs_hold_what_their_members_become(node):
         "root": lambda a, _: a.sqrt(),
         "exponent": lambda a, _: a.exp(),
     }
-    cases = []
+    cases, wrong, known = [], [], 0
     for name in list(operations) * 300:
         size = 10.0 ** draw.uniform(-6, 2 if name == "exponent" else 6)
-        discs = [[size * draw.gauss(0, 1), size * draw.gauss(0, 1), 0.0] for _ in range(2)]
-        for disc in discs:
-            disc[2] = draw.choice((0.0, 1e-15, 1e-6, 0.1, 0.7)) * math.hypot(*disc[:2])
-        if name == "root":
-            discs[0][0] = abs(discs[0][0]) + discs[0][2]  # away from where the principal root has its cut
-        cases.append((name, discs))
+        centres = [complex(draw.gauss(0, size), draw.gauss(0, size)) for _ in range(2)]
+        radii = [draw.choice((0.0, 1e-15, 1e-6, 0.1, 0.7)) * abs(c) for c in centres]
+        cases.append((name, [[c.real, c.imag, r] for c, r in zip(centres, radii, strict=True)]))
     key = node.keep(f"{json.dumps(cases)}.map(([name, discs]) => computed(name, discs))")
     node.run()
-    wrong = []
-    for (name, (one, other)), (x, y, r) in zip(cases, node.values[key], strict=True):
-        if r is None:
-            continue  # JSON's infinity: nothing is known
-        with ctx.workprec(200):
-            values = [operations[name](a, b) for a in members(*one) for b in members(*other)]
-            if not all(abs(v - acb(x, y)).upper() <= arb(r) * (1 + arb(2) ** -60) for v in values):
-                wrong.append((name, one, other, x, y, r))
+    with ctx.workprec(200):
+        for (name, given), (x, y, r) in zip(cases, node.values[key], strict=True):
+            # In the directions of the centre, where a disc is nearest to 0 and farthest, and across.
+            ways = [
+                [c + c / abs(c) * k * d[2] for k in (0, 1, acb(0, 1), -1)]
+                for d in given
+                for c in [acb(*d[:2])]
+            ]
+            values = [operations[name](a, b) for a in ways[0] for b in ways[1]]
+            signs = (1, -1) if name == "root" else (1,)  # the branch that is continuous
+            off = [min(float(abs(v * k - acb(x, y)).upper()) for k in signs) for v in values]
+            known += r is not None  # in JSON infinity is null
+            if r is not None and max(off) > r * (1 + 1e-15):
+                wrong.append((name, given, x, y, r))
     assert not wrong, wrong[:3]
-    known = sum(r is not None for *_, r in node.values[key])
     assert known > 0.95 * len(cases)
 
 
@@ -236,21 +217,24 @@ def errors(node, exponents, angles):
 
 
 def points(count):
+    """Return exponents and angles: anywhere, where reduction is hardest, and small ones."""
     draw = np.random.default_rng(1)
-    n = count // 4
-    half = np.log(2) / 2 * draw.integers(-2000, 2000, n) * (1 + 1e-9 * draw.standard_normal(n))
-    near = np.pi / 2 * draw.integers(-600_000, 600_000, n) * (1 + 1e-12 * draw.standard_normal(n))
-    small = draw.choice([-1.0, 1.0], n) * 10.0 ** draw.uniform(-12, 2, n)
-    return (
-        np.concatenate([draw.uniform(-700, 700, count - 2 * n), half, small]),
-        np.concatenate([draw.uniform(-1e6, 1e6, count - 2 * n), near, small]),
-    )
+    small = draw.choice([-1.0, 1.0], count) * 10.0 ** draw.uniform(-12, 2, count)
+    sets = []
+    for limit, step in ((700, np.log(2) / 2), (1e6, np.pi / 2)):
+        near = (
+            step
+            * np.round(draw.uniform(-limit, limit, count) / step)
+            * (1 + 1e-11 * draw.standard_normal(count))
+        )
+        sets.append(np.concatenate([draw.uniform(-limit, limit, count), near[abs(near) < limit], small]))
+    return sets
 
 
-def test_exp_cos_and_sin_keep_their_bounds_at_forty_thousand_points(node):
-    assert max(errors(node, *points(40_000))) < 1.0
+def test_exp_cos_and_sin_keep_their_bounds_at_thirty_thousand_points(node):
+    assert max(errors(node, *points(10_000))) < 1.0
 
 
 @pytest.mark.slow
 def test_exp_cos_and_sin_keep_their_bounds_at_ten_million_points(node):
-    assert max(errors(node, *points(10_000_000))) < 1.0
+    assert max(errors(node, *points(3_400_000))) < 1.0
