@@ -57,9 +57,10 @@ export const evaluated = (read, write) => {
 
 DAMPED = """
 symflex = 1
-parameters = { m = "1 kg", k = "100 N/m", b = "0.3 N*s/m" }
+parameters = { m = "1 kg", k = "100 N/m", b = "0.3 N*s/m", a = "0.3 rad", h = "2" }
+definitions.k_s = "k*(sin(a)^2 + cos(a)^2)*(cosh(h)^2 - sinh(h)^2)"
 elements.body   = { type = "mass", at = "x", m = "m" }
-elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k_s" }
 elements.damper = { type = "damper", between = ["x", "ground"], b = "b" }
 inputs.F = { force = "x" }
 outputs.X = "x"
@@ -149,7 +150,9 @@ def test_proved_roots_and_counts_are_those_in_balls_at_random_positions(node, na
 def test_a_pole_that_crosses_the_axis_turns_the_verdict(node):
     # s^2 + b s/m + k/m: damped, growing, overdamped; b^2 = 4 m k has one double pole, which no disc tells.
     (tf,) = pipeline.derive_all(pipeline.loads(DAMPED))
-    at = [{"m": 1.0, "k": 100.0, "b": b} for b in (0.3, -0.3, 30.0, 20.0)]
+    at = [
+        {"m": 1.0, "k": 100.0, "b": b, "a": 0.3, "h": 2.0} for b in (0.3, -0.3, 30.0, 20.0)
+    ]  # sin^2 + cos^2 = 1
     tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
     key = node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[0])}, {json.dumps(at)})")
     node.run()
@@ -157,6 +160,10 @@ def test_a_pole_that_crosses_the_axis_turns_the_verdict(node):
     assert [state["stability"] for state in states] == ["stable", "unstable", "stable", "unknown"]
     assert [state["certified"]["poles"] for state in states] == [True, True, True, False]
     assert [len(state["poles"]) for state in states[:3]] == [1, 1, 2]
+    assert (
+        abs(complex(states[0]["poles"][0]["re"] + 0.15, states[0]["poles"][0]["im"] - math.sqrt(99.9775)))
+        < 1e-10
+    )
 
 
 def test_functions_whose_parameters_are_fixed_are_refused_with_a_reason():
