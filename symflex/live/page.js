@@ -453,6 +453,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && state.stability === "unknown" ? `${known.sentence}, proved at the declared values`
             : word === "marginal" ? "marginal, proved at these values: poles at s = 0, all others in the left half plane"
             : word !== "unknown" ? `${word}, proved at these values`
+            : state.isPassive ? "no pole lies in the right half plane: nothing supplies energy, whatever the positive values"
             : `neither stability nor instability is proved here${state.poles.length ? `: the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : ""}`;
         for (const kind of ["stable", "unstable"]) line.classList.toggle(kind, word === kind);
         const text = `${sentence[0].toUpperCase()}${sentence.slice(1)}.`;

@@ -292,7 +292,8 @@ function proverOf(tape) {
         }
         const isLeft = isLumped && next.certified.poles && next.poles.every((z) => -z.re > z.radius * UP);
         const isRight = next.poles.some((z) => z.proved && z.re > z.radius * UP);
-        return { ...next, stability: isRight ? "unstable" : isLeft ? "stable" : "unknown" };
+        const isPassive = tape.passive && values.every((v) => v > 0.0);  // then no pole is right of the axis
+        return { ...next, isPassive, stability: isRight ? "unstable" : isLeft ? "stable" : "unknown" };
     }
 
     return {

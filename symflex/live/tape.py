@@ -28,7 +28,7 @@ A polynomial in s of degree n has n zeros: n discs that are apart hold them all,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial, reduce
 from typing import TYPE_CHECKING
@@ -43,9 +43,11 @@ from symflex.codegen.program.distributed import Pieces
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.program.forge import straight
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
+from symflex.model.signs import is_passive
 from symflex.roots import Everything, Modes
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
+from symflex.roots.passive import observed
 from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:
@@ -87,7 +89,11 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
         kind: [[z.real, z.imag] for z in map(complex, getattr(located, kind)) if z and z.imag >= 0]
         for kind in sides
     }
-    return {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "start": start, **sides}
+    # Energy decides on stability whatever the values are, if they are positive.
+    free = tuple(replace(p, value=None, assume="positive") for p in tf.model.parameters)
+    passive = is_passive(replace(observed(tf.model, tf.output), parameters=free))
+    named = {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "passive": passive}
+    return named | {"start": start, **sides}
 
 
 def _refusal(tf: AnyTransferFunction) -> str:

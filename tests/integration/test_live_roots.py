@@ -34,9 +34,9 @@ export const walked = (tape, start, positions) => {
     let state = prover.begin(start);
     return positions.map((values) => {
         state = prover.moved(state, values);
-        const { poles, zeros, certified, reach, stability } = state;
+        const { poles, zeros, certified, reach, stability, isPassive } = state;
         const ends = { poles: String(reach.poles), zeros: String(reach.zeros) };
-        return { poles, zeros, certified, stability, reach: ends };
+        return { poles, zeros, certified, stability, isPassive, reach: ends };
     });
 };
 export const computed = (name, given) => {
@@ -133,7 +133,18 @@ def check(node, rows, least):
 
 
 def test_roots_of_a_lumped_and_of_a_distributed_model_are_proved_and_right_wherever_sliders_are(node):
-    check(node, [row for name in ("two_mass", "rod_tip_mass") for row in walks(node, name, 3, 1.0)], 1.0)
+    rows = [row for name in ("two_mass", "rod_tip_mass") for row in walks(node, name, 3, 1.0)]
+    check(node, rows, 1.0)
+    assert all(state["isPassive"] for *_, key in rows for state in node.values[key])  # masses, springs, rods
+
+
+def test_only_positive_values_are_passive(node):
+    ((tf, _, key), *_) = walks(node, "two_mass", 1, 0.0)
+    at = {p.name: -float(p.value.nearly) for p in tf.parameters}
+    tape = json.dumps(tape_of(tf, {name: name for name in at}))
+    key = node.keep(f"walked({tape}, {json.dumps(at)}, [{json.dumps(at)}])[0].isPassive")
+    node.run()
+    assert node.values[key] is False
 
 
 LUMPED = "quarter_car six_mass lumped_bending_beam two_mass_force base_flexure_position"
