@@ -297,8 +297,6 @@ function proverOf(tape) {
     }
 
     return {
-        start,
-        window: { re: [-1.1 * nominal, 1.1 * nominal], im: [0.0, 1.1 * nominal] },
         begin(given) {
             const values = listed(given);
             first = state(values, (f, kind) => {
