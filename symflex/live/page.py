@@ -16,7 +16,7 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64encode
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from hashlib import sha256
 from importlib import resources
 from math import tau
@@ -71,7 +71,7 @@ def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progres
     for i, (model, pairs) in enumerate(models):
         progress.report(i / len(models), model.title or f"model {i + 1}")
         parts.append(_part(i, model, pairs))
-    exported = ",\n".join(part.script for part in parts)
+    exported = ",\n".join(script for _, script in parts)
     sources = "\n".join(room.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     script = f'"use strict";\n(() => {{\n{sources}\nlive([\n{exported}\n]);\n}})();\n'
     title = models[0][0].title or "Transfer functions" if len(models) == 1 else f"{len(models)} models"
@@ -85,7 +85,7 @@ def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progres
         f"<title>{escape_html(title)}</title>",
         f"<style>{style}</style></head><body>",
         *_chooser(models),
-        *(part.markup for part in parts),
+        *(markup for markup, _ in parts),
         f"<script>{script}</script></body></html>",
     ]
     return "\n".join(lines) + "\n"
@@ -102,25 +102,17 @@ def _chooser(models: Sequence[tuple[Model, object]]) -> Iterable[str]:
         yield f'<nav><label>Model <select id="model">{options}</select></label></nav>'
 
 
-@dataclass(frozen=True)
-class _LivePart:
-    """What one model adds to the page."""
-
-    markup: str
-    script: str  # an expression: data, parameters and functions
-
-
-def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> _LivePart:
+def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[str, str]:
+    """Return the markup of a model, and an expression of the script: its data, parameters and functions."""
     derived, _ = pipeline.derive_as(model, pairs)
     every = JAVASCRIPT.contents(model, derived)
     contents = replace(every, members=tuple(m for m in every.members if not m.is_response))
     module = "\n".join(map(_packed, javascript_module(contents).text.splitlines()))
     names = contents.names(RESERVED)[1]
-    located = _located(model, pairs)
-    data = _data(contents, names, located)
+    data = _data(contents, names, _located(model, pairs))
     script = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
     returned = f"return {{ PARAMETERS, TRANSFER_FUNCTIONS, data: {script} }};"
-    return _LivePart(_markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()")
+    return _markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()"
 
 
 def _packed(line: str) -> str:
@@ -155,12 +147,11 @@ def _data(
         {**_function(m, at), "tape": tape_of(m.tf, names)}
         for m, at in zip(contents.members, located, strict=True)
     ]
-    band = [float(f) for f in model.analysis.band or ()]
     return {
         "title": model.title,
         "parameters": [_parameter(p, names[p.name], p.name in moving) for p in used],
         "functions": functions,
-        "band": band or _band(functions),
+        "band": [float(f) for f in model.analysis.band or ()] or _band(functions),
         "specification": _pieces(model, [p.name for p in used]),
     }
 
@@ -289,11 +280,8 @@ def _drawing(model: Model, number: int) -> str:
     except SymflexError:
         return ""
     drawn = inline_svg(svg, f"d{number}", f"{model.title or 'The model'}, drawn")
-    return STYLE_ATTRIBUTE.sub(_as_attributes, MAX_WIDTH.sub(_width, drawn, count=1))
-
-
-def _width(found: re.Match[str]) -> str:
-    return f' width="{SHOWN * float(found[1]):.2f}in"'
+    drawn = MAX_WIDTH.sub(lambda m: f' width="{SHOWN * float(m[1]):.2f}in"', drawn, count=1)
+    return STYLE_ATTRIBUTE.sub(_as_attributes, drawn)
 
 
 def _as_attributes(found: re.Match[str]) -> str:

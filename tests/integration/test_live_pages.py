@@ -20,6 +20,7 @@ PAGES = ("eppinger1988/two_mass", "eppinger1988/sliding_free_beam")
 MORE = (
     "classics/quarter_car", "classics/one_link_arm", "classics/rod_tip_mass", "classics/shaft_discs",
     "classics/kelvin_voigt_cantilever", "eppinger1988/base_flexure", "eppinger1988/loops/two_mass_force",
+    "eppinger1988/loops/sliding_free_beam_position",
     "eppinger1988/lumped_bending_beam", "eppinger1988/six_mass", "frames/l_frame", "tapers/cone",
 )  # fmt: skip
 DRAG = """
