@@ -146,7 +146,8 @@ ROBOT = BEAM | {
     "m": "0.4 kg",
 }
 ROBOT_BODY = """
-signals.v_m = "k_c*(u - motor.i)"
+[signals]
+v_m = "k_c*(u - motor.i)"
 """ + elements(
     drive='type = "voltage_source", at = "e", v = "v_m"',
     motor='type = "dc_motor", terminals = ["e", "ground"], shaft = "axis", L = "L", R = "R", k_t = "k_t"',
