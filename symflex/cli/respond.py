@@ -105,14 +105,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     if given.output:
         _write(response, given, Path(given.output))
     else:
-        is_told = (
-            given.to == "step"
-            and signal is None
-            and not (shaper or free)
-            and response.certified
-            and _may_rest(known)
-        )
-        info = find_step_info(bound, given.digits, response.modes) if is_told else None
+        is_told = given.to == "step" and not (signal or shaper or free) and response.certified
+        info = find_step_info(bound, given.digits, response.modes) if is_told and _may_rest(known) else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
             emit_json({**response.to_json_dict(), **told})

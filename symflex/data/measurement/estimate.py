@@ -55,6 +55,8 @@ SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+STOPPED: Final = 0.01
+"""Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
 """Rms of the second half of a free decay over that of the first half, at most."""
 ENDS: Final = 0.05
@@ -171,6 +173,10 @@ _Estimated = tuple[npt.NDArray[Any], Complex, Real | None, float | None, str, st
 
 def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
     """Return frequencies, response, coherence, number of averages, window, and what was done."""
+    held = int(np.flatnonzero(np.append(True, channel.u != channel.u[-1]))[-1])  # before the last level
+    shorter = _Channel(channel.u[:held], channel.y[:held], channel.step_s)
+    if channel.u.size - held <= STOPPED * channel.u.size and (shorter.level or (0, 0.0))[1]:
+        channel = shorter
     if how.segments is None and channel.level is not None:
         return _of_step(channel)
     if how.segments is None and channel.is_pulse:

@@ -171,7 +171,7 @@ def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, 
         for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
             for i, name in enumerate(names[:-1]):
-                match = TIME.fullmatch(name.strip("\"' "))
+                match = TIME.fullmatch(name.strip("\"' _"))
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):
                     said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
                     return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1)), Fraction(0)
