@@ -264,8 +264,8 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     };
     const specification = () => data.specification.map((piece) => {
         if (typeof piece === "string") return piece;
-        const [i, unit, text] = piece, p = parameters[i], x = String(Number(written(p).toPrecision(6)));
-        return values[p.id] === declared[p.id] ? text : unit ? `"${x} ${unit}"` : x;
+        const [i, unit, text, end] = piece, p = parameters[i], x = String(Number(written(p).toPrecision(6))), value = unit ? `"${x} ${unit}"` : x;
+        return values[p.id] === declared[p.id] ? text : end ? `value = ${value}${end}` : value;
     }).join("");
     // The state as the link holds it.
     const isInside = location.protocol === "about:";  // in the frame of a notebook, where links would lead out

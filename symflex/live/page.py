@@ -207,7 +207,8 @@ def _band(functions: Sequence[dict[str, Any]]) -> list[float]:
 def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
     """Return the specification's text, cut: between texts stand places of values.
 
-    A place is the number of a parameter, the unit to be written with its value, and the text there.
+    A place is the number of a parameter, the unit to be written with its value, and the text there; of one
+    without a value, also what follows ``value = ...``.
     Parameters that other files declare have no place.
     """
     source = next((o.span.source for o in model.outputs if o.span), None)
@@ -220,16 +221,18 @@ def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
     for entry in table.entries if table else ():
         if entry.key not in shown:
             continue
-        inner, unit = entry, None
-        if isinstance(entry.value, TableValue):
-            value, unit = entry.value.get("value"), entry.value.get("unit")
-            if value is None:
-                continue
+        inner, own = entry, entry.value if isinstance(entry.value, TableValue) else None
+        place = [shown.index(entry.key), "" if own and own.get("unit") else units[entry.key]]
+        if own and (value := own.get("value")):
             inner = value
+        elif own:
+            first = next((e.key_span.start for e in own.entries), 0)
+            if first and source.text[first - 1] != ".":
+                separator = "\n" if own.span.text.startswith("[") else ", "
+                places.append((first, first, [*place, "", separator]))
+            continue
         span = inner.value.span
-        places.append(
-            (span.start, span.end, [shown.index(entry.key), "" if unit else units[entry.key], span.text])
-        )
+        places.append((span.start, span.end, [*place, span.text]))
     pieces: list[str | list[Any]] = []
     last = 0
     for start, end, place in sorted(places):

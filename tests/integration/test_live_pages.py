@@ -22,6 +22,7 @@ MORE = (
     "classics/kelvin_voigt_cantilever", "eppinger1988/base_flexure", "eppinger1988/loops/two_mass_force",
     "eppinger1988/loops/sliding_free_beam_position",
     "eppinger1988/lumped_bending_beam", "eppinger1988/six_mass", "frames/l_frame", "tapers/cone",
+    "../symflex/templates/servo",
 )  # fmt: skip
 DRAG = """
 for (const [i, slider] of [...document.querySelectorAll('main input[type=range]:enabled')].entries()) {
@@ -70,7 +71,8 @@ def compared(browser, folder, name):
     assert browser.complaints() == ([], [file.as_uri()])
     values = {p.name: got["values"][p.name] for p in model.settable}
     assert values != {p.name: float(p.value.nearly) for p in model.settable} or not got["moving"]
-    moved = pipeline.load(path, (), values)
+    given = {p.name: f"{values[p.name]!r} {p.unit}" if p.cycles else values[p.name] for p in model.settable}
+    moved = pipeline.load(path, (), given)
     for tf, curve in zip(names, got["curves"], strict=True):
         (bound,) = pipeline.derive_for_roots(moved, pipeline.pick_pairs(moved, [tf]))
         expected = np.array([bound(1j * x) for x in w])
@@ -177,9 +179,11 @@ def test_hostile_names_and_texts_are_shown_and_run_nothing(browser, tmp_path, mo
 def test_a_page_without_values_says_which_are_missing_and_draws_when_they_are_there(browser, tmp_path):
     opened(browser, tmp_path, pipeline.loads(BODY.replace("value = 0.05, ", "")))
     script = (
-        "const said = one('.missing').textContent; await put(field, 4); return [said, one('.plots').hidden];"
+        "const said = one('.missing').textContent; await put(field, 0.07); const { hidden } = one('.plots');"
     )
-    assert browser.run(ACT % script) == ["The plots need values of k: type them, or move the sliders.", False]
+    *got, text = browser.run(ACT % f"{script} return [said, hidden, symflex.specification()];")
+    assert got == ["The plots need values of k: type them, or move the sliders.", False]
+    assert float(pipeline.loads(text).parameters[2].value.nearly) == 70
 
 
 @pytest.mark.needs_module("anywidget")
