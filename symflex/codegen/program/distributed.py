@@ -664,13 +664,17 @@ class _PieceMaker:
         value, taken = self._value(half, (), site, scales)
         growth = [forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()]
         outside, s = self.plains[number] * taken * factor, self.ring.context.gen(0)
-        laws = [c for law in self.table.dispersions for c in (*law.characteristic, law.shift)]
+        whole = (self.tf.num, self.tf.den)[number] * factor
+        names = [(k.dispersion, k.generator) for k in self.table.kernels]
+        names += [(law, wave) for law in self.table.dispersions for wave in law.wavenumbers]
+        used = {law for law, name in names if whole.depends_on(name)}
+        laws = [c for law in self.table.dispersions if law in used for c in (*law.characteristic, law.shift)]
         # Powers of s stand against those of wavenumbers: what they make is a zero at s = 0, if anything.
         plain = outside.filter(lambda f: f != s and not self._holds(f, self.waves))
         below = [v.denominator() for v in (plain, *laws)]
         divisors = [site.value(v) for v in below if v.depends_on(LAPLACE)]
-        whole = forge.multiply([site.value(outside), value])
-        return straight(forge, [whole, forge.add(growth), *divisors])
+        product = forge.multiply([site.value(outside), value])
+        return straight(forge, [product, forge.add(growth), *divisors])
 
     # ----------------------------------------------------------------------------------- real arithmetic
 
