@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import exp, inf, pi
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, arb
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from symflex.loops.loop import LoopFunction
 
-
 BITS = 96
 """Of intervals, whose ends are doubles."""
 FIRST_RATIO = 1.25
@@ -44,14 +43,6 @@ STALLED = 0.99
 
 
 Place = TypeVar("Place")
-Place_co = TypeVar("Place_co", covariant=True)
-
-
-class AlongAxis(Protocol[Place_co]):
-    """What has values along an axis."""
-
-    def on(self, omega: arb, bits: int) -> tuple[Place_co, Place_co]:
-        """Return the values on a ball, and those in its middle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,28 +54,30 @@ class AxisRoots:
 
 
 def find_on_axis(
-    function: AlongAxis[Place],
+    on: Callable[[arb, int], tuple[Place, Place]],
     equation: Callable[[Place], tuple[arb, arb]],
     is_excluded: Callable[[Place], bool],
     limits: tuple[float, float],
     digits: int,
+    most: int = 0,
 ) -> AxisRoots:
     """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
-    ``equation`` returns its value and its derivative in omega; ``is_excluded`` tells that roots among these
-    values are not asked for. SF505, SF506 when there are too many intervals, or the time is over.
+    ``on`` returns values on a ball and in its middle, and ``equation`` the function's value and derivative
+    from these; ``is_excluded`` tells that roots among them are not asked for. What is left after ``most``
+    intervals is undecided; SF505 without that when there are too many, SF506 when the time is over.
     """
     pending = pieces(*limits, FIRST_RATIO)
     roots: list[arb] = []
     undecided: list[arb] = []
-    for _ in range(MOST_INTERVALS):
+    for _ in range(most or MOST_INTERVALS):
         if not pending:
-            return AxisRoots(tuple(roots), _joined(undecided))
+            return AxisRoots(tuple(roots), joined(undecided))
         spend()
         start, end = pending.pop()
         with precision(BITS):
             ball = (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
-        around, centre = function.on(ball, BITS)
+        around, centre = on(ball, BITS)
         with precision(BITS):
             if is_excluded(around):
                 continue
@@ -94,10 +87,10 @@ def find_on_axis(
             if value != 0 or mean != 0:
                 continue
             if slope != 0:
-                ends = [equation(function.on(arb(x), BITS)[1])[0] for x in (start, end)]
+                ends = [equation(on(arb(x), BITS)[1])[0] for x in (start, end)]
                 if all(x != 0 for x in ends):
                     if bool(ends[0] > 0) != bool(ends[1] > 0):
-                        roots.append(_refined(function, equation, ball, digits))
+                        roots.append(_refined(on, equation, ball, digits))
                     continue
         if end - start < NARROWEST * end:
             undecided.append(ball)
@@ -105,6 +98,8 @@ def find_on_axis(
         # Off the middle, so that a root there does not stay on an end for ever.
         cut = start + 0.4873 * (end - start)
         pending += [(cut, end), (start, cut)]
+    if most:
+        return AxisRoots(tuple(roots), joined([*undecided, arb(pending[-1][0]).union(arb(limits[1]))]))
     message = "the search for crossings of the imaginary axis takes too long"
     raise BudgetError(Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to"))
 
@@ -118,7 +113,10 @@ def pieces(low: float, high: float, ratio: float) -> list[tuple[float, float]]:
 
 
 def _refined(
-    function: AlongAxis[Place], equation: Callable[[Place], tuple[arb, arb]], ball: arb, digits: int
+    on: Callable[[arb, int], tuple[Place, Place]],
+    equation: Callable[[Place], tuple[arb, arb]],
+    ball: arb,
+    digits: int,
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 
@@ -128,7 +126,7 @@ def _refined(
 
     def newton(ball: arb) -> arb:
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)
-        around, centre = function.on(ball, bits)
+        around, centre = on(ball, bits)
         with precision(bits):
             candidate = ball.mid() - equation(centre)[0] / equation(around)[1]
             is_near = candidate.is_finite() and candidate.overlaps(ball)
@@ -137,7 +135,7 @@ def _refined(
     return narrowed(ball, newton, NEWTON_STEPS, STALLED)
 
 
-def _joined(intervals: list[arb]) -> tuple[arb, ...]:
+def joined(intervals: list[arb]) -> tuple[arb, ...]:
     """Return intervals, neighbours as one."""
     joined: list[arb] = []
     for interval in intervals:
@@ -159,8 +157,8 @@ class LoopAtOrigin:
 
     orders: tuple[int, ...]  # of the roots of the parts at 0, exact
     series: tuple[LocalSeries, ...]  # of the parts, A and B
-    ratio: Fraction | None = None  # A/B at 0 where that is known to be a number, neither zero nor infinite
-    turn: acb | None = None  # the direction of the axis where that is not j's
+    ratio: Fraction | None  # A/B at 0 where that is known to be a number, neither zero nor infinite
+    turn: acb  # the direction of the axis, another if functions are of a root of s
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""
@@ -170,59 +168,36 @@ class LoopAtOrigin:
         if first < second:
             return None
         with precision(ORIGIN_BITS):
-            return -(self.series[0].coefficients[first] / self.series[1].coefficients[second]).real
+            return -(self._lowest(0) / self._lowest(1))
 
     def sizes(self, radius: arb) -> tuple[acb, acb]:
         """Return balls around ``A/s^order`` and ``B/s^order`` on the piece of the axis within a radius."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
-            if self.turn is not None:
-                return self._turned(0, omega * self.turn), self._turned(1, omega * self.turn)
-            (a, a_side), (b, b_side) = (self._parts(i, omega) for i in (0, 1))
-            return acb(a, omega * a_side), acb(b, omega * b_side)
+            return self._beyond(0, omega), self._beyond(1, omega)
 
     def turns_away(self, radius: arb) -> bool:
         """Tell whether ``Im(A conj(B))`` differs from 0 on the axis within a radius, but for 0 itself."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
-            if self.turn is not None:
-                return bool(self._imaginary(omega, self.turn) != 0)
-            first, second = (self._parts(i, omega) for i in (0, 1))
-            if (self.orders[0] - self.orders[1]) % 2:
-                value = first[0] * second[0] + omega * omega * first[1] * second[1]
-            else:
-                value = first[1] * second[0] - first[0] * second[1]
-            return bool(value != 0)
-
-    def _turned(self, which: int, place: acb, beyond: int = 0) -> acb:
-        """Return A or B over its lowest power on a piece of the axis, without its first ``beyond`` terms."""
-        series, order = self.series[which], self.orders[which] + beyond
-        share, total = place.abs_upper() / series.reach, acb(0)
-        for coefficient in reversed(series.coefficients[order:]):
-            total = total * place + coefficient.real
-        rest = series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
-        return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
-
-    def _imaginary(self, omega: arb, turn: acb) -> arb:
-        """Return ``Im(A conj(B))`` over its lowest power of omega, on a piece of the axis."""
-        first, second = (self._turned(i, omega * turn) for i in (0, 1))
-        if apart := self.orders[0] - self.orders[1]:
-            return (first * second.conjugate() * turn**apart).imag
-        a, b = (series.coefficients[self.orders[0]].real for series in self.series)
-        one, other = (turn * self._turned(i, omega * turn, 1) for i in (0, 1))
-        other = other.conjugate()
-        return (one * b + a * other + omega * one * other).imag
+            turned = self.turn ** (self.orders[0] - self.orders[1])
+            first, second = (self._beyond(i, omega) for i in (0, 1))
+            if turned.imag != 0:
+                return bool((first * second.conjugate() * turned).imag != 0)
+            one, other = (self.turn * self._beyond(i, omega, 1) for i in (0, 1))
+            other = other.conjugate()
+            rise = one * self._lowest(1) + self._lowest(0) * other + omega * one * other
+            return bool((rise * turned.real).imag != 0)
 
     def beside(self, omega: arb) -> list[acb]:
         """Return real parts, and imaginary ones over omega, of the parts over a power of s they share."""
         least, beside = min(self.orders), []
         for i, order in enumerate(self.orders):
-            (u, v), power = self._parts(i, omega), order - least
-            turn = (-1) ** (power // 2)
-            if power % 2:
-                beside.append(turn * acb(-(omega ** (power + 1)) * v, omega ** (power - 1) * u))
+            if order == least:
+                beside.append(acb(self._beyond(i, omega).real, (self.turn * self._beyond(i, omega, 1)).imag))
             else:
-                beside.append(turn * omega**power * acb(u, v))
+                part = self._beyond(i, omega) * self.turn ** (order - least) * omega ** (order - least - 1)
+                beside.append(acb(omega * part.real, part.imag))
         return beside
 
     def leaves_one(self, gain: Fraction, radius: arb) -> bool:
@@ -234,39 +209,24 @@ class LoopAtOrigin:
             return False
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
-            first, second = (self._rise(i, omega) for i in (0, 1))
+            # abs(a + s one)^2 is a^2 + omega^2 (abs(one)^2 - 2 a Re(two)), as one is real but for s two.
+            first, second = (
+                abs(self._beyond(i, omega, 1)) ** 2 - 2 * self._lowest(i) * self._beyond(i, omega, 2).real
+                for i in (0, 1)
+            )
             return bool(first - ball(gain**2) * second != 0)
 
-    def _rise(self, which: int, omega: arb) -> arb:
-        """Return ``(u^2 + omega^2 v^2 - u(0)^2)/omega^2``, of order 0."""
-        u, v = self._parts(which, omega)
-        series = self.series[which]
-        start, *others = (c.real for c in series.coefficients[::2])
-        change = arb(0)
-        for coefficient in reversed(others):
-            change = -coefficient - omega * omega * change
-        share = omega.upper() / series.reach
-        rest = series.bound * share ** (len(series.coefficients) - 2) / (1 - share) / series.reach**2
-        return (change + arb(0, rest.upper())) * (u + start) + v * v
+    def _lowest(self, which: int) -> arb:
+        return self.series[which].coefficients[self.orders[which]].real
 
-    def _parts(self, which: int, omega: arb) -> tuple[arb, arb]:
-        """Return u and v, functions of omega squared, of ``u + j omega v``."""
-        series, order = self.series[which], self.orders[which]
-        coefficients = [c.real for c in series.coefficients[order:]]
-        square = -omega * omega
-        parts = []
-        for start in (0, 1):
-            total = arb(0)
-            for coefficient in reversed(coefficients[start::2]):
-                total = total * square + coefficient
-            parts.append(total)
-        share = omega.upper() / series.reach
-        # What the series misses is divided by omega for v.
-        count = len(series.coefficients)
-        scale = series.bound / (1 - share) / series.reach**order
-        rest = (scale * share ** (count - order)).upper()
-        rest_over_omega = (scale * share ** (count - order - 1) / series.reach).upper()
-        return parts[0] + arb(0, rest), parts[1] + arb(0, rest_over_omega)
+    def _beyond(self, which: int, omega: arb, beyond: int = 0) -> acb:
+        """Return A or B over its lowest power on a piece of the axis, without its first ``beyond`` terms."""
+        series, order, place = self.series[which], self.orders[which] + beyond, omega * self.turn
+        share, total = place.abs_upper() / series.reach, acb(0)
+        for coefficient in reversed(series.coefficients[order:]):
+            total = total * place + coefficient.real
+        rest = series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
+        return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
 
 
 def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin | None:
@@ -307,8 +267,7 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in each.coefficients)
             series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
-        turn = function.turn if function.bound.sheets > 1 else None
-    return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(function), turn)
+        return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(function), function.turn)
 
 
 def _ratio_at_zero(function: LoopFunction) -> Fraction | None:

@@ -10,6 +10,7 @@ A tip sensor may be away from the joint actuator, and yet respond as the joint d
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -37,37 +38,19 @@ MOST_INTERVALS = 200_000
 
 @dataclass(frozen=True)
 class DynamicColocation:
-    """The band in which an output stays with a colocated one.
+    """The band in which an output stays with a colocated one."""
 
-    Parameters
-    ----------
-    tf, reference : str
-        The output over the input, and the colocated output over it.
-    phase : float
-        Largest difference of phase [degrees].
-    magnitude : float
-        Largest difference of magnitude [dB].
-    limits : (float, float)
-        Frequencies examined [Hz].
-    edge : arb or None
-        Where the band ends [rad/s]; ``None`` when it does not end within the limits.
-    is_decided : bool
-        False when the end could not be enclosed narrowly.
-    cause : str
-        ``phase`` or ``magnitude``, what is left first; empty when nothing is, or when that is not decided.
-    begins : bool
-        The outputs are together at the lower limit.
-    """
-
-    tf: str
-    reference: str
-    phase: float
-    magnitude: float
-    limits: tuple[float, float]
-    edge: arb | None
-    is_decided: bool
-    cause: str
-    begins: bool
+    tf: str  # the output over the input
+    reference: str  # the colocated output over it
+    phase: float  # largest difference of phase [degrees]
+    magnitude: float  # largest difference of magnitude [dB]
+    limits: tuple[float, float]  # frequencies examined [Hz]
+    edge: arb | None  # where the band ends [rad/s]; ``None`` when it does not end within the limits
+    is_decided: bool  # false when the end could not be enclosed narrowly
+    cause: (
+        str  # ``phase`` or ``magnitude``, what is left first; empty when that is not decided, or nothing is
+    )
+    begins: bool  # the outputs are together at the lower limit
 
     def __repr__(self) -> str:
         edge = "no end found" if self.edge is None else f"up to {figure(hertz(self.edge), 6)} Hz"
@@ -148,8 +131,8 @@ def dynamic_colocation(
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
-    within = _Tolerances(_ratio(tip, joint), phase, magnitude)
-    edge, is_decided, begins, cause = _first_exit(within.state, low, high)
+    within = partial(_state, _ratio(tip, joint), phase, magnitude)
+    edge, is_decided, begins, cause = _first_exit(within, low, high)
     return DynamicColocation(
         tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
     )
@@ -193,28 +176,19 @@ def _first_exit(
     return ball, False, True, cause
 
 
-@dataclass(frozen=True)
-class _Tolerances:
-    """A sector of phases and magnitudes that a ratio is to stay in."""
-
-    ratio: Callable[[acb], acb]
-    phase: float
-    magnitude: float
-
-    def state(self, omega: arb) -> tuple[int, str]:
-        """Return 1 when the ratio is inside on all of a ball, -1 when outside on all of it, else 0."""
-        value = self.ratio(acb(0, omega))
-        if not value.is_finite():
-            return 0, ""
-        size = abs(value)
-        most = arb(10) ** (arb(self.magnitude) / 20)
-        limit = (arb.pi() * arb(self.phase) / 180).tan()
-        # Within the sector: abs(Im) <= tan(phase) Re.
-        slacks = {
-            "magnitude": (most - size).min(size - 1 / most),
-            "phase": limit * value.real - abs(value.imag),
-        }
-        if all(slack > 0 for slack in slacks.values()):
-            return 1, ""
-        outside = next((name for name, slack in slacks.items() if slack < 0), "")
-        return (-1 if outside else 0), outside
+def _state(ratio: Callable[[acb], acb], phase: float, magnitude: float, omega: arb) -> tuple[int, str]:
+    """Return 1 when a ratio is within tolerances on all of a ball, -1 when outside on all of it, else 0."""
+    value = ratio(acb(0, omega))
+    if not value.is_finite():
+        return 0, ""
+    size, most = abs(value), arb(10) ** (arb(magnitude) / 20)
+    # Within the sector: abs(Im) <= tan(phase) Re.
+    limit = (arb.pi() * arb(phase) / 180).tan()
+    slacks = {
+        "magnitude": (most - size).min(size - 1 / most),
+        "phase": limit * value.real - abs(value.imag),
+    }
+    if all(slack > 0 for slack in slacks.values()):
+        return 1, ""
+    outside = next((name for name, slack in slacks.items() if slack < 0), "")
+    return (-1 if outside else 0), outside

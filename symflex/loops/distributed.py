@@ -12,7 +12,7 @@ from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property, partial, reduce
 from math import exp, log, prod
 from typing import TYPE_CHECKING
 
@@ -21,11 +21,11 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import ORIGIN_BITS, AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
+from symflex.loops.axis import ORIGIN_BITS, AxisRoots, LoopAtOrigin, find_on_axis, joined, loop_at_origin
 from symflex.loops.gain_functions import GainFunctions
-from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
-from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.loops.two_unknowns import GainTree, find_axis_points, left
+from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue, independent
+from symflex.loops.stability_map import Crossing, PoleCount, hertz
+from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, right_tail
 from symflex.roots.distributed.side import Side
@@ -33,7 +33,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, observed, passive_loop
 from symflex.roots.pole_zero_map import count_right
-from symflex.roots.root import count_roots
+from symflex.roots.root import count_roots, exact_fraction
 from symflex.roots.sheets import on_sheet
 from symflex.transfer.enclose import first_order
 
@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from symflex.loops.loop import Loop
     from symflex.transfer import BoundTransferFunction
 
+    GainValue = Callable[[arb], arb_series]
+
 BITS = 128
 """Precision of gains and their limits."""
 OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
@@ -55,6 +57,7 @@ SLIVER = 40
 """Halvings of a range: what is left may be missing at an end of it."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
+NOT_PROVED_AT_ZERO = "the motion of poles next to s = 0 is not proved"
 WITHOUT_WAVES = 1e-6
 """A frequency [rad/s] from which a radius is sought for polynomials in a root of s."""
 WIDER = 16.0
@@ -117,7 +120,7 @@ class DistributedFactors:
 
     def _parts(self, factor: GainPolynomial) -> LoopFunction:
         if factor.degree > 1:
-            return LoopFunction.of(self.bound, *(c for _, c in factor.parts))
+            return LoopFunction.of(self.bound, *(c for _, c in factor.terms))
         zero = Factored.number(self.bound.ratio.ring, 0)
         return LoopFunction.of(self.bound, *[*factor.coefficients, zero][:2])
 
@@ -126,23 +129,17 @@ class DistributedFactors:
         tails = []
         for factor in self.factors:
             if factor.multiplicity > 0:
-                zero = Factored.number(self.bound.ratio.ring, 0)
-                whole = (
-                    self._parts(factor)
-                    if factor.degree
-                    else LoopFunction.of(self.bound, factor.coefficients[0], zero)
-                )
-                weights = (
-                    [acb(w) for w in self._tree(factor).values[0]] if factor.degree else [acb(1), acb(0)]
-                )
-                tails.append(right_tail(self.bound, whole.parts, weights, self.scale))
+                with precision(BITS):
+                    weights = zip(*(piece.values[0] for piece in self._tree(factor).pieces), strict=True)
+                    most = [acb(reduce(arb.union, each)) for each in weights]
+                tails.append(right_tail(self.bound, self._parts(factor).parts, most, self.scale))
         return tails
 
     def _tree(self, factor: GainPolynomial) -> GainTree:
         """Return the range of the gain with what the parts of a factor are multiplied by."""
         functions = self.loop.functions if self.loop is not None and factor.exponents else None
         functions = functions or GainFunctions(self.gain, {}, {}, None)
-        keys = [key for key, _ in factor.parts] if factor.degree > 1 else [(0,), (1,)]
+        keys = [key for key, _ in factor.terms] if factor.degree > 1 else [(0,), (1,)]
 
         def weights(gain: arb) -> list[arb_series]:
             values, one = functions.at(gain), first_order(arb(1))
@@ -154,7 +151,7 @@ class DistributedFactors:
         for i, step in enumerate((sliver, -sliver)):
             if not all(w[0].is_finite() for w in weights(ends[i].union(ends[i] + step))):
                 ends[i] = ends[i] + step
-        return GainTree(weights, ends[0].union(ends[1]))
+        return GainTree(weights, (ends[0].lower(), ends[1].upper()))
 
     @cached_property
     def radius(self) -> tuple[float, bool]:
@@ -185,7 +182,7 @@ class DistributedFactors:
         """How the loop is closed, where it is proved to be passive for every gain in the range."""
         source = self.bound.source
         is_straight = all(factor.degree <= 1 for factor in self.factors)
-        if self.limits[0] < 0 or self.bound.sheets > 1 or not is_straight:
+        if self.limits[0] < 0 or self.bound.sheets > 1 or not is_straight or not self.gain:
             return None
         return passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
 
@@ -325,40 +322,92 @@ class DistributedFactors:
             if factor.degree == 1:
                 crossings += self._crossings(self._parts(factor), digits)
             elif factor.degree:
-                crossings += self._in_two_unknowns(factor, digits)
+                ends = zip(map(ball, self.limits), self._tree(factor).ends, strict=True)
+                crossings += [Crossing(x.union(e), (), change=None) for x, e in ends if not x.overlaps(e)]
+                one = self.in_one_function(factor)
+                crossings += self._inverted(*one, digits) if one else self._in_two_unknowns(factor, digits)
         return crossings
 
+    def in_one_function(
+        self, factor: GainPolynomial, *, is_monic: bool = False
+    ) -> tuple[GainValue, list[tuple[arb, arb]], DistributedFactors] | None:
+        """Return f, its values on pieces of the range, and ``A + f B``, if f moves all poles of a factor.
+
+        A is all that is free of the gain if the loop ``is_monic``.
+        """
+        function, tree = self._parts(factor), self._tree(factor)
+        basis, shares = independent(function.parts)
+        if len(basis) != 2 or (is_monic and any(shares[0][1:])):  # noqa: PLR2004 (A and B)
+            return None
+
+        def value(gain: arb) -> arb_series:
+            weights, start = tree.weights(gain), first_order(arb(0))
+            sums = (sum((w * arb(x) for w, x in zip(weights, row, strict=True)), start) for row in shares)
+            one, other = sums
+            return first_order(arb("nan"), arb("nan")) if one[0].contains(0) else other / one
+
+        with precision(BITS):
+            values = [(piece.gain, value(piece.gain)[0]) for piece in tree.pieces]
+        hull = reduce(arb.union, (around for _, around in values))
+        if not hull.is_finite():
+            return None
+        ring = self.bound.ratio.ring
+        parts = tuple(Factored.polynomial(ring, function.parts[i]) for i in basis)
+        limits = exact_fraction(hull.lower()), exact_fraction(hull.upper())
+        own = GainPolynomial(parts, factor.multiplicity)
+        straight = replace(self, gain="", factors=(own,), limits=limits, loop=None, reasons=[])
+        return value, values, straight
+
+    def _inverted(
+        self, value: GainValue, values: Sequence[tuple[arb, arb]], loop: DistributedFactors, digits: int
+    ) -> list[Crossing]:
+        """Return the crossings of a loop ``A + f B`` at the gains for which f has their values."""
+        crossings: list[Crossing] = []
+        for crossing in loop.crossings(2 * digits):
+
+            def less(gain: arb, at: arb = crossing.gain) -> arb_series:
+                return value(gain) - at
+
+            for part in joined([gain for gain, around in values if around.overlaps(crossing.gain)]):
+                ends = exact_fraction(part.lower()), exact_fraction(part.upper())
+                limits = max(ends[0], self.limits[0]), min(ends[1], self.limits[1])
+                for is_open, gains in enumerate(self._alone.zeros(less, limits, digits)):
+                    for gain in gains:
+                        slope, change = value(gain)[1], crossing.change
+                        turned = -1 if slope < 0 else 1 if slope > 0 else None
+                        change = None if change is None or turned is None else turned * change
+                        moved = replace(crossing, gain=gain, change=change)
+                        crossings.append(replace(moved, is_open=crossing.is_open or bool(is_open)))
+        self.reasons += loop.reasons
+        return crossings
+
+    @property
+    def _alone(self) -> GainFunctions:
+        return GainFunctions(self.gain, {}, {}, None)
+
     def _in_two_unknowns(self, factor: GainPolynomial, digits: int) -> list[Crossing]:
-        """Return the same of a factor that is no straight line in the gain."""
+        """Return the same of a factor that depends on several functions of the gain."""
         function, tree, crossings = self._parts(factor), self._tree(factor), list[Crossing]()
-        ends = [ball(x) for x in self.limits]
-        edges = (tree.gain.lower(), tree.gain.upper())
-        crossings += [
-            Crossing(end.union(edge), (), change=None)
-            for end, edge in zip(ends, edges, strict=True)
-            if not tree.gain.contains(end)
-        ]
-        origin, first = loop_at_origin(function), None
-        with precision(ORIGIN_BITS):
-            radius = arb(0) if origin is None else origin.series[0].reach / 4
-            for _ in range(SHRINKINGS if origin is not None else 0):
-                if origin is not None and left([tree], origin.beside(arb(0).union(radius))) == []:
-                    first = float(radius.lower())
-                    break
-                radius = radius / 2
-        if origin is None or first is None:
-            self.reasons.append("the motion of poles next to s = 0 is not proved")
-            first = self.scale * NEXT_TO_ZERO
+        origin, first = loop_at_origin(function), 0.0
         if origin is not None:
+            with precision(ORIGIN_BITS):
+                radius = origin.series[0].reach / 4
+                for _ in range(SHRINKINGS):
+                    if not left([tree], PartsAlong(origin.beside(arb(0).union(radius)))):
+                        first = float(radius.lower())
+                        break
+                    radius = radius / 2
             start = origin.beside(arb(0))
 
             def at_zero(gain: arb) -> arb_series:
                 terms = (w * c.real for c, w in zip(start, tree.weights(gain), strict=True))
                 return sum(terms, first_order(arb(0)))
 
-            zeros, slivers = GainFunctions(self.gain, {}, {}, None).zeros(at_zero, self.limits, digits)
-            crossings += [Crossing(gain, (arb(0),), change=None) for gain in zeros]
-            crossings += [Crossing(gain, (arb(0),), is_open=True, change=None) for gain in slivers]
+            for is_open, gains in enumerate(self._alone.zeros(at_zero, self.limits, digits)):
+                crossings += [Crossing(g, (arb(0),), is_open=bool(is_open), change=None) for g in gains]
+        if not first:
+            self.reasons.append(NOT_PROVED_AT_ZERO)
+            first = self.scale * NEXT_TO_ZERO
         points = find_axis_points(function, tree, (first, self.axis_end * 1.01), digits)
         if points is None:
             # Counts at a few gains say nothing of those between.
@@ -368,12 +417,13 @@ class DistributedFactors:
             raise UncertifiedError(Diagnostic("SF802", message, None, "give a narrower --range"))
         for omega, gain in points.undecided:
             if not any(gain.overlaps(ball(end)) for end in self.limits):
-                place = float((omega.mid() / (2 * arb.pi())).mid())
-                self.reasons.append(
-                    f"it could not be decided whether poles cross the axis near {place:.6g} Hz"
-                )
+                self._leave_open(omega)
         crossings += [Crossing(gain, (omega,), is_open=True, change=None) for omega, gain in points.undecided]
         return crossings + [Crossing(gain, (omega,), change=None) for omega, gain in points.proved]
+
+    def _leave_open(self, omega: arb) -> None:
+        place = float(hertz(omega).mid())
+        self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
         crossings: list[Crossing] = []
@@ -391,7 +441,7 @@ class DistributedFactors:
                 if self._is_far(around):
                     continue
                 if around.b.contains(0):
-                    place = float((omega.mid() / (2 * arb.pi())).mid())
+                    place = float(hertz(omega).mid())
                     self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
                     continue
                 gain = around.gain()
@@ -412,22 +462,21 @@ class DistributedFactors:
     ) -> AxisRoots:
         """Return the roots of a real function along the axis between two frequencies."""
         low, high = limits
-        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits)
+        result = find_on_axis(function.on, equation, is_excluded, (low, high * 1.01), digits)
         for gap in result.undecided:
-            place = float((gap.mid() / (2 * arb.pi())).mid())
-            self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
+            self._leave_open(gap)
         return result
 
     def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
         """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
         origin = loop_at_origin(function)
         if origin is None:
-            self.reasons.append("the motion of poles next to s = 0 is not proved")
+            self.reasons.append(NOT_PROVED_AT_ZERO)
             return self.scale * NEXT_TO_ZERO, None
         radius = self._proved_within(origin)
         if radius is None:
             # Several crossings meet at 0: nothing is gained by going closer.
-            self.reasons.append("the motion of poles next to s = 0 is not proved")
+            self.reasons.append(NOT_PROVED_AT_ZERO)
             return float((origin.series[0].reach / 4).lower()), origin
         times = WIDER
         # Balls know little next to 0 where wavenumbers vanish, and series reach farther.

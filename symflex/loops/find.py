@@ -8,7 +8,7 @@ below one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
@@ -53,6 +53,8 @@ BRANCH = "stable gains are searched where the branch point is s = 0, and not whe
 NETWORK = "stable gains are not searched for a network that is too large to be written out"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
+NARROW_BITS = 20
+"""Relative accuracy of a range of gains that is not worth a word."""
 GUARD_DIGITS = 6
 """Beyond those printed."""
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
@@ -93,13 +95,13 @@ def find_stable_gains(
     # Poles that no gain moves, as far as they are roots of polynomials.
     apart = poles_apart(loop.bound, _split(loop)[0])
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
-    search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis), end)
+    resting = PoleCount(apart.right, apart.axis)
     try:
         if along is not None:
             crossings += along.crossings(digits + GUARD_DIGITS)
-        boundaries, intervals = search.between(crossings)
+        boundaries, intervals, open_ends = _between(crossings, lumped, along, (low, high), resting, end)
     except UncertifiedError as error:
-        if along is None or loop.nominal is None:
+        if loop.nominal is None:
             raise
         return _at_nominal(loop, (low, high), digits, error.diagnostics[0].message)
     nominal = loop.nominal
@@ -142,7 +144,8 @@ def find_stable_gains(
             phase_margins = loop_gain.margins(nominal)
         if end is not None:
             phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
-        bandwidth = allowed_bandwidth(intervals, high, loop_gain)
+        if loop_gain.value is None:
+            bandwidth = allowed_bandwidth(intervals, high, loop_gain)
         if is_complete and along is not None and along.is_endless and along.passive:
             beyond = along.passive.least_phase_margin(along.radius[0])
             if not _holds_smallest(phase_margins, bandwidth, beyond):
@@ -153,7 +156,7 @@ def find_stable_gains(
         phase_margins=phase_margins,
         bandwidth=bandwidth,
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
-        reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
+        reasons=tuple(dict.fromkeys((*open_ends, *reasons))),
     )
 
 
@@ -212,11 +215,19 @@ def _holds_smallest(
 
 
 def _factors(
-    loop: Loop, limits: Limits | None, up_to: float | None, end: float | None, at_end: float | None
+    loop: Loop, given: Limits | None, up_to: float | None, end: float | None, at_end: float | None
 ) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
-    low, high = _limits(loop, limits, is_distributed=bool(mixed))
+    low, high = given or (None if loop.gain.assume == "real" else Fraction(0), None)
+    if low is not None and high is not None and not low < high:
+        message = f"the range of '{loop.gain.name}' must end above its start"
+        raise UsageError(Diagnostic("SF804", message))
+    if loop.functions is not None:
+        low, high = loop.functions.domain((low, high), is_endless=not mixed)
+    elif mixed and given is None and loop.nominal:
+        reach = abs(loop.nominal) * RANGE_OF_NOMINAL
+        low, high = -reach if low is None else low, reach
     if at_end is not None:
         # Counts begin at 0, and end where the loop gain is one at the end of the data.
         most = Fraction(at_end)
@@ -226,7 +237,9 @@ def _factors(
     if not mixed:
         return lumped, None, (low, high)
     if low is None or high is None:
-        raise _range_needed(loop)
+        message = f"a loop with beams, rods or delays needs a bounded range of '{loop.gain.name}'"
+        hint = "give the parameter a value, or say --range LO HI"
+        raise UsageError(Diagnostic("SF804", message, None, hint))
     if loop.bound.sheets > 1 and any(factor.degree > 1 for factor in mixed):
         message = f"a loop with roots of s must be linear in '{loop.gain.name}'"
         hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
@@ -234,168 +247,135 @@ def _factors(
     along = DistributedFactors(
         loop.bound, loop.gain.name, mixed, (low, high), end or up_to, loop=loop, is_cut=end is not None
     )
-    if limits is None and end is None:
-        along = along.where_no_delay_leads
+    along = along.where_no_delay_leads if given is None and end is None else along
     return lumped, along, along.limits
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
     """Return the factors that are polynomials in s alone, and those with kernels."""
-    ring = loop.bound.ratio.ring
-    generators = [ring.index[name] for name in loop.bound.kernels.generators]
-    plain, mixed = [], []
+    bound = loop.bound
+    generators = [bound.ratio.ring.index[name] for name in bound.kernels.generators]
+    plain: list[GainPolynomial] = []
+    mixed: list[GainPolynomial] = []
     for factor in loop.factors:
         polynomials = [f for value in factor.coefficients for f, _ in value.factors]
-        has_root = factor.degree > 0 and loop.bound.sheets > 1
-        if (
-            has_root
-            or any(degree_in(f, i) for f in polynomials for i in generators)
-            or factor.multiplicity < 0
-        ):
-            mixed.append(factor)
-        else:
-            plain.append(factor)
-    if not loop.bound.kernels and loop.bound.sheets == 1:
-        mixed = []
-    return tuple(plain), tuple(mixed)
+        has_kernels = any(degree_in(f, i) for f in polynomials for i in generators)
+        has_root = factor.degree > 0 and bound.sheets > 1
+        (mixed if has_root or has_kernels or factor.multiplicity < 0 else plain).append(factor)
+    return tuple(plain), tuple(mixed) if bound.kernels or bound.sheets > 1 else ()
 
 
-def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits:
-    if given is not None:
-        low, high = given
-        if low is not None and high is not None and not low < high:
-            message = f"the range of '{loop.gain.name}' must end above its start"
-            raise UsageError(Diagnostic("SF804", message))
-        limits = given
-    else:
-        limits = None if loop.gain.assume == "real" else Fraction(0), None
-    if loop.functions is not None:
-        return loop.functions.domain(limits, is_endless=not is_distributed)
-    if given is not None:
-        return given
-    low, _ = limits
-    if not is_distributed:
-        return low, None
-    if not loop.nominal:
-        raise _range_needed(loop)
-    reach = abs(loop.nominal) * RANGE_OF_NOMINAL
-    return (-reach if low is None else low), reach
+def _between(
+    crossings: Sequence[Crossing],
+    lumped: Sequence[LumpedFactor],
+    along: DistributedFactors | None,
+    limits: Limits,
+    apart: PoleCount,
+    end: float | None,
+) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...], list[str]]:
+    """Return the boundaries inside a range, the intervals they part it into, and what is not proved.
 
-
-def _range_needed(loop: Loop) -> UsageError:
-    message = f"a loop with beams, rods or delays needs a bounded range of '{loop.gain.name}'"
-    return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
-
-
-@dataclass
-class _GainSearch:
-    """Puts crossings in order, and counts poles between them."""
-
-    lumped: Sequence[LumpedFactor]
-    along: DistributedFactors | None
-    limits: Limits
-    apart: PoleCount  # of poles that no gain moves
-    end: float | None = None  # crossings of the axis beyond this are left out [rad/s]
-    reasons: list[str] = field(default_factory=list)  # what is not proved
-
-    def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
-        """Return the boundaries inside the range, and the intervals they part it into.
-
-        Crossings at which no count changes are left out.
-        """
-        low, high = (None if x is None else _ball(x) for x in self.limits)
-        groups: list[list[Crossing]] = []
-        with precision(BITS * 4):
-            for crossing in sorted(crossings, key=lambda c: float(c.gain.mid())):
-                gain = crossing.gain
-                if (low is not None and not gain > low) or (high is not None and not gain < high):
-                    # At an end of the range, or beyond it; what straddles an end narrows the range.
-                    if low is not None and gain.overlaps(low):
-                        low = low if low.upper() >= gain.upper() and low.is_exact() else low.union(gain)
-                    if high is not None and gain.overlaps(high):
-                        high = high if high.lower() <= gain.lower() and high.is_exact() else high.union(gain)
-                    continue
-                if groups and any(c.gain.overlaps(gain) for c in groups[-1]):
-                    groups[-1].append(crossing)
-                else:
-                    groups.append([crossing])
-        gains = [_hull(group) for group in groups]
-        ends: list[arb | None] = [low, *gains, high]
-        counts = []
-        own: PoleCount | None = None  # of the factors with kernels
-        for i, (below, above) in enumerate(pairwise(ends)):
-            entered_budget().progress.report(
-                i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals"
-            )
-            sample = _sample(below, above)
-            total = sum((factor.count(sample) for factor in self.lumped), self.apart)
-            if self.along is not None:
-                own = self.along.count(sample, own, groups[i - 1] if i else ())
-                total = total + own
-            counts.append(total)
-            spend()
-        counts = counts if self.end is None else self._up_to_end(counts, groups, ends)
-        boundaries, intervals = [], []
-        is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
-        start: arb | None = ends[0]
-        counted = inf
-        if self.along is not None and is_open:
-            counted = self.along.bound.from_root(self.along.radius[0] * 1.01)
-        for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
-            # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
-            # that cross it above the highest frequency counted only seem to. Where the order is lower, or
-            # nothing is a solution, what holds on both sides need not hold.
-            turns = any(not omega > counted for c in group for omega in c.frequencies)
-            is_lower = any(c.is_infinite or c.is_singular for c in group)
-            is_same, where = counts[i] == counts[i + 1], f"near a gain of {float(gain.mid()):.6g}"
-            if is_same and counts[i].is_stable and any(c.is_open for c in group):
-                self.reasons.append(f"it could not be decided whether poles touch the axis {where}")
-            stays = not is_lower and not (counts[i].is_stable and turns)
-            if is_same and (stays or not self._is_within(group)):
-                continue
-            intervals.append(GainInterval(start, gain, counts[i]))
-            boundaries.append(Boundary(gain, tuple(group)))
-            known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
-            if is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
-                self.reasons.append(f"poles enter from above the highest frequency counted, {where}")
-            start = gain
-        intervals.append(GainInterval(start, ends[-1], counts[-1]))
-        return tuple(boundaries), tuple(intervals)
-
-    def _is_within(self, group: Sequence[Crossing]) -> bool:
-        end = self.end
-        return end is None or any(c.is_singular or any(not w > end for w in c.frequencies) for c in group)
-
-    def _up_to_end(
-        self, counts: Sequence[PoleCount], groups: Sequence[Sequence[Crossing]], ends: Sequence[arb | None]
-    ) -> list[PoleCount]:
-        """Return the counts of poles that pass the axis where there are data, or are there for small gains.
-
-        They are those of every plant with these data whose loop gain stays below one beyond (Nyquist 1932).
-        """
+    Crossings at which no count changes are left out. ``apart`` are poles that no gain moves; crossings of
+    the axis beyond ``end`` [rad/s] are left out.
+    """
+    reasons: list[str] = []
+    groups, ends = _grouped(crossings, limits, reasons)
+    counts = []
+    own: PoleCount | None = None  # of the factors with kernels
+    for i, (below, above) in enumerate(pairwise(ends)):
+        entered_budget().progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
+        sample = _sample(below, above)
+        total = sum((factor.count(sample) for factor in lumped), apart)
+        if along is not None:
+            own = along.count(sample, own, groups[i - 1][1] if i else ())
+        counts.append(total if own is None else total + own)
+        spend()
+    if end is not None:
         first = next(i for i, high in enumerate(ends[1:]) if high is None or high > 0)
         top = ends[first + 1]
         small = (Fraction(1) if top is None else exact_fraction(top)) / NEXT_TO_ZERO
-        own = [factor.count(small, self.end or inf) for factor in self.lumped]
-        own += [] if self.along is None else [self.along.count(small)]
-        made = {first: sum(own, self.apart)}
-        for i, group in [*enumerate(groups[first:], first), *reversed(list(enumerate(groups[:first])))]:
-            known, new, sign = (i, i + 1, 1) if i in made else (i + 1, i, -1)
-            below, above = counts[i], counts[i + 1]
-            moved = (above.right - below.right, above.axis - below.axis) if self._is_within(group) else (0, 0)
-            made[new] = PoleCount(made[known].right + sign * moved[0], made[known].axis + sign * moved[1])
-        return [made[i] for i in range(len(counts))]
+        own = apart if along is None else along.count(small) + apart
+        least = sum((factor.count(small, end) for factor in lumped), own)
+        counts = _up_to_end(counts, [_is_within(group, end) for _, group in groups], first, least)
+    boundaries, intervals, start = list[Boundary](), list[GainInterval](), ends[0]
+    counted = inf  # up to which frequency
+    if along is not None and not along.radius[1]:
+        counted = along.bound.from_root(along.radius[0] * 1.01)
+    for i, (gain, group) in enumerate(groups):
+        # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
+        # that cross it above the highest frequency counted only seem to. Where the order is lower, or
+        # nothing is a solution, what holds on both sides need not hold.
+        turns = any(not omega > counted for c in group for omega in c.frequencies)
+        is_lower = any(c.is_infinite or c.is_singular for c in group)
+        is_same, where = counts[i] == counts[i + 1], f"near a gain of {float(gain.mid()):.6g}"
+        if is_same and counts[i].is_stable and any(c.is_open for c in group):
+            reasons.append(f"it could not be decided whether poles touch the axis {where}")
+        stays = not is_lower and not (counts[i].is_stable and turns)
+        if is_same and (stays or not _is_within(group, end)):
+            continue
+        intervals.append(GainInterval(start, gain, counts[i]))
+        boundaries.append(Boundary(gain, tuple(group)))
+        known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
+        if counted < inf and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
+            reasons.append(f"poles enter from above the highest frequency counted, {where}")
+        start = gain
+    intervals.append(GainInterval(start, ends[-1], counts[-1]))
+    return tuple(boundaries), tuple(intervals), reasons
+
+
+def _grouped(
+    crossings: Sequence[Crossing], limits: Limits, reasons: list[str]
+) -> tuple[list[tuple[arb, list[Crossing]]], list[arb | None]]:
+    """Return crossings in a range that cannot be told apart with their gain, ascending, and all ends."""
+    low, high = (None if x is None else _ball(x) for x in limits)
+    groups: list[list[Crossing]] = []
+    with precision(BITS * 4):
+        for crossing in sorted(crossings, key=lambda c: float(c.gain.lower())):
+            gain = crossing.gain
+            if crossing.is_open and gain.rel_accuracy_bits() < NARROW_BITS and not gain.contains(0):
+                edges = f"{float(gain.lower()):.6g} and {float(gain.upper()):.6g}"
+                reasons.append(f"it could not be decided whether poles cross the axis between {edges}")
+            if (low is not None and not gain > low) or (high is not None and not gain < high):
+                # At an end of the range, or beyond it; what straddles an end narrows the range.
+                if low is not None and gain.overlaps(low):
+                    low = low if low.upper() >= gain.upper() and low.is_exact() else low.union(gain)
+                if high is not None and gain.overlaps(high):
+                    high = high if high.lower() <= gain.lower() and high.is_exact() else high.union(gain)
+                continue
+            if groups and any(c.gain.overlaps(gain) for c in groups[-1]):
+                groups[-1].append(crossing)
+            else:
+                groups.append([crossing])
+    merged = []
+    for group in groups:
+        with precision(max(BITS, *(c.gain.bits() for c in group))):
+            merged.append((reduce(arb.union, (c.gain for c in group)), group))
+    return merged, [low, *(gain for gain, _ in merged), high]
+
+
+def _is_within(group: Sequence[Crossing], end: float | None) -> bool:
+    return end is None or any(c.is_singular or any(not w > end for w in c.frequencies) for c in group)
+
+
+def _up_to_end(
+    counts: Sequence[PoleCount], are_within: Sequence[bool], first: int, least: PoleCount
+) -> list[PoleCount]:
+    """Return the counts of poles that pass the axis where there are data, or are there for small gains.
+
+    They are those of every plant with these data whose loop gain stays below one beyond (Nyquist 1932).
+    """
+    made = {first: least}
+    for i in [*range(first, len(are_within)), *reversed(range(first))]:
+        known, new, sign = (i, i + 1, 1) if i in made else (i + 1, i, -1)
+        below, above = counts[i], counts[i + 1]
+        moved = (above.right - below.right, above.axis - below.axis) if are_within[i] else (0, 0)
+        made[new] = PoleCount(made[known].right + sign * moved[0], made[known].axis + sign * moved[1])
+    return [made[i] for i in range(len(counts))]
 
 
 def _ball(value: Fraction) -> arb:
     with precision(BITS):
         return ball(value)
-
-
-def _hull(group: Sequence[Crossing]) -> arb:
-    """Return the narrowest of the enclosures of a gain when there is one, else one that holds all."""
-    with precision(max(BITS, *(c.gain.bits() for c in group))):
-        return reduce(arb.union, (crossing.gain for crossing in group))
 
 
 def _sample(low: arb | None, high: arb | None) -> Fraction:
@@ -404,25 +384,19 @@ def _sample(low: arb | None, high: arb | None) -> Fraction:
     end = None if high is None else exact_fraction(high) - exact_fraction(high.rad())
     if start is None and end is None:
         return Fraction(1)
-    if start is None or end is None:
-        if start is not None:
-            return _short(2 * start + 1 if start > 0 else start / 2 + 1, start, None)
-        near = end or Fraction(0)
-        return _short(2 * near - 1 if near < 0 else near / 2 - 1, None, near)
-    if not start < end:
-        message = "two boundaries cannot be told apart"
-        raise UncertifiedError(Diagnostic("SF802", message, None, "ask for more --digits"))
-    if low is not None and low > 0 and end > 4 * start:
-        return _short(2 * start, start, end)
-    return _short((start + end) / 2, start, end)
-
-
-def _short(value: Fraction, low: Fraction | None, high: Fraction | None) -> Fraction:
-    """Return a number of few bits next to another, still between two limits."""
+    if end is None and start is not None:
+        value = 2 * start + 1 if start > 0 else start / 2 + 1
+    elif start is None and end is not None:
+        value = 2 * end - 1 if end < 0 else end / 2 - 1
+    elif start is not None and end is not None:
+        if not start < end:
+            message = "two boundaries cannot be told apart"
+            raise UncertifiedError(Diagnostic("SF802", message, None, "ask for more --digits"))
+        value = 2 * start if low is not None and low > 0 and end > 4 * start else (start + end) / 2
     for bits in SAMPLE_BITS:
         scale = Fraction(2) ** (bits - (value.numerator.bit_length() - value.denominator.bit_length()))
         rounded = Fraction(round(value * scale)) / scale
-        if (low is None or low < rounded) and (high is None or rounded < high):
+        if (start is None or start < rounded) and (end is None or rounded < end):
             return rounded
     return value
 
@@ -444,10 +418,18 @@ def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
 
 
 def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> LoopGain | None:
-    """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
-    if not is_straight(loop):
+    """Return the loop gain of a loop that is closed once, by its gain or a function of it."""
+    if [factor.multiplicity for factor in loop.with_gain] != [1]:
         return None
     (factor,) = loop.with_gain
+    if factor.degree > 1:
+        if loop.nominal is None or loop.bound.sheets > 1:
+            return None
+        alone = DistributedFactors(
+            loop.bound, loop.gain.name, (factor,), (loop.nominal,) * 2, None, loop=loop
+        )
+        one = alone.in_one_function(factor, is_monic=True)
+        return one and LoopGain(one[2].with_gain[0], one[2], digits, one[0](ball(loop.nominal))[0])
     if along is not None and factor in along.factors:
         return LoopGain(along.with_gain[0], along, digits)
     return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits)
@@ -460,18 +442,22 @@ class LoopGain:
     function: LoopFunction  # A and B
     along: DistributedFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
+    value: arb | None = None  # of the function of the gain that stands for it, at its own value
 
     def margins(self, gain: Fraction) -> tuple[PhaseMargin, ...]:
         """Return the phase margins where it is one in magnitude, ascending in frequency."""
+        times = _ball(gain) if self.value is None else self.value
         if self.along is not None:
-            crossovers = distributed_crossovers(self.along, gain, self.digits)
+            crossovers = distributed_crossovers(self.along, times, gain, self.digits)
+            if self.value is not None and self.along.reasons:
+                return ()  # which may not be all
         else:
             crossovers = lumped_crossovers(self.function, gain, self.digits)
         margins = []
         for omega, ratio in sorted(crossovers, key=lambda pair: float(pair[0].mid())):
             with precision(max(BITS, 2 * omega.bits())):
                 # The loop gain is K B/A; its angle beyond that of -1.
-                margins.append(PhaseMargin((-ratio * acb(_ball(gain))).arg(), omega))
+                margins.append(PhaseMargin((-ratio * acb(times)).arg(), omega))
         return tuple(margins)
 
 
@@ -499,11 +485,10 @@ def _ratio(function: LoopFunction, omega: arb, bits: int) -> acb:
 
 
 def distributed_crossovers(
-    along: DistributedFactors, nominal: Fraction, digits: int
+    along: DistributedFactors, gain: arb, nominal: Fraction, digits: int
 ) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
     (function,) = along.with_gain
-    gain = ball(nominal)
 
     def equation(value: LoopValue) -> tuple[arb, arb]:
         return value.excess(gain)
@@ -519,7 +504,7 @@ def distributed_crossovers(
                 break
             if a.abs_upper() < share * b.abs_lower() and orders[1] <= orders[0]:
                 break
-            if origin.leaves_one(nominal, arb(first)):
+            if along.gain and origin.leaves_one(nominal, arb(first)):
                 break
             first /= 2
         else:

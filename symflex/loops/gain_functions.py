@@ -10,31 +10,37 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import frexp, isqrt, lcm
+from math import frexp, lcm, prod
 from typing import TYPE_CHECKING
 
-from flint import arb, arb_series
+from flint import arb
 
 from symflex.algebra import terms_of
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Call, Power, Quotient, fold, nodes
-from symflex.loops.axis import find_on_axis
+from symflex.expressions import Call, fold
+from symflex.loops.axis import find_on_axis, pieces
 from symflex.model import ExactValue
 from symflex.roots import RealConstant
-from symflex.roots.root import exact_fraction
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order, later, rational_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from flint import fmpz_mpoly
+    from flint import arb_series, fmpz_mpoly
 
     from symflex.expressions import Expression
 
 Limits = tuple[Fraction | None, Fraction | None]
-NEAREST_ZERO = 40
+NEAREST_ZERO = 70
 """Halvings of the range towards zero; what is left is looked at as one piece."""
+EACH_RATIO = 3.7
+MOST_FAILED = 8
+NARROW_BITS = 20
+"""Parts in which gains stay undecided, to a relative accuracy, until all others do."""
+MOST_INTERVALS = 4_000
+"""Intervals in each part of a range, whose ends have that ratio, so that none is a short number; what is left
+is undecided."""
 ZERO = Fraction(0)
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined where there may be boundaries without end."""
@@ -43,8 +49,8 @@ INSIDE = 16
 SHORT = 10**6
 """Denominator of an end of the domain that is a short number."""
 EDGE_BITS = 128
-EDGE_DIGITS = 30
-"""Precision of an end of the domain."""
+EDGE_STEPS = 1000
+"""Precision of an end of the domain, and steps towards it."""
 BEYOND = 1 + 1e-9
 """How far a search goes beyond its end, which is a double."""
 
@@ -75,17 +81,10 @@ class GainFunctions:
         at_one = {**self.values, self.gain: ExactValue(Fraction(self.sign))}
         for generator, call in self.calls.items():
             power = int((exponent(call, self.gain) or ZERO) * (self.root or 1))
-            square = rational_value(call.argument, at_one) if call.name == "sqrt" else None
-            is_real = square is not None and square > 0
-            whole = (
-                Fraction(isqrt(square.numerator), isqrt(square.denominator)) if square and is_real else ZERO
-            )
-            if whole and whole**2 == square:
-                powers.append((power, whole, None))
-            else:
-                values = {name: enclosure(value) for name, value in at_one.items()}
-                name = f"{generator} at {self.sign}" if square is None else f"sqrt({square})"
-                powers.append((power, Fraction(1), RealConstant(name, later(call, values))))
+            whole, square = rational_value(call, at_one), rational_value(call.argument, at_one)
+            name = f"{generator} at {self.sign}" if square is None else f"{call.name}({square})"
+            known = later(call, {name: enclosure(value) for name, value in at_one.items()})
+            powers.append((power, whole or Fraction(1), None if whole else RealConstant(name, known)))
         return powers
 
     def at(self, gain: arb) -> list[arb_series]:
@@ -106,33 +105,14 @@ class GainFunctions:
 
     def value(self, polynomial: fmpz_mpoly, gain: arb, constants: Sequence[arb]) -> arb_series:
         """Return a polynomial in the gain, its functions and constants, whose first generator is left out."""
-        places = [*self.at(gain), *(first_order(c) for c in constants)]
-        logs = self._logs_at_zero(gain) if gain.contains(0) else {}
-        total = first_order(arb(0))
-        for monomial, coefficient in terms_of(polynomial):
-            term, powers = first_order(arb(int(coefficient))), dict(monomial)
-            rates = sum(e * logs[i] for i, e in powers.items() if i in logs)
-            if rates and powers.get(1, 0) >= rates:
-                # K^a log(K)^b is smallest next to zero, where it vanishes.
-                last = [places[0][0].upper(), *(x[0] for x in self.at(gain.upper())[1:])]
-                size = arb(1)
-                for i in (1, *logs):
-                    size = size * abs(last[i - 1]) ** powers.pop(i, 0)
-                term = term * first_order(arb(0, size.upper()), arb("nan"))
-            for i, e in powers.items():
-                term = term * places[i - 1] ** e
-            total = total + term
-        return total
-
-    def _logs_at_zero(self, gain: arb) -> dict[int, arb]:
-        """Return ``abs(n/log)`` at a small gain of logarithms of its n-th power, by their position."""
-        end = self.at(gain.upper())
-        logs = {}
-        for i, call in enumerate(self.calls.values(), 1):
-            power = exponent(call.argument, self.gain) if call.name == "log" else None
-            if power and end[i][0] * ball(power) < 0 and gain.mid() > 0:
-                logs[i + 1] = abs(ball(power) / end[i][0])
-        return logs
+        places = [first_order(arb(0)), *self.at(gain), *(first_order(c) for c in constants)]
+        return sum(
+            (
+                prod((places[i] ** e for i, e in m), start=first_order(arb(int(c))))
+                for m, c in terms_of(polynomial)
+            ),
+            first_order(arb(0)),
+        )
 
     def zeros(
         self, value: Callable[[arb], arb_series], limits: tuple[Fraction, Fraction], digits: int
@@ -149,11 +129,23 @@ class GainFunctions:
                 if (high > 0 if sign > 0 else low < 0) and not value(about)[0] != 0:
                     undecided.append(about)
         for sign, start, end in ((1, max(low, first), high), (-1, max(-high, first), -low)):
-            if start < end:
-                on, ends = _Gains(value, sign), (start, end * BEYOND)
-                roots = find_on_axis(on, lambda pair: pair, lambda _: False, ends, digits)
+
+            def on(gain: arb, bits: int, sign: int = sign) -> tuple[arb_series, arb_series]:
+                with precision(bits):
+                    return value(sign * gain), value(sign * gain.mid())
+
+            def equation(place: arb_series, sign: int = sign) -> tuple[arb, arb]:
+                return place[0], sign * place[1]
+
+            failed = 0
+            for ends in pieces(start, end * BEYOND, EACH_RATIO) if start < end else ():
+                if failed == MOST_FAILED:  # all that is next to zero
+                    undecided.append(sign * arb(start).union(arb(ends[1])))
+                    break
+                roots = find_on_axis(on, equation, lambda _: False, ends, digits, MOST_INTERVALS)
                 zeros += [sign * root for root in roots.roots]
                 undecided += [sign * piece for piece in roots.undecided]
+                failed += any(piece.rel_accuracy_bits() < NARROW_BITS for piece in roots.undecided)
         return zeros, undecided
 
     @property
@@ -179,60 +171,31 @@ class GainFunctions:
         reach = abs(self.nominal or ZERO) * RANGE_OF_NOMINAL
         start: Fraction = -reach if low is None else low
         end: Fraction = reach if high is None else high
-        inside = self._inside(start, end)
-        for condition in self._conditions():
-            if exponent(condition, self.gain) is not None:
-                start, end = (max(start, ZERO), end) if inside > 0 else (start, min(end, ZERO))
-                continue
-
-            def value(gain: arb, condition: Expression = condition) -> arb_series:
-                return constant_tangent(condition, self._numbers(gain), is_real=True)
-
-            zeros, undecided = self.zeros(value, (start, end), EDGE_DIGITS)
-            for edge in (*zeros, *undecided):
-                if ball(inside) > edge:
-                    start = max(start, self._edge(condition, edge, edge.upper()))
-                elif ball(inside) < edge:
-                    end = min(end, self._edge(condition, edge, edge.lower()))
-        return start, end
-
-    def _inside(self, low: Fraction, high: Fraction) -> Fraction:
-        """Return a gain for which all functions are real, the declared one if that is in the range."""
-        shares = (Fraction(n, INSIDE) for n in range(1, INSIDE))
-        for gain in ([self.nominal] if self.nominal and low < self.nominal < high else []) or [
-            low + share * (high - low) for share in shares
-        ]:
-            if all(x[0].is_finite() for x in self.at(ball(gain))):
-                return gain
+        gains = [start + Fraction(n, INSIDE) * (end - start) for n in range(1, INSIDE)]
+        for gain in [self.nominal] if self.nominal and start < self.nominal < end else gains:
+            if self._is_real(ball(gain)):
+                return self._edge(gain, start), self._edge(gain, end)
         for call in self.calls.values():
-            enclose(call, {**self._enclosed, self.gain: lambda: ball(self.nominal or low)})
+            enclose(call, {**self._enclosed, self.gain: lambda: ball(self.nominal or start)})
         message = f"no value of '{self.gain}' was found in the range for which the model has real values"
         raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI"))
 
-    def _conditions(self) -> list[Expression]:
-        """Return what may not vanish in the functions, inner ones first."""
-        conditions: list[Expression] = []
-        for call in self.calls.values():
-            for node in reversed(nodes(call)):
-                below: Expression | None = None
-                if isinstance(node, Call) and node.name in ("sqrt", "log", "tan"):
-                    below = Call("cos", node.argument) if node.name == "tan" else node.argument
-                elif isinstance(node, Quotient):
-                    below = node.denominator
-                elif isinstance(node, Power) and (rational_value(node.exponent, {}) or 0) < 0:
-                    below = node.base
-                if below is not None and below not in conditions and exponent(below, self.gain) != 0:
-                    conditions.append(below)
-        return conditions
+    def _is_real(self, gains: arb) -> bool:
+        return all(x[0].is_finite() and x[1].is_finite() for x in self.at(gains))
 
-    def _edge(self, condition: Expression, edge: arb, within: arb) -> Fraction:
-        """Return an end of the domain: exactly where that is a short number, else one just within."""
-        short = exact_fraction(edge).limit_denominator(SHORT)
-        try:
-            is_exact = rational_value(condition, {**self.values, self.gain: ExactValue(short)}) == 0
-        except KeyError:
-            is_exact = False
-        return short if is_exact else exact_fraction(within)
+    def _edge(self, inside: Fraction, end: Fraction) -> Fraction:
+        """Return how far from a gain functions are real: to an end, a short number next to it, or another."""
+        with precision(EDGE_BITS):
+            step = end - inside
+            for _ in range(EDGE_STEPS):
+                if self._is_real(ball(inside).union(ball(inside + step))):
+                    inside += step
+                else:
+                    step /= 2
+                if inside == end or abs(step) < abs(end - inside) / 2**EDGE_BITS:
+                    break
+        short = inside.limit_denominator(SHORT)
+        return short if abs(short - inside) <= 4 * abs(step) else inside
 
 
 def exponent(expression: Expression, gain: str) -> Fraction | None:
@@ -270,17 +233,3 @@ def exponent(expression: Expression, gain: str) -> Fraction | None:
         quotient=lambda a, b: None if a is None or b is None else a - b,
     )
     return power
-
-
-@dataclass(frozen=True)
-class _Gains:
-    """A function of the gain, or of its negative, for a search of one dimension."""
-
-    value: Callable[[arb], arb_series]
-    sign: int
-
-    def on(self, gain: arb, bits: int) -> tuple[tuple[arb, arb], tuple[arb, arb]]:
-        """Return value and slope on a ball, and in its middle."""
-        with precision(bits):
-            around, centre = (self.value(self.sign * x) for x in (gain, gain.mid()))
-            return (around[0], self.sign * around[1]), (centre[0], self.sign * centre[1])

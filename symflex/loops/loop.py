@@ -15,7 +15,7 @@ from functools import cached_property
 from math import lcm
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, fmpz_mpoly
+from flint import acb, acb_series, arb, fmpq, fmpq_mat, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
@@ -60,18 +60,13 @@ class GainPolynomial:
 
     @property
     def terms(self) -> list[tuple[tuple[int, ...], Factored]]:
-        """The coefficients with their exponents."""
+        """The coefficients that are not zero with their exponents."""
         exponents = self.exponents or tuple((i,) for i in range(len(self.coefficients)))
-        return list(zip(exponents, self.coefficients, strict=True))
+        return [(e, c) for e, c in zip(exponents, self.coefficients, strict=True) if not c.is_zero]
 
     def at(self, gain: Fraction) -> Factored:
         """Return the factor for one value of the gain, a function of s."""
         return sum((c * gain**i for i, c in enumerate(self.coefficients[1:], 1)), self.coefficients[0])
-
-    @property
-    def parts(self) -> list[tuple[tuple[int, ...], Factored]]:
-        """The terms that are not zero."""
-        return [(exponents, c) for exponents, c in self.terms if not c.is_zero]
 
     def value_in(self, bound: BoundTransferFunction, gain: Fraction, loop: Loop | None) -> Factored:
         """Return the factor for one gain; where a loop is given, over the ring of what is bound for it."""
@@ -197,9 +192,6 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
     return known[name]
 
 
-NOTHING = acb(0)
-
-
 @dataclass(frozen=True, slots=True)
 class LoopValue:
     """Enclosures of A and B at ``s = j omega``, divided alike, and of their derivatives in s."""
@@ -293,15 +285,14 @@ class LoopFunction:
     @property
     def turn(self) -> acb:
         """The direction of the axis where functions are of a root of s: that of the root of j."""
-        return acb(0, arb.pi() / (2 * self.bound.sheets)).exp()
+        order = self.bound.sheets
+        return acb(0, 1) if order == 1 else acb(0, arb.pi() / (2 * order)).exp()
 
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
         """Return A and B on a ball of frequencies, and in its middle, as :meth:`parts_around`.
 
         If there is a root of s, slopes are in a variable whose imaginary axis is that of s.
         """
-        if self.bound.sheets == 1:
-            return self.around(acb(0, omega), bits)
         with precision(bits):
             both, slope = self.around(omega * self.turn, bits), self.turn / acb(0, 1)
             around, middle = (
@@ -341,18 +332,24 @@ class LoopFunction:
             sums = self.evaluator(bits)
             at = sums.at(expansion(acb(s.real, s.imag)))
             less = sums.largest((0, 1), at)
-            values = [sums.value(i, at, less) for i in (0, 1)]
-            (a, a_slope), (b, b_slope) = (_derivatives(value) for value in values)
-            return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
+            a, b = (_derivatives(sums.value(i, at, less)) for i in (0, 1))
+            return complex(a[0].mid()), complex(a[1].mid()), complex(b[0].mid()), complex(b[1].mid())
+
+
+def independent(polynomials: Sequence[fmpz_mpoly]) -> tuple[list[int], list[list[fmpq]]]:
+    """Return which polynomials are independent, and for each of these its shares in all of them."""
+    monomials = sorted({m for f in polynomials for m in f.monoms()})
+    terms = [dict(f.terms()) for f in polynomials]
+    matrix = fmpq_mat([[int(own.get(m, 0)) for own in terms] for m in monomials])
+    reduced, rank = matrix.rref()
+    rows = [[reduced[i, j] for j in range(len(polynomials))] for i in range(rank)]
+    return [next(j for j, share in enumerate(row) if share != 0) for row in rows], rows
 
 
 def _narrower(one: acb, other: acb) -> acb:
-    if not other.is_finite():
-        return one
-    if not one.is_finite():
-        return other
-    return other if other.rad() < one.rad() else one
+    is_better = not one.is_finite() or other.rad() < one.rad()
+    return other if other.is_finite() and is_better else one
 
 
 def _derivatives(value: Value) -> tuple[acb, acb]:
-    return (value[0], value[1]) if isinstance(value, acb_series) else (value, NOTHING)
+    return (value[0], value[1]) if isinstance(value, acb_series) else (value, acb(0))

@@ -181,7 +181,7 @@ class LumpedFactor:
 
         At such a gain these have a root in common, which need not be a positive w.
         """
-        lowest = min((f for f in both if degree_in(f, W)), key=lambda f: degree_in(f, W))
+        lowest = min(both, key=lambda f: degree_in(f, W) or inf)
         crossings = []
         for gain in self._gains(polynomial, 2 * digits + SPARE_DIGITS):
             with precision(max(gain.bits(), bits_for_digits(digits))):
@@ -221,14 +221,13 @@ class LumpedFactor:
         self, gain: Root, squares: Sequence[Root], polynomials: Sequence[fmpz_mpoly]
     ) -> tuple[arb, ...]:
         """Return the frequencies that belong to a gain: at the others one of the polynomials is not 0."""
-        positive = [square for square in squares if square.re > 0]
-        near = [w for w in positive if all(self._may_vanish(f, w, gain) for f in polynomials)]
+        near = []
+        for square in (w for w in squares if w.re > 0):
+            with precision(2 * max(square.working_bits(), gain.working_bits())):
+                if all(self._value(f, square.re, gain.re).contains(0) for f in polynomials):
+                    near.append(square)
         with precision(gain.working_bits()):
             return tuple(square.re.sqrt() for square in near)
-
-    def _may_vanish(self, polynomial: fmpz_mpoly, square: Root, gain: Root) -> bool:
-        with precision(2 * max(square.working_bits(), gain.working_bits())):
-            return self._value(polynomial, square.re, gain.re).contains(0)
 
     def _value(self, polynomial: fmpz_mpoly, square: arb, gain: arb) -> arb:
         """Return a polynomial of the ring at w and K, at the current precision."""
@@ -261,7 +260,11 @@ class LumpedFactor:
         """Return the real roots of a polynomial in one of w and K; each once."""
         if degree_in(polynomial, variable) == 0:
             return []
-        problem = RootProblem(((self._polynomial(self.ring.coefficients(polynomial, variable)), 1),))
+        small, moved = Ring(self.ring.names[2:]), []
+        for coefficient in self.ring.coefficients(polynomial, variable):
+            terms = {tuple(int(e) for e in m[2:]): int(n) for m, n in coefficient.terms()}
+            moved.append(small.context.from_dict(terms))
+        problem = RootProblem(((PolynomialInS(tuple(moved), small.context, self.constants), 1),))
         return [root for root in find_polynomial_roots(problem, digits) if root.is_real]
 
     def count(self, gain: Fraction, within: float = inf) -> PoleCount:
@@ -284,14 +287,6 @@ class LumpedFactor:
             message = "it could not be decided on which side of the imaginary axis a pole lies"
             raise UncertifiedError(Diagnostic("SF802", message))
         return list(roots)
-
-    def _polynomial(self, coefficients: Sequence[fmpz_mpoly]) -> PolynomialInS:
-        small = Ring(self.ring.names[2:])
-        moved = []
-        for coefficient in coefficients:
-            terms = {tuple(int(e) for e in m[2:]): int(n) for m, n in coefficient.terms()}
-            moved.append(small.context.from_dict(terms))
-        return PolynomialInS(tuple(moved), small.context, self.constants)
 
 
 Terms = dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]
@@ -325,8 +320,6 @@ def _integer_terms(factor: GainPolynomial) -> Terms:
     """Return powers of s, K and constants with integer coefficients, scaled by what has no roots."""
     rational: dict[tuple[int, tuple[int, ...], tuple[int, ...]], Fraction] = {}
     for k, coefficient in factor.terms:
-        if coefficient.is_zero:
-            continue
         above, below = coefficient.numerator(), coefficient.denominator()
         shift = [0] * len(coefficient.ring.names)
         number = Fraction(1, below.expand().term_content().leading_coefficient().__int__())

@@ -86,82 +86,38 @@ class AllowedBandwidth:
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """The gains for which all closed-loop poles are in the open left half plane.
+    """The gains for which all closed-loop poles are in the open left half plane."""
 
-    Parameters
-    ----------
-    gain, unit : str
-        Name and SI unit of the gain; the unit is empty when it is not known.
-    limits : (Fraction or None, Fraction or None)
-        The range examined, without its ends.
-    boundaries : tuple of Boundary
-        Ascending.
-    intervals : tuple of GainInterval
-        Between them, ascending.
-    nominal : Fraction or None
-        The gain's declared value.
-    gain_margins : tuple of GainMargin
-        Of the nominal gain, when the loop is stable there.
-    phase_margins : tuple of PhaseMargin
-        At every crossover, ascending in frequency.
-    radius : arb or None
-        Poles were counted up to this abs(s) [rad/s]; ``None``: all of them.
-    is_complete : bool
-        It is proved that no pole lies right of the axis beyond the radius.
-    reasons : tuple of str
-        What is not proved.
-    digits : int
-        Asked for.
-    bandwidth : AllowedBandwidth or None
-        Which the stable gains next to 0 allow; ``None`` where there are none, or the loop is closed in
-        several places.
-    margin_beyond : float or None
-        Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
-    method : str
-        How poles were counted: ``polynomials``, ``argument principle``, ``roots`` (all found, and by which
-        engines), ``network``; and ``passive loop`` where that proves that there are none.
-    apart : PolesApart
-        Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
-    at_nominal : StabilityVerdict or None
-        What holds at a nominal gain that was examined alone: it lies in none of the intervals, or delays
-        leave open what holds beyond the radius.
-    tf : str
-        ``"OUT/IN"``, whose input and output see the poles that are not hidden; empty where nothing is.
-    is_passive : bool
-        It is proved that no gain of the range brings a pole into the right half plane.
-    is_narrowed : bool
-        The range ends where a delayed term may outweigh the others of the highest power of s.
-    data_end : float or None
-        Where the data end that the model was fitted to, which is ``radius`` then [rad/s].
-    beyond : tuple of float
-        Poles of the nominal gain right of the axis beyond that, without kernels: their abs(s) [rad/s].
-    gain_at_end : float or None
-        The gain with which the loop gain is one where the data end.
-    """
-
-    gain: str
-    unit: str
-    limits: tuple[Fraction | None, Fraction | None]
-    boundaries: tuple[Boundary, ...] = ()
-    intervals: tuple[GainInterval, ...] = ()
-    nominal: Fraction | None = None
-    gain_margins: tuple[GainMargin, ...] = ()
-    phase_margins: tuple[PhaseMargin, ...] = ()
-    radius: float | None = None
-    is_complete: bool = True
-    reasons: tuple[str, ...] = ()
-    digits: int = 15
+    gain: str  # its name
+    unit: str  # its SI unit; empty when it is not known
+    limits: tuple[Fraction | None, Fraction | None]  # the range examined, without its ends
+    boundaries: tuple[Boundary, ...] = ()  # ascending
+    intervals: tuple[GainInterval, ...] = ()  # between them, ascending
+    nominal: Fraction | None = None  # the gain's declared value
+    gain_margins: tuple[GainMargin, ...] = ()  # of the nominal gain, when the loop is stable there
+    phase_margins: tuple[PhaseMargin, ...] = ()  # at every crossover, ascending in frequency
+    radius: float | None = None  # poles were counted up to this abs(s) [rad/s]; ``None``: all of them
+    is_complete: bool = True  # it is proved that no pole lies right of the axis beyond the radius
+    reasons: tuple[str, ...] = ()  # what is not proved
+    digits: int = 15  # asked for
+    # Which the stable gains next to 0 allow; none where there are none, or the loop is closed several times.
     bandwidth: AllowedBandwidth | None = None
+    # Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
     margin_beyond: float | None = None
+    # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``.
     method: str = ""
+    # Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
     apart: PolesApart = NOTHING_APART
+    # What holds at a nominal gain that was examined alone, where ``intervals`` leave it open.
     at_nominal: StabilityVerdict | None = None
-    tf: str = ""
-    is_passive: bool = False
-    is_narrowed: bool = False
+    tf: str = ""  # ``"OUT/IN"``, which sees the poles that are not hidden; empty where nothing is
+    is_passive: bool = False  # it is proved that no gain of the range brings a pole into the right half plane
+    is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
+    # Where the data end that the model was fitted to, which is ``radius`` then [rad/s].
     data_end: float | None = None
+    # Poles of the nominal gain right of the axis beyond that, without kernels: their abs(s) [rad/s].
     beyond: tuple[float, ...] = ()
-    gain_at_end: float | None = None
+    gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -203,26 +159,23 @@ class StabilityMap:
     @property
     def verdict(self) -> StabilityVerdict:
         """Whether the loop is stable with its nominal gain, in the words of all commands."""
-        return replace(self._word, hidden=self.apart.verdict.hidden, moving=self.apart.verdict.moving)
-
-    @property
-    def _word(self) -> StabilityVerdict:
-        interval = self.nominal_interval
-        if interval is None:
-            return self.at_nominal or StabilityVerdict(
-                "unknown", None, False, NO_NOMINAL if self.nominal is None else BESIDE
-            )
-        right, axis = interval.poles.right, interval.poles.axis
-        beyond = "" if self.is_complete else self.reasons[0]
+        interval, beyond = self.nominal_interval, "" if self.is_complete else self.reasons[0]
         beyond = beyond or self.where_data_end
-        if right:
-            return StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
-        where = f"{_poles(axis)} on the imaginary axis" if axis else ""
-        if not self.is_complete and not (self.is_passive and axis):
-            reason = f"{where}; {beyond}" if where else beyond
-            right_of_it = 0 if self.is_passive else None
-            return self.at_nominal or StabilityVerdict("unknown", right_of_it, False, reason)
-        return StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
+        if interval is None:
+            reason = NO_NOMINAL if self.nominal is None else BESIDE
+            word = self.at_nominal or StabilityVerdict("unknown", None, False, reason)
+        else:
+            right, axis = interval.poles.right, interval.poles.axis
+            where = f"{_poles(axis)} on the imaginary axis" if axis else ""
+            if right:
+                word = StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
+            elif not self.is_complete and not (self.is_passive and axis):
+                reason = f"{where}; {beyond}" if where else beyond
+                least = 0 if self.is_passive else None
+                word = self.at_nominal or StabilityVerdict("unknown", least, False, reason)
+            else:
+                word = StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
+        return replace(word, hidden=self.apart.verdict.hidden, moving=self.apart.verdict.moving)
 
     @property
     def is_stable(self) -> bool | None:
@@ -246,9 +199,26 @@ class StabilityMap:
             "range": [None if x is None else str(x) for x in self.limits],
             "certified": self.certified,
             "counted_up_to_rad_per_s": self.counted_up_to,
-            "data_end": self._data_end(),
+            "data_end": None
+            if self.data_end is None
+            else {
+                "frequency_hz": self.data_end / (2 * pi),
+                "gain_with_loop_gain_one": self.gain_at_end,
+                "right_half_plane_poles_beyond_hz": [omega / (2 * pi) for omega in self.beyond],
+            },
             "reasons": list(self.reasons),
-            "boundaries": [self._boundary(i) for i in range(len(self.boundaries))],
+            "boundaries": [
+                {
+                    "gain": real_json(boundary.gain, self.digits),
+                    "omega": [real_json(w, self.digits) for w in boundary.frequencies],
+                    "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
+                    "through_infinity": any(c.is_infinite for c in boundary.crossings),
+                    "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
+                    "no_solution": any(c.is_singular for c in boundary.crossings),
+                    "poles_entering_right_half_plane": self.change(i),
+                }
+                for i, boundary in enumerate(self.boundaries)
+            ],
             "intervals": [
                 {
                     "low": real_json(i.low, self.digits),
@@ -287,7 +257,17 @@ class StabilityMap:
                 "frequency_hz": self.radius / (2 * pi),
                 "degrees": self.least_degrees_beyond,
             },
-            "bandwidth": self._bandwidth(),
+            "bandwidth": None
+            if (bandwidth := self.bandwidth) is None
+            else {
+                "gain": None if bandwidth.gain is None else float(bandwidth.gain),
+                "omega": real_json(omega := bandwidth.frequency, self.digits),
+                "frequency_hz": None if omega is None else float(hertz(omega).mid()),
+                "phase_margin_degrees": None
+                if (angle := bandwidth.phase_margin) is None
+                else float(degrees(angle).mid()),
+                "limited": bandwidth.is_limited,
+            },
         }
 
     @property
@@ -295,41 +275,9 @@ class StabilityMap:
         """:attr:`margin_beyond` in degrees, 0 without one."""
         return (self.margin_beyond or 0.0) * 180 / pi
 
-    def _bandwidth(self) -> dict[str, object] | None:
-        bandwidth = self.bandwidth
-        if bandwidth is None:
-            return None
-        omega, angle = bandwidth.frequency, bandwidth.phase_margin
-        return {
-            "gain": None if bandwidth.gain is None else float(bandwidth.gain),
-            "omega": real_json(omega, self.digits),
-            "frequency_hz": None if omega is None else float(hertz(omega).mid()),
-            "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
-            "limited": bandwidth.is_limited,
-        }
-
-    def _data_end(self) -> dict[str, object] | None:
-        if self.data_end is None:
-            return None
-        beyond = [omega / (2 * pi) for omega in self.beyond]
-        own = {"gain_with_loop_gain_one": self.gain_at_end, "right_half_plane_poles_beyond_hz": beyond}
-        return {"frequency_hz": self.data_end / (2 * pi), **own}
-
     def change(self, index: int) -> int:
         """Return by how many poles the number right of the axis grows at a boundary, as the gain grows."""
         return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
-
-    def _boundary(self, index: int) -> dict[str, object]:
-        boundary = self.boundaries[index]
-        return {
-            "gain": real_json(boundary.gain, self.digits),
-            "omega": [real_json(w, self.digits) for w in boundary.frequencies],
-            "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
-            "through_infinity": any(c.is_infinite for c in boundary.crossings),
-            "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
-            "no_solution": any(c.is_singular for c in boundary.crossings),
-            "poles_entering_right_half_plane": self.change(index),
-        }
 
 
 def real_json(value: arb | None, digits: int) -> dict[str, str] | None:
@@ -410,6 +358,8 @@ class PoleCount:
 
 
 SHORT_DIGITS = 6
+SHOWN = 3
+"""Frequencies of one boundary in print; the others are in the JSON."""
 
 
 def stability_text(stability: StabilityMap) -> str:
@@ -427,9 +377,7 @@ def stability_html(stability: StabilityMap) -> str:
 def _passages(stability: StabilityMap) -> Iterator[Passage]:
     unit = f" [{stability.unit}]" if stability.unit else ""
     lines = [f"{stability.gain}{unit}   {_status(stability)}", f"{INDENT}examined: {_examined(stability)}"]
-    lines += [
-        f"{INDENT}{'' if WITHOUT_END in reason else 'not proved: '}{reason}" for reason in stability.reasons
-    ]
+    lines += [f"{INDENT}{'' if WITHOUT_END in x else 'not proved: '}{x}" for x in stability.reasons]
     if stability.nominal is not None:
         lines.append(f"{INDENT}{stability.gain} = {_number(stability.nominal)}: {stability.verdict.sentence}")
     if stability.verdict.hidden:
@@ -446,17 +394,14 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     ]
     if marginal:
         yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
+    rows = [_boundary_row(stability, i) for i in range(len(stability.boundaries))]
     head = (stability.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
-    rows = [head, *(_boundary_row(stability, i) for i in range(len(stability.boundaries)))]
-    yield Passage(
-        [f"{INDENT}boundaries: {len(stability.boundaries) or 'none'}"], rows if stability.boundaries else ()
-    )
-    counted = [
-        (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
-        for i in stability.intervals
-    ]
-    title = f"{INDENT}poles that are not in the left half plane"
-    yield Passage([title], [("from", "to", "right of the axis", "on the axis"), *counted])
+    yield Passage([f"{INDENT}boundaries: {len(rows) or 'none'}"], [head, *rows] if rows else ())
+    counted: list[tuple[str, ...]] = [("from", "to", "right of the axis", "on the axis")]
+    for i in stability.intervals:
+        ends = _end(i.low, "-inf", SHORT_DIGITS, i), _end(i.high, "inf", SHORT_DIGITS, i)
+        counted.append((*ends, str(i.poles.right), str(i.poles.axis)))
+    yield Passage([f"{INDENT}poles that are not in the left half plane"], counted)
     if stability.gain_margins or stability.phase_margins:
         yield _margins(stability)
     if stability.data_end is not None:
@@ -472,14 +417,21 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
 
 def _beyond(stability: StabilityMap) -> Iterator[str]:
     """Tell what matters beyond the end of the data: poles of the function, and the loop gain there."""
-    if stability.beyond:
+    if count := len(stability.beyond):
         places = ", ".join(_hertz(omega) for omega in stability.beyond)
         shown = f"{stability.gain} = {_number(stability.nominal)}"
-        count = _poles(len(stability.beyond))
-        yield f"{2 * INDENT}{count} of the model right of the axis for {shown}: {places}"
+        yield f"{2 * INDENT}{_poles(count)} of the model right of the axis for {shown}: {places}"
     if stability.gain_at_end is not None:
         yield f"{2 * INDENT}the loop gain there is taken to stay below one: for {stability.gain} up to"
         yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it is so where the data end"
+
+
+def _poles(count: int) -> str:
+    return f"{count} pole{'s' * (count != 1)}"
+
+
+def _hertz(omega: float) -> str:
+    return f"{omega / (2 * pi):.{SHORT_DIGITS}g} Hz"
 
 
 def _status(stability: StabilityMap) -> str:
@@ -509,39 +461,38 @@ def _examined(stability: StabilityMap) -> str:
     return f"{_number(low)} < {name} < {_number(high)}{where}"
 
 
-def _poles(count: int) -> str:
-    return f"{count} pole" + ("s" if count != 1 else "")
-
-
 def _between(interval: GainInterval, stability: StabilityMap) -> str:
-    low = "" if interval.low is None else f"{_exact(interval.low, stability.digits)} < "
-    high = "" if interval.high is None else f" < {_exact(interval.high, stability.digits)}"
-    return f"{low}{stability.gain}{high}"
+    low, high = (_end(x, "", stability.digits, interval) for x in (interval.low, interval.high))
+    return f"{low and f'{low} < '}{stability.gain}{high and f' < {high}'}"
 
 
-def _exact(value: arb, digits: int) -> str:
+def _end(value: arb | None, infinite: str, digits: int, interval: GainInterval) -> str:
+    """Return an end of an interval, 0 where it is that to the digits of the other end."""
+    if value is None:
+        return infinite
+    other = interval.high if value is interval.low else interval.low
+    if value.contains(0) and (other is None or value.abs_upper() < abs(other).lower() / 10**digits):
+        return "0"
     if value.is_exact() and value == value.floor() and abs(value) < 10**digits:
         return str(int(value.unique_fmpz() or 0))
     return figure(value, digits)
 
 
 def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
-    boundary = stability.boundaries[index]
-    printed = decimals(boundary.gain, arb(0), stability.digits).told
-    change = stability.change(index)
-    passing = f"{change:+d}" if change else "touch the axis" if boundary.frequencies else "0"
-    return (printed.re, printed.radius, *_places(boundary, stability.digits), passing)
-
-
-def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
-    if not boundary.frequencies:
-        if any(c.is_singular for c in boundary.crossings):
-            return ("no solution", "")
-        infinite = any(c.is_infinite for c in boundary.crossings)
-        return ("infinite" if infinite else "on the axis", "")
-    omegas = [figure(w, digits) for w in boundary.frequencies]
-    cycles = [short_hertz(w) for w in boundary.frequencies]
-    return ", ".join(omegas), ", ".join(cycles)
+    boundary, digits, change = stability.boundaries[index], stability.digits, stability.change(index)
+    printed = decimals(boundary.gain, arb(0), digits).told
+    kinds, places = boundary.crossings, boundary.frequencies
+    omegas = ", ".join(figure(w, digits) for w in places[:SHOWN])
+    if places[SHOWN:]:
+        omegas += f", {len(places)} in all"
+    elif not places:
+        is_far = any(c.is_infinite for c in kinds)
+        omegas = (
+            "no solution" if any(c.is_singular for c in kinds) else "infinite" if is_far else "on the axis"
+        )
+    cycles = ", ".join(short_hertz(w) for w in places[:SHOWN])
+    passing = f"{change:+d}" if change else "touch the axis" if places else "0"
+    return printed.re, printed.radius, omegas, cycles, passing
 
 
 def _margins(stability: StabilityMap) -> Passage:
@@ -577,14 +528,6 @@ def bandwidth_text(gain: str, bandwidth: AllowedBandwidth) -> str:
     size = figure(abs(angle), 3, trimmed=True)
     shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
     return shown if bandwidth.is_limited else f"at least {shown}"
-
-
-def _hertz(omega: float) -> str:
-    return f"{omega / (2 * pi):.{SHORT_DIGITS}g} Hz"
-
-
-def _end(value: arb | None, infinite: str) -> str:
-    return infinite if value is None else _exact(value, SHORT_DIGITS)
 
 
 def _number(value: Fraction | None) -> str:

@@ -8,14 +8,15 @@ on the axis at one frequency, where a resultant has a double root; as boxes they
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
-from symflex.loops.axis import BITS, FIRST_RATIO, NARROWEST, NEWTON_STEPS, pieces
+from symflex.loops.axis import BITS, FIRST_RATIO, NARROWEST, NEWTON_STEPS, joined, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 DEEPEST = 50
 """Halvings of the range of gains."""
+SHORT = 6
+"""Halvings of the range of gains until its pieces tell how large functions are."""
 MOST_BOXES = 128
 """Boxes of gains at one interval of frequencies."""
 MOST_INTERVALS = 8_000
@@ -36,65 +39,73 @@ INFLATED = 1.3
 """So that a root on an edge lies inside."""
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, slots=True)
+class PartsAlong:
+    """The parts in the middle of an interval of frequencies, and slopes on it with their factor."""
+
+    middle: Sequence[acb]
+    slopes: Sequence[acb] = ()
+    off: acb | int = 0
+
+
+@dataclass(frozen=True, eq=False)
 class GainTree:
     """The range of gains in halves, each with the weights of all parts, which are kept."""
 
     weights: Weights
-    gain: arb
+    ends: tuple[arb, arb]  # exact, as a ball of wide ranges reaches beyond them
     depth: int = 0
-    _halves: list[GainTree] = field(default_factory=list)
-    _values: tuple[list[arb], list[arb], list[arb]] | None = None
 
-    @property
+    @cached_property
+    def gain(self) -> arb:
+        """A ball around the piece."""
+        with precision(BITS):
+            return self.ends[0].union(self.ends[1])
+
+    @cached_property
     def values(self) -> tuple[list[arb], list[arb], list[arb]]:
         """The weights on this piece, in its middle, and their slopes on the piece."""
-        if self._values is None:
-            with precision(BITS):
-                around, centre = (self.weights(x) for x in (self.gain, self.gain.mid()))
-            self._values = [w[0] for w in around], [w[0] for w in centre], [w[1] for w in around]
-        return self._values
+        with precision(BITS):
+            around, centre = (self.weights(x) for x in (self.gain, self.gain.mid()))
+        return [w[0] for w in around], [w[0] for w in centre], [w[1] for w in around]
 
-    def sums(self, parts: Sequence[acb]) -> tuple[acb, acb]:
-        """Return a sum on this piece, by the mean value theorem where that is narrower, and in its middle."""
-        around, centre, slope = (_sum(weights, parts) for weights in self.values)
-        mean = centre + slope * (self.gain - self.gain.mid())
-        return (mean if mean.is_finite() and mean.rad() < around.rad() else around), centre
+    def sums(self, place: PartsAlong) -> tuple[acb, acb]:
+        """Return a sum on this piece, and what the gain adds to it: both by the mean value theorem.
 
-    @property
+        Slopes are added up before they are multiplied with widths, as they may cancel.
+        """
+        around, centre, slope = self.values
+        across = _sum(slope, place.middle) * (self.gain - self.gain.mid())
+        total = _sum(centre, place.middle) + across
+        return total + _sum(around, place.slopes) * place.off if place.slopes else total, across
+
+    @cached_property
     def halves(self) -> list[GainTree]:
         """Both halves of the piece."""
-        if not self._halves:
-            with precision(BITS):
-                middle, radius = self.gain.mid(), self.gain.rad() / 2
-                self._halves = [
-                    GainTree(self.weights, middle + sign * radius + arb(0, radius), self.depth + 1)
-                    for sign in (-1, 1)
-                ]
-        return self._halves
+        with precision(BITS):
+            low, high = self.ends
+            middle = ((low + high) / 2).mid()
+            return [GainTree(self.weights, ends, self.depth + 1) for ends in ((low, middle), (middle, high))]
+
+    @cached_property
+    def pieces(self) -> list[GainTree]:
+        """Short pieces, ascending: shorter ones where weights have no bound."""
+        is_bounded = all(w.is_finite() for w in self.values[0])
+        if self.depth >= (SHORT if is_bounded else DEEPEST):
+            return [self]
+        return [piece for half in self.halves for piece in half.pieces]
 
 
-def left(pieces: Sequence[GainTree], parts: Sequence[acb]) -> list[GainTree]:
+def left(pieces: Sequence[GainTree], place: PartsAlong) -> list[GainTree]:
     """Return in which pieces of pieces a sum may vanish, ascending, cut as far as that is worth it."""
     kept = list(pieces)
     while True:
-        places = [(piece, *piece.sums(parts)) for piece in kept]
-        alive = [place for place in places if not place[1].is_finite() or place[1].contains(0)]
-        wide = [p for p, around, centre in alive if p.depth < DEEPEST and not around.rad() < 2 * centre.rad()]
+        sums = [(piece, *piece.sums(place)) for piece in kept]
+        alive = [each for each in sums if not each[1].is_finite() or each[1].contains(0)]
+        wide = [p for p, total, across in alive if p.depth < DEEPEST and not 2 * across.rad() < total.rad()]
         if not wide or len(alive) + len(wide) > MOST_BOXES:
             return [piece for piece, *_ in alive]
         kept = [half for piece, *_ in alive for half in (piece.halves if piece in wide else [piece])]
-
-
-def _joined(pieces: Sequence[GainTree]) -> list[arb]:
-    """Return pieces of gains, those next to each other as one."""
-    joined: list[arb] = []
-    for gain in (piece.gain for piece in pieces):
-        if joined and joined[-1].overlaps(gain):
-            joined[-1] = joined[-1].union(gain)
-        else:
-            joined.append(gain)
-    return joined
 
 
 def _sum(weights: Sequence[arb], parts: Sequence[acb]) -> acb:
@@ -107,16 +118,6 @@ class AxisPoints:
 
     proved: list[tuple[arb, arb]]  # enclosures of one point each
     undecided: list[tuple[arb, arb]]
-
-    def add(self, point: tuple[arb, arb] | None) -> None:
-        """Add a point; one that was found from the interval before is not another."""
-        if point is None:
-            return
-        for i, other in enumerate(self.proved):
-            if all(x.overlaps(y) for x, y in zip(point, other, strict=True)):
-                self.proved[i] = point[0].union(other[0]), point[1].union(other[1])
-                return
-        self.proved.append(point)
 
 
 def find_axis_points(
@@ -132,13 +133,19 @@ def find_axis_points(
         start, end, known = pending.pop()
         with precision(BITS):
             omega = (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
-            around, _ = function.parts_around(acb(0, omega), BITS)
-            known = left(known, [value for value, _ in around])
-            gains = _joined(known)
+            around, centre = function.parts_around(acb(0, omega), BITS)
+            off = acb(0, omega - omega.mid())
+            known = left(known, PartsAlong([c for c, _ in centre], [slope for _, slope in around], off))
+            gains = joined([piece.gain for piece in known])
             points = [_point(function, tree.weights, omega, gain, digits) for gain in gains]
         if None not in points:
             for point in points:
-                found.add(point or None)
+                # One that was found from the interval before is not another.
+                is_met = (
+                    all(x.overlaps(y) for x, y in zip(point, p, strict=True)) for p in found.proved if point
+                )
+                if point and not any(is_met):
+                    found.proved.append(point)
         elif end - start < NARROWEST * end:
             found.undecided.extend((omega, gain) for gain in gains)
         else:

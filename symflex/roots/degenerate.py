@@ -5,17 +5,24 @@ Output: how often denominator and numerator of the equations vanish there. A for
 such a point, so its factors do not say.
 
     a free beam on a foundation, k_f + rho A s^2 = 0: all wavenumbers vanish, and it turns without strain
+
+Both determinants are entire; values on a small circle give their Taylor coefficients ``c_k r^k``. If one of
+these is larger than all others together, the circle holds k roots (Rouche 1862).
+
+    f = (s - 2)^2 (s - 5) about s = 2, r = 1e-38:  -3 r^2 is larger than r^3, and the disc holds two roots
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import ceil, log
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import acb, arb
 
-from symflex.balls import precision
+from symflex.balls import UndecidedError, precision
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.roots.distributed.side import polynomial_roots
@@ -34,6 +41,16 @@ if TYPE_CHECKING:
 NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
 POINT_DIGITS = 50
 """Digits of degenerate points: more than those that tell roots of the equations from them."""
+NARROW = 128
+"""Binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones."""
+WIDER = 100
+"""Doublings of the radius of the disc in which the determinants are bounded."""
+SPARE = 8
+"""Values on the circle beyond those that the bound takes: orders from about so high on are not counted."""
+MOST_POINTS = 64
+"""Values beyond which roots are not counted, as the bound is crude where waves grow thousandfold."""
+BITS = 1024, 4096
+"""Precision of the coefficients; each order takes ``NARROW`` bits."""
 
 
 def degenerate_points(bound: BoundTransferFunction) -> list[Root]:
@@ -97,8 +114,6 @@ class DegeneratePoints:
 
     def _counted(self, point: Root) -> tuple[int, int] | None:
         """Return how many poles and hidden modes the equations have at a point, ``None`` if not known."""
-        from symflex.roots.networks.at_point import roots_about  # few models have such points
-
         place = complex(float(point.re.mid()), abs(float(point.im.mid())))
         if place not in self._counts and self.bound.is_of_model:
             den, num = (None, None) if self._cramer is None else roots_about(self._cramer, point.enclosure())
@@ -110,7 +125,7 @@ class DegeneratePoints:
     @cached_property
     def _cramer(self) -> CramerEquations | None:
         """The equations of the function; ``None`` of members that taper."""
-        from symflex.roots.networks.cramer import CramerEquations
+        from symflex.roots.networks.cramer import CramerEquations  # few models have such points
 
         bound, source = self.bound, self.bound.source
         if is_tapered(source.model):
@@ -121,10 +136,45 @@ class DegeneratePoints:
 
 def _about(point: Root, times: int) -> Root:
     """Return roots of the equations that are proved to lie about a point; conjugates of one are equal."""
-    from symflex.roots.networks.at_point import NARROW
-
     with precision(point.working_bits()):
         reach = arb(0, (point.size() * arb(2) ** -NARROW).upper())
         is_real = point.is_real and times == 1
         re, im = point.re + reach, point.im if is_real else point.im + reach
     return Root(re, im, times, on_imaginary_axis=False, is_real=is_real, certified=times == 1)
+
+
+def roots_about(cramer: CramerEquations, s: acb) -> tuple[int | None, int | None]:
+    """Return how many roots denominator and numerator have within ``2^-NARROW abs(s)`` of a point: proved.
+
+    None for one whose roots are not counted: it vanishes everywhere, or has more than are looked for.
+    """
+    found: tuple[int | None, int | None] = (None, None)
+    for bits in BITS:
+        with precision(bits), suppress(UndecidedError):
+            reach = (abs(s.mid()) * arb(2) ** -NARROW).mid()
+            wide = arb(0, (reach * arb(2) ** WIDER).upper())
+            bounds = cramer.bounds_on(acb(s.real.mid() + wide, s.imag.mid() + wide))
+            first = cramer.at((s.mid() + reach).mid(), bits)
+            sizes = [
+                (b, v.abs_upper()) for b, v in zip(bounds, (first.den, first.num), strict=True) if v != 0
+            ]
+            beyond = max((b - float(size.log().mid()) for b, size in sizes), default=0.0)
+            count = SPARE + ceil(beyond / (WIDER * log(2)))
+            if count > MOST_POINTS:
+                break
+            turns = (acb(0, 2 * arb.pi() * k / count).exp() for k in range(1, count))
+            values = [first, *(cramer.at((s.mid() + reach * turn).mid(), bits) for turn in turns)]
+            sides = [v.den for v in values], [v.num for v in values]
+            found = _largest(sides[0], bounds[0]), _largest(sides[1], bounds[1])
+        if None not in found:
+            break
+    return found
+
+
+def _largest(values: Sequence[acb], log_bound: float) -> int | None:
+    """Return which Taylor coefficient exceeds all others together; ``None`` where none is proved to."""
+    n = len(values)
+    others = arb(log_bound).exp() * arb(2) ** (1 - WIDER * n)
+    aliased = acb(arb(0, others.upper()), arb(0, others.upper()))
+    sizes = [abs(c / n + aliased) for c in acb.dft(list(values))]
+    return next((k for k in range(n) if sizes[k] > sum((*sizes[:k], *sizes[k + 1 :]), others)), None)

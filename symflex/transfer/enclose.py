@@ -7,7 +7,7 @@ rational number where there is one. Example: ``sqrt(4)`` is a ball about 2. Theo
 from __future__ import annotations
 
 from fractions import Fraction
-from math import prod
+from math import isqrt, prod
 from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_series
@@ -45,8 +45,12 @@ def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> 
     def none(*_: object) -> Fraction:
         raise KeyError
 
+    def called(call: Call, square: Fraction) -> Fraction:
+        root = Fraction(isqrt(abs(square.numerator)), isqrt(square.denominator))
+        return root if call.name == "sqrt" and root**2 == square else none()
+
     try:
-        return fold(expression, number=Fraction, name=named, power=none, call=none)
+        return fold(expression, number=Fraction, name=named, power=none, call=called)
     except (KeyError, ZeroDivisionError):
         return None
 

@@ -319,7 +319,8 @@ class _SumFarOut:
         if () not in highest:
             return EVERY_DELAYED
         delayed = max((p for own, p in highest.items() if own), default=Fraction(-1))
-        sizes = {own: abs(powers[0][own][p]) for own, p in highest.items() if p == max(highest.values())}
+        most = max(highest.values())
+        sizes = {own: abs(powers[0][own].get(p, acb(0))) for own, p in highest.items() if p == most}
         total = sum(sizes.values(), arb(0))
         are_delays = all(powers[1][i].is_delay and a > 0 and not b for own in highest for i, a, b in own)
         if are_delays and any(own and 2 * size > total for own, size in sizes.items()):

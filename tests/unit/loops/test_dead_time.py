@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.loops import two_unknowns
 from symflex.loops.of_model import stability
 from symflex.loops.stability_map import stability_text
 from symflex.options import StabilityOptions
@@ -198,9 +199,28 @@ u_2 = "-0.2*K*(r_2 - y_2)"
     assert float(stable.high) == pytest.approx(1.26032, abs=5e-6)
 
 
-@pytest.mark.slow
-def test_a_search_in_two_unknowns_that_takes_too_long_tells_of_the_gain_itself_alone():
-    # exp(-0.1*s)/(s + 1) is stable up to a gain of 16.35, and K*(K + 1) is 6.
+def test_a_function_of_the_gain_has_the_boundaries_of_its_values():
+    # exp(-0.1*s)/(s + 1) has poles on the axis where tan(w/10) = -w, and there the gain is sqrt(1 + w^2).
     text = 'symflex = 1\nparameters.K = 2\nsignals.y = "K*(1 + K)*exp(-0.1*s)/(s + 1)*(r - y)"\n'
-    found = stability(pipeline.loads(text + 'inputs.r = {}\noutputs.Y = "y"\n'), StabilityOptions("K"))
+    found = stability(
+        pipeline.loads(text + 'inputs.r = {}\noutputs.Y = "y"\n'), StabilityOptions("K", (0, 20))
+    )
+    w = np.array([float(boundary.frequencies[0]) for boundary in found.boundaries])
+    gains = np.array([float(boundary.gain) for boundary in found.boundaries])
+    assert found.certified
+    assert len(w) == 7
+    np.testing.assert_allclose(np.tan(w / 10), -w, rtol=1e-9)
+    np.testing.assert_allclose(gains * (1 + gains), np.sqrt(1 + w**2), rtol=1e-12)
+    # (K + K^2)/(s + 1) has magnitude one at w^2 = 35; the delay takes 0.1 w off its phase.
+    (margin,) = found.phase_margins
+    assert float(margin.angle) == pytest.approx(np.pi - np.arctan(35**0.5) - 0.1 * 35**0.5, rel=1e-12)
+
+
+def test_a_search_in_two_unknowns_that_takes_too_long_tells_of_the_gain_itself_alone(monkeypatch):
+    # s + K exp(-s) = -+ 0.5 j is stable up to K = pi/2 - 0.5.
+    monkeypatch.setattr(two_unknowns, "MOST_INTERVALS", 3)
+    text = 'symflex = 1\nparameters.K = 0.8\nsignals.y = "K*(2*s + K*exp(-s))*exp(-s)/(s^2 + 0.25)*(r - y)"\n'
+    found = stability(
+        pipeline.loads(text + 'inputs.r = {}\noutputs.Y = "y"\n'), StabilityOptions("K", (0, 4))
+    )
     assert (found.intervals, found.at_nominal.word, found.certified) == ((), "stable", False)

@@ -11,10 +11,9 @@ from fractions import Fraction
 import pytest
 
 from symflex import pipeline
-from symflex.roots import Band, Modes
+from symflex.roots import Band, Modes, degenerate
 from symflex.roots.degenerate import NOT_COUNTED, DegeneratePoints, degenerate_points
 from symflex.roots.locate import locate
-from symflex.roots.networks import at_point
 from tests.unit.roots.stand_ins import places
 
 BEAM = """
@@ -104,7 +103,7 @@ def test_a_hidden_turn_is_listed_among_the_roots_with_its_place_and_in_the_verdi
 
 
 def test_what_is_not_counted_is_said_and_nothing_is_certified(monkeypatch):
-    monkeypatch.setattr(at_point, "roots_about", lambda *_: (None, None))
+    monkeypatch.setattr(degenerate, "roots_about", lambda *_: (None, None))
     found = locate(bound(), Band(Fraction("0.4"), Fraction("0.5")), 15)
     assert found.certificate.reason == NOT_COUNTED
 
