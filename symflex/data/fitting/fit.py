@@ -13,8 +13,9 @@ from symflex.data.fitting.least_squares import FLAT, Refined, widened
 from symflex.data.fitting.lines import isolated, single_lines, step_line, wild_lines
 from symflex.data.fitting.order import (
     CRITERIA,
+    FAR_OFF,
     LAST_SHARE,
-    NEGLIGIBLE,
+    NARROW_BAND,
     NOISE_SHARE,
     PHASE_SHARE,
     STARTS,
@@ -53,6 +54,11 @@ LARGE = 2.0
 """Sum of squares per degree of freedom from which coherence does not explain the residual."""
 MEDIAN = 1.177
 """Median of the size of a complex Gaussian error whose parts have the deviation 1."""
+DECADE = 10.0
+"""Frequency over that of an end of the band, or the other way round, from which a pole is far outside."""
+CLEAN, UNLIKE, MOST_AVERAGES = 0.99, 0.5, 500
+"""Median coherence from which its digits decide, loss of likelihood a line from which it is false, averages
+that there may be where data do not say."""
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
 NAMED_LINES = 6
@@ -131,6 +137,11 @@ class ResonanceFit:
     def measured(self) -> tuple[MeasuredResponse, ...]:
         """The data, with the lines that were left out."""
         return tuple(line.every.measured for line in self.problem.lines)
+
+    @property
+    def leaves_rounding(self) -> bool:
+        """Whether the fit leaves no more than the rounding of numbers of six digits or more."""
+        return self.problem.is_exact and self.refined.reduced < FAR_OFF
 
     def left_out(self, response: int) -> Whole:
         """Return which lines of a response were left out of the fit, because they are wild."""
@@ -270,10 +281,9 @@ def _fit(
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
             hint = "add damping to the base, or choose a --band without this frequency"
             raise FitError(Diagnostic("SF615", message, None, hint))
-    problem = problem.at(
-        [_kept(line, wild_lines(line.omega, line.outline / line.base_at_lines)) for line in problem.lines]
-    )
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
+    problem, doubts = _without_false_coherence(problem, most)
+    problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
     stages = Stages()
     candidate, problem, scores, reasons = _chosen(problem, given, most, stages)
     single = [single_lines(line.omega, candidate.refined.resonances) for line in problem.lines]
@@ -311,7 +321,35 @@ def _fit(
             else test
             for test in tests
         )
-    return replace(fit, phase_tests=tests, warnings=_warnings(fit), poor=reasons)
+    return replace(fit, phase_tests=tests, warnings=(*doubts, *_warnings(fit)), poor=reasons)
+
+
+def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem, list[str]]:
+    """Return the problem without coherence that the scatter of lines contradicts, and what is said of it.
+
+    The variance v of each line that coherence gives is compared with that estimated without it, w. Of
+    Gaussian errors with the variance w the likelihood of v is lower by w/v - 1 - ln(w/v) a line; how many
+    averages there are need not be known.
+    """
+    lines, said = list(problem.lines), []
+    for r, line in enumerate(problem.lines):
+        shares = line.measured.coherence
+        if shares is None or line.deviation is None or np.median(shares) > CLEAN:
+            continue
+        plain = replace(line, is_coherence_used=False, deviation=None)
+        single = with_rough_noise(replace(problem, lines=(plain,), delays=()))
+        (own,) = with_noise(with_delays(single, None), None, most).lines
+        if own.deviation is None:
+            continue
+        ratio = (own.deviation / line.deviation) ** 2
+        level = float(np.mean(ratio))
+        scale = max(level, 1 / MOST_AVERAGES) if level > 1 or not line.measured.averages else 1.0
+        if np.mean(ratio / scale - 1 - np.log(ratio / scale)) > UNLIKE:
+            seen = f"the scatter of the lines, {20 * np.log10(1 + np.median(own.deviation)):.2g} dB"
+            whose = f"the coherence of {line.measured.name}, {np.median(shares):.2g} in the median,"
+            said.append(f"{whose} contradicts {seen}: lines are weighed by their scatter")
+            lines[r] = plain
+    return replace(problem, lines=tuple(lines)), said
 
 
 def _settled(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
@@ -370,14 +408,15 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
 def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     """Return why a fit is poor."""
     modes, errors = fit.resonances, fit.standard_errors()
+    low, high = fit.problem.band
     reasons = []
-    if fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE:
-        return ()  # what is left is rounding, and tells nothing
+    if fit.leaves_rounding:
+        return ()  # which tells nothing
     if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
         reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
-    if fit.candidate.is_rivalled:
+    if fit.candidate.is_rivalled and high > NARROW_BAND * low:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together: the model lacks something")
@@ -430,6 +469,10 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
         if np.isfinite(corner) and not low <= corner <= high:
             place = f"{corner / (2 * np.pi):.4g} Hz"
             warnings.append(f"the real zero{fit.of_response(r)} lies outside the band measured, at {place}")
+    poles = [*modes.omega_p[modes.zeta_p < 1].tolist(), *modes.real_corners()]
+    far = ", ".join(f"{p / (2 * np.pi):.4g} Hz" for p in poles if not low / DECADE <= p <= DECADE * high)
+    if far:
+        warnings.append(f"poles more than a decade outside the band: the data show only their effect: {far}")
     return warnings
 
 
@@ -437,8 +480,12 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     modes = fit.resonances
     errors = fit.standard_errors()
     low, high = fit.problem.band
-    is_exact = fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE
+    is_exact = fit.leaves_rounding
     warnings = _said_of_lines(fit)
+    if fit.candidate.is_rivalled and high <= NARROW_BAND * low:
+        width = f"{200 * (high - low) / (high + low):.2g} % wide"
+        other = "another one fits as well, with another gain and other zeros"
+        warnings.append(f"the band, {width}, is too narrow to tell the power of s: {other}")
     for i in range(modes.count):
         if fit.modes[i] and not errors.zeta_p[i] <= WEAK * modes.zeta_p[i]:
             warnings.append(f"the damping of {named_pair(fit, i)} is hardly determined by the data")

@@ -120,7 +120,8 @@ def refine_directly(
 def _descend(
     problem: FitProblem, start: Resonances, kind: str, steps: int, tolerance: float
 ) -> tuple[Resonances, bool]:
-    start = _minimum_phase(problem, start)
+    is_alone = np.array([line.parts == 1 for line in problem.lines])
+    start = start.minimum_phase(is_alone)
     packed = start.pack(problem.free)
     if not packed.size:
         return start, True
@@ -140,21 +141,7 @@ def _descend(
     solution, has_converged = search(
         residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance
     )
-    return _minimum_phase(problem, start.unpack(solution, problem.free)), has_converged
-
-
-def _minimum_phase(problem: FitProblem, modes: Resonances) -> Resonances:
-    """Return the function with zeros in the left half plane where magnitudes alone were measured."""
-    is_alone = np.array([line.parts == 1 for line in problem.lines])
-    if not is_alone.any():
-        return modes
-    other = modes.minimum_phase()
-    mixed = {
-        name: np.where(is_alone.reshape(-1, *[1] * (own.ndim - 1)), getattr(other, name), own)
-        for name in ("omega_z", "zeta_z", "real_z", "gain")
-        for own in (getattr(modes, name),)
-    }
-    return replace(modes, **mixed)
+    return start.unpack(solution, problem.free).minimum_phase(is_alone), has_converged
 
 
 def search(
@@ -420,6 +407,7 @@ def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | No
             kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
         middle = middle + kept * sums.crossed[lag - 1] / scaled
     covariance = inverse @ middle @ inverse * (sums.power / freedom) / scaled
+    covariance[np.diag_indices(count)] += np.finfo(float).eps ** 2  # doubles are no more exact
     lost = np.any(np.abs(vectors[:, is_null]) > NULL_PART, axis=1)
     covariance[lost, lost] = np.inf
     return covariance, factor

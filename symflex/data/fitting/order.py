@@ -61,6 +61,10 @@ NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
 MOST_NUMERATORS, MOST_STARTS = 3, 4
 """The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
+MOST_SHAPES = 12
+"""Numerators over each choice of poles among which the simplest is looked for."""
+NARROW_BAND = 1.1
+"""Ratio of the ends of a band in which a power of s is hardly more than a gain."""
 SAME = 1e-3
 """Relative distance below which two starts have the same poles."""
 MOST_RISE = 1.5
@@ -235,7 +239,8 @@ def chosen_order(
         wanted = scores
     given_up: list[tuple[Score, Candidate]] = []
     result: Candidate | None = None
-    for score in sorted(wanted, key=lambda s: _value(s, criterion)):
+    unlikely = {s for s in wanted if thin.is_exact and not _is_founded(thin, scores, s, criterion)}
+    for score in sorted(wanted, key=lambda s: (s in unlikely, _value(s, criterion))):
         limit = (score.reduced + NEGLIGIBLE) / FAR_BETTER
         result = next((one for s, one in given_up if s.reduced + NEGLIGIBLE < limit), None)
         if result is not None:
@@ -280,10 +285,10 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
         if modes is not None:
             resonances = candidate.refined.resonances
             return int(resonances.in_band(*thin.band).sum()) == modes and _is_enough(thin, candidate)
-        return candidate.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # the data are exact
+        return candidate.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # what is left is rounding
 
     worse = 0
-    for order in range(first, last + 1, 2):
+    for order in range(first, last + 1, 1 if thin.is_exact else 2):
         if attempt(order):
             return
         now = values()
@@ -291,12 +296,13 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
         least = min((one.refined.reduced for one in tried), default=np.inf)
         # Fewer poles than there are may be no better than none, each with something large left over.
         patience = MORE_PATIENCE if not thin.has_scale or least > FAR_BETTER else PATIENCE
-        if worse > (0 if thin.has_scale and least < EXPLAINED else patience):
+        patience *= 1 + thin.is_exact
+        if worse > (0 if thin.has_scale and least < EXPLAINED and not thin.is_exact else patience):
             break
     if tried:
         best = tried[int(np.argmin(values()))].order
         for order in (best - 1, best + 1):
-            if first <= order <= last:
+            if first <= order <= last and order not in {one.order for one in tried}:
                 attempt(order)
 
 
@@ -307,11 +313,11 @@ def _is_founded(problem: FitProblem, scores: Sequence[Score], score: Score, crit
     are lines (Sidak 1967): one more needs evidence against all of them.
     """
     chances = 2 * float(np.log(problem.count))
-    return all(
-        _value(score, criterion) < _value(s, criterion) - CLEAR - chances * (score.count > s.count)
-        for s in scores
-        if s.order < score.order and s.status != "failed"
-    )
+    fewer = [s for s in scores if s.order < score.order and s.status != "failed"]
+    if problem.is_exact:  # rounding repeats itself, and is no noise: a pole that is there leaves far less
+        return all(FAR_BETTER * (score.reduced + NEGLIGIBLE) < s.reduced + NEGLIGIBLE for s in fewer)
+    limits = (_value(s, criterion) - CLEAR - chances * (score.count > s.count) for s in fewer)
+    return all(_value(score, criterion) < limit for limit in limits)
 
 
 def _is_weak(problem: FitProblem, refined: Refined) -> bool:
@@ -356,6 +362,8 @@ def _continued(
     """Return where a quick fit leads with all steps, on all lines and with the window."""
     best = stages.within(THOROUGH_SHARE, lambda: _thorough(thin, quick, kind), lambda: quick)
     best = replace(best, is_rivalled=_is_rivalled(thin, best, tried))
+    if len(thin.slopes) > 1 and thin.band[1] <= NARROW_BAND * thin.band[0]:
+        best = stages.within(THOROUGH_SHARE, lambda: _with_least_power(thin, best), lambda: best)
     if thin.count == problem.count and all(line.observation.matrix is None for line in problem.lines):
         return best
     stages.budget.progress.report(THOROUGH_SHARE, f"fit with {best.order} poles to {problem.count} lines")
@@ -371,6 +379,7 @@ def _thorough(thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
     """Return where a quick fit leads with all steps, and from other starts where it leaves something."""
     best = refitted(quick, thin, 3 * STEPS)
     best = _signs_tried(thin, _without_far_poles(thin, _simplified(thin, best, is_quick=False)))
+    best = _simplest(thin, best) if thin.is_exact else best
     if best.failure is not None or not _is_explained(thin, best.refined):
         again = best_of_starts(thin, quick.order, kind)
         if again is not None and _is_better(thin, again, best):
@@ -487,6 +496,40 @@ def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
     return best
 
 
+def _simplest(problem: FitProblem, best: Candidate) -> Candidate:
+    """Return the fit to computed lines without poles and zeros that leave no more than rounding does.
+
+    They cancel, or lie where the band shows a gain or a power of s.
+    """
+    modes, limit = best.refined.resonances, FAR_BETTER * (best.refined.reduced + NEGLIGIBLE)
+    pairs = modes.omega_p * (-modes.zeta_p + 1j * np.sqrt(np.maximum(1 - modes.zeta_p**2, 0)))
+    poles = np.append(pairs[modes.zeta_p < 1], -np.array(modes.real_corners(), np.complex128))
+    found = [best.refined]
+    for k in range(poles.size + 1):
+        for _, start in over_poles(problem, np.delete(poles, slice(k, k + 1)), MOST_SHAPES):
+            if start.size(problem.free) < found[-1].parameters:
+                refined = refine_directly(problem, start, *QUICK)
+                found += [refined] * (refined.reduced <= limit)
+    if len(found) == 1:
+        return best
+    simpler = refitted(replace(best, refined=found[-1]), problem)
+    return _simplest(problem, replace(simpler, order=simpler.refined.resonances.order))
+
+
+def _with_least_power(problem: FitProblem, best: Candidate) -> Candidate:
+    """Return the fit in a narrow band with the power of s nearest to 0 of those that fit as well."""
+    now, middle = best.refined.resonances, np.sqrt(problem.band[0] * problem.band[1])
+    least = np.sign(now.slope) * (np.abs(now.slope) % 2)
+    others = []
+    for slope in (least, least + 2, least - 2):
+        turns = (slope - now.slope).astype(float)  # even, so that each changes the sign at most
+        gain = now.gain * (-1.0) ** (turns / 2) / middle**turns
+        others.append(refine_directly(problem, replace(now, slope=slope, gain=gain), *THOROUGH))
+    limit = min(_merit(problem, one) for one in (*others, best.refined)) + CLEAR
+    alike = [one for one in (*others, best.refined) if _merit(problem, one) < limit]
+    return replace(best, refined=alike[0], is_rivalled=best.is_rivalled or len(alike) > 1)
+
+
 def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
     """Return the fit after trying each pair of zeros in the other half plane: magnitude hardly tells."""
     for r in range(len(problem.lines)):
@@ -548,6 +591,9 @@ def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate
     refined, reference = candidate.refined, problem.reference
     if reference is None or lack_of_fit(problem, refined) < UNLIKELY:
         return candidate, problem
+    if problem.is_exact:  # magnitudes of many decades, which a sum of fractions cannot follow
+        alike = tuple(replace(line, deviation=None) for line in problem.lines)
+        refined = refine_directly(replace(problem, lines=alike), refined.resonances, 2 * STEPS)
     values = [problem.values(refined.resonances, r) for r in range(len(problem.lines))]
     own = estimated(problem, values, refined.parameters)
     again = refine_directly(own, refined.resonances, 2 * STEPS)

@@ -147,9 +147,9 @@ class _PhaseSearch:
         self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
         self.weight: Real = 1 / np.hypot(self.noise, CAP)
         self.wanted: Real = np.log(np.abs(self.line.measured.values))
-        mirrored = fitted.one(response).minimum_phase()
-        zeta = np.maximum(mirrored.zeta_z, LOWEST_DAMPING)
-        self.mirrored = replace(mirrored, zeta_z=zeta, gain=fitted.one(response).gain)
+        own = fitted.one(response)
+        mirrored = own.minimum_phase(np.ones(1, np.bool_))
+        self.mirrored = replace(mirrored, zeta_z=np.maximum(mirrored.zeta_z, LOWEST_DAMPING), gain=own.gain)
 
     def level(self, model: Complex) -> Real:
         """Return the logarithm of the model's magnitude over the measured one."""

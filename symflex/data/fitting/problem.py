@@ -28,8 +28,10 @@ STEPS = 60
 """Multiplicative steps for the shares of the variance; none of them makes it worse."""
 POWERS = (0, 2, 4, -2, -4)
 """Of the frequency, by which the variance of the noise is described."""
-LEAST = 1e-6
-"""Relative deviation below which no line is taken to be known: that of six digits in a file."""
+LEAST = 1e-9
+"""Relative deviation below which no line is taken to be known: a thousandth of it is rounding on the way."""
+EXACT = 3e-6
+"""Relative deviation of six digits: no instrument has it."""
 MOST_PAIRS = 14
 """Of poles of the function without structure, where the number of resonances is open."""
 LINES_PER_PARAMETER = 2.0
@@ -54,6 +56,7 @@ class FittedLines:
     base_at_lines: Complex
     # shape (n,): Standard deviation of each part over the magnitude; None when there is no coherence.
     deviation: Real | None
+    is_coherence_used: bool = True
     # All lines of the measurement, where this is a part of them.
     whole: FittedLines | None = None
 
@@ -68,28 +71,20 @@ class FittedLines:
         return self.measured.values / self.base_at_lines
 
     @property
+    def coherence(self) -> Real | None:
+        """The coherence, if there is one that the scatter of lines does not contradict."""
+        return self.measured.coherence if self.is_coherence_used else None
+
+    @property
     def parts(self) -> int:
         """How many real numbers each line is: two, or a magnitude alone."""
         return 1 if self.measured.is_magnitude else 2
-
-    @property
-    def outline(self) -> Complex:
-        """What was measured: without a phase where none was."""
-        values = self.measured.values
-        return values if self.parts > 1 else np.abs(values).astype(np.complex128)
 
     def rest(self, model: Complex) -> Values:
         """Return how far values of a model are off, real where magnitudes alone were measured."""
         if self.measured.is_magnitude:
             return np.asarray(np.abs(model) - np.abs(self.measured.values), np.float64)
         return np.asarray(model - self.measured.values, np.complex128)
-
-    def rephased(self, model: Complex) -> FittedLines:
-        """Return magnitudes alone with the phase of a model: what it is off then is a magnitude too."""
-        if not self.measured.is_magnitude:
-            return self
-        turned = np.abs(self.measured.values) * np.exp(1j * np.angle(model))
-        return replace(self, measured=replace(self.measured, values=turned), whole=self.every)
 
     @property
     def every(self) -> FittedLines:
@@ -147,12 +142,18 @@ class FitProblem:
     @property
     def is_noise_known(self) -> bool:
         """Whether coherence and averages say how large the noise is."""
-        return all(line.measured.coherence is not None and line.measured.averages for line in self.lines)
+        return all(line.coherence is not None and line.measured.averages for line in self.lines)
 
     @property
     def has_scale(self) -> bool:
         """Whether the noise is known or estimated, and not only how it differs from line to line."""
         return self.is_noise_known or self.is_noise_estimated
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the lines were computed: their errors are those of numbers of six digits or more."""
+        deviations = [line.deviation for line in self.lines if line.deviation is not None]
+        return self.is_noise_estimated and bool(np.median(np.concatenate(deviations)) < EXACT)
 
     @property
     def band(self) -> tuple[float, float]:
@@ -161,7 +162,11 @@ class FitProblem:
 
     def rephased(self, values: Sequence[Complex]) -> FitProblem:
         """Return the problem whose magnitudes without a phase have that of these values."""
-        lines = (line.rephased(model) for line, model in zip(self.lines, values, strict=True))
+        lines = list(self.lines)
+        for r, line in enumerate(lines):
+            if line.parts == 1:
+                turned = np.abs(line.measured.values) * np.exp(1j * np.angle(values[r]))
+                lines[r] = replace(line, measured=replace(line.measured, values=turned), whole=line.every)
         return replace(self, lines=tuple(lines))
 
     def at(self, places: Sequence[Whole]) -> FitProblem:
@@ -276,10 +281,10 @@ def with_rough_noise(problem: FitProblem) -> FitProblem:
         if line.deviation is not None or line.omega.size < FEWEST:
             lines.append(line)
             continue
-        x, y = line.omega, line.outline
+        x, y = line.omega, line.measured.values
         share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
         between = y[1:-1] - (1 - share) * y[:-2] - share * y[2:]
-        power = np.abs(between) ** 2 / (line.parts * (1 + share**2 + (1 - share) ** 2))
+        power = np.abs(between) ** 2 / (2 * (1 + share**2 + (1 - share) ** 2))
         size = np.abs(y)
         variance = _variance(np.pad(power, 1, mode="edge"), x, size)
         lines.append(replace(line, deviation=np.maximum(np.sqrt(variance) / size, LEAST)))
@@ -292,7 +297,7 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
     So far they are rough. ``count`` resonances are looked for, None when that is open. The poles of the
     function without structure are found on ``most_lines`` lines of each response, and its values on all.
     """
-    if all(line.measured.coherence is not None and line.parts > 1 for line in problem.lines):
+    if all(line.coherence is not None and line.parts > 1 for line in problem.lines):
         return problem
     thin = problem.thinned(most_lines)
     size = thin.size
@@ -306,7 +311,7 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
         for v, line in zip(values, thin.lines, strict=True):
             scale = 1.0 if line.deviation is None else line.deviation
             rest += float(np.sum(np.abs(line.rest(v) / np.abs(line.measured.values) / scale) ** 2))
-        score = size * np.log(max(rest, LEAST * size)) + parameters * np.log(size)
+        score = size * np.log(max(rest, LEAST**2 * size)) + parameters * np.log(size)
         if best is None or score < best[0]:
             best, worse = (float(score), pairs, poles), 0
         else:
@@ -325,7 +330,7 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
     lines, cost = [], 0.0
     for model, line in zip(values, problem.lines, strict=True):
         deviation = line.deviation
-        if deviation is None or line.measured.coherence is None:
+        if deviation is None or line.coherence is None:
             power = np.abs(line.rest(model)) ** 2 / line.parts
             variance = _variance(power, line.omega, np.abs(model), rounding(line, model)) / freedom
             size = np.abs(line.measured.values)

@@ -171,13 +171,15 @@ class Resonances:
             real_p=np.array(sorted(corners)[2 * n :]),
         ).ordered()
 
-    def minimum_phase(self) -> Resonances:
-        """Return the function with the same magnitude, a positive gain and no zeros on the right."""
-        zeta = np.abs(self.zeta_z)
+    def minimum_phase(self, which: Mask) -> Resonances:
+        """Return the function whose marked responses have positive gains and no zeros on the right."""
         # Real zeros of opposite sign, mirrored, are an overdamped pair.
-        zeta = np.where(self.omega_z < 0, np.hypot(1, zeta), zeta)
-        sizes = {name: np.abs(getattr(self, name)) for name in ("omega_z", "real_z", "gain")}
-        return replace(self, zeta_z=zeta, **sizes)
+        zeta = np.where(self.omega_z < 0, np.hypot(1, self.zeta_z), np.abs(self.zeta_z))
+        sizes = {
+            name: np.where(which, np.abs(own := getattr(self, name)), own) for name in ("real_z", "gain")
+        }
+        omega_z = np.where(which[:, None], np.abs(self.omega_z), self.omega_z)
+        return replace(self, omega_z=omega_z, zeta_z=np.where(which[:, None], zeta, self.zeta_z), **sizes)
 
     def one(self, response: int) -> Resonances:
         """Return those of one response."""

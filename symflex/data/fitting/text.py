@@ -13,8 +13,6 @@ from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 from symflex.print.text import INDENT, Passage, passages_text
 
 SCHEMA: Final = "symflex.fit/1"
-OPEN: Final = ("undetermined", "assumed")
-"""Verdicts that leave open whether a function is minimum phase."""
 ERROR_DIGITS: Final = 2
 STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
@@ -59,8 +57,7 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
     misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
     residuals = [
         f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB"
-        + ("" if fit.measured[r].is_magnitude else f" and {turn:.2g} degrees")
-        + " rms"
+        f"{'' if fit.measured[r].is_magnitude else f' and {turn:.2g} degrees'} rms"
         for r, (level, turn) in enumerate(misfits)
     ]
     yield Passage([*residuals, INDENT + _accuracy(fit)])
@@ -210,7 +207,7 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "residual_db": fit.misfit_db(r),
         "residual_degrees": None if measured.is_magnitude else fit.misfit_degrees(r),
         "phase_test": {
-            "minimum_phase": None if test.verdict in OPEN else test.is_minimum_phase,
+            "minimum_phase": None if test.verdict in ("undetermined", "assumed") else test.is_minimum_phase,
             "verdict": test.verdict,
             "lag_s": test.lag_s,
             "magnitude_residual_db": test.magnitude_db,
@@ -255,7 +252,7 @@ def _finite(value: float) -> float | None:
 
 
 def _is_scaled(fit: ResonanceFit) -> bool:
-    return fit.problem.has_deviations and all(bool(m.averages) for m in fit.measured)
+    return fit.problem.has_deviations and fit.problem.is_noise_known
 
 
 def _what(fit: ResonanceFit, r: int) -> str:

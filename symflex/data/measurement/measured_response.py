@@ -146,7 +146,7 @@ MOST_LEFT_OUT: Final = 0.1
 """Share of lines without a number that are left out; more may be a column that was misread."""
 MAX_ERRORS: Final = 20
 """Problems of one file that are listed."""
-FEWEST_LINES = 3
+FEWEST_LINES, FEWEST_TO_SCATTER = 3, 8
 MOST_AVERAGES = 1e9
 """Of a number of averages, beyond which it is a mistake."""
 SHOWN_NAMES = 8
@@ -168,7 +168,12 @@ def checked_response(
     if response.frequency_hz.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
     lines, said = _ordered(response, span_of)
-    response = replace(response.taken(lines), guesses=(*response.guesses, *said))
+    response = response.taken(lines)
+    if response.coherence is not None and lines.size >= FEWEST_TO_SCATTER:
+        if many := int(np.sum(response.coherence > 1)):
+            said.append(f"the coherence is above 1 on {many} lines: lines are weighed by their scatter")
+            response = replace(response, coherence=None)
+    response = replace(response, guesses=(*response.guesses, *said))
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     problems: list[Diagnostic] = []
 
