@@ -290,6 +290,13 @@ function proverOf(tape) {
             next.reach[kind] = Math.min(...parts.map((part) => part.reach));
             next.why = next.why || parts.filter((part) => part.why).map((part) => `${kind}: ${part.why}`)[0] || "";
         }
+        // Where a numerator and a denominator may vanish together, there is perhaps neither a pole nor a zero.
+        for (const [p, z] of next.poles.flatMap((one) => next.zeros.map((other) => [one, other]))) {
+            const gap = apart([p.re, p.im], [z.re, z.im]) * DOWN;
+            if (!p.proved || !z.proved || gap > (p.radius + z.radius) * UP) continue;
+            p.proved = z.proved = next.certified.poles = next.certified.zeros = false;
+            next.why = "a pole and a zero are so close that they may cancel";
+        }
         const isLeft = isLumped && next.certified.poles && next.poles.every((z) => -z.re > z.radius * UP);
         const isRight = next.poles.some((z) => z.proved && z.re > z.radius * UP);
         const isPassive = tape.passive && values.every((v) => v > 0.0);  // then no pole is right of the axis
