@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from symflex.model import ExactValue
 
 
+MOST_FACTORS = 64
+"""Power of a ball about 0 that is multiplied out, as logarithms tell nothing of it."""
+
+
 def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:
     """Return the exact value of an expression of rational numbers, ``None`` when it is anything else.
 
@@ -96,11 +100,17 @@ def _imaginary_hint(expression: Expression) -> str | None:
 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
+    def power(base: arb, exponent: Expression) -> arb:
+        whole = rational_value(exponent, {})
+        if base.contains(0) and whole is not None and whole.denominator == 1 and 0 < whole <= MOST_FACTORS:
+            return prod([base] * int(whole), start=arb(1))
+        return base ** _enclose(exponent, values)
+
     return fold(
         expression,
         number=ball,
         name=lambda name: arb.pi() if name == "pi" else values[name](),
-        power=lambda base, exponent: base ** _enclose(exponent, values),
+        power=power,
         call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
     )
 
