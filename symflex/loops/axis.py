@@ -26,7 +26,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symflex.loops.loop import LoopFunction
+    from symflex.loops.loop_function import LoopFunction
 
 BITS = 96
 """Of intervals, whose ends are doubles."""

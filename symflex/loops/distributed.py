@@ -23,7 +23,8 @@ from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import ORIGIN_BITS, AxisRoots, LoopAtOrigin, find_on_axis, joined, loop_at_origin
 from symflex.loops.gain_functions import GainFunctions
-from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue, independent
+from symflex.loops.loop import GainPolynomial, independent
+from symflex.loops.loop_function import LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount, hertz
 from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError

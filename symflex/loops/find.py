@@ -24,7 +24,8 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
 from symflex.loops.distributed import SHRINKINGS, DistributedFactors
 from symflex.loops.locus import closed_loop_roots, is_straight
-from symflex.loops.loop import Loop, LoopFunction
+from symflex.loops.loop import Loop
+from symflex.loops.loop_function import LoopFunction
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkLoop
 from symflex.loops.stability_map import (
@@ -45,7 +46,8 @@ from symflex.roots.root import exact_fraction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.loops.loop import GainPolynomial, LoopValue
+    from symflex.loops.loop import GainPolynomial
+    from symflex.loops.loop_function import LoopValue
 
 
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"

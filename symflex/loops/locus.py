@@ -19,7 +19,8 @@ from symflex.balls import UndecidedError, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
-from symflex.loops.loop import NO_LOOP, Loop, LoopFunction
+from symflex.loops.loop import NO_LOOP, Loop
+from symflex.loops.loop_function import LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root

@@ -1,31 +1,24 @@
-"""The characteristic function of a model as a polynomial in one gain, and its values on the imaginary axis.
+"""The characteristic function of a model as a polynomial in one gain.
 
 Input: a transfer function derived with the gain as a symbol. Output: a :class:`Loop`: the factors of the
-equations' determinant, before anything cancelled from it; and with kernels, the two parts of ``A(s) + K
-B(s)`` in balls. Both are divided by the same exponential, the one that is largest in the middle of a ball, so
-that neither overflows nor turns fast; their quotient, which alone decides where poles cross the axis, stays
-what it is.
+equations' determinant, before anything cancelled from it, each a polynomial in the gain.
+
+Example: ``m s^2 + b s + k`` with a gain K on the position is ``(m s^2 + b s + k) + K``.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
-from math import lcm
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, fmpq, fmpq_mat, fmpz_mpoly
+from flint import fmpq, fmpq_mat, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
-from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
 from symflex.algebra.ring import coefficients_of
-from symflex.balls import Value, expansion, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import Sum, names_among
 from symflex.loops.gain_functions import GainFunctions
-from symflex.roots.functions.exponential_values import ExponentialValues
-from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.bind import values_for
 
@@ -192,150 +185,6 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
     return known[name]
 
 
-@dataclass(frozen=True, slots=True)
-class LoopValue:
-    """Enclosures of A and B at ``s = j omega``, divided alike, and of their derivatives in s."""
-
-    a: acb
-    a_slope: acb
-    b: acb
-    b_slope: acb
-
-    def crossing(self) -> tuple[arb, arb]:
-        """``Im(A conj(B))``, which vanishes where the gain is real, and its derivative in omega."""
-        value = (self.a * self.b.conjugate()).imag
-        j = acb(0, 1)
-        slope = j * self.a_slope * self.b.conjugate() + self.a * (j * self.b_slope).conjugate()
-        return value, slope.imag
-
-    def excess(self, gain: arb) -> tuple[arb, arb]:
-        """``abs(A)^2 - K^2 abs(B)^2``, which vanishes where the loop gain is one, and its derivative."""
-        square = gain * gain
-        a, b = self.a.conjugate(), self.b.conjugate()
-        value = (self.a * a).real - square * (self.b * b).real
-        j = acb(0, 1)
-        slope = 2 * (j * self.a_slope * a).real - 2 * square * (j * self.b_slope * b).real
-        return value, slope
-
-    def gain(self) -> arb:
-        """``-Re(A/B)``: the gain of a pole here, where that is real."""
-        return -(self.a / self.b).real
-
-
-@dataclass(frozen=True, eq=False)
-class LoopFunction:
-    """A and B of one factor ``A + K B`` of a characteristic function, or more parts of another factor."""
-
-    bound: BoundTransferFunction  # whose ring and kernels they have
-    # Polynomials over that ring, without common denominator.
-    a: fmpz_mpoly
-    b: fmpz_mpoly
-    others: tuple[fmpz_mpoly, ...] = ()
-
-    @classmethod
-    def of(cls, bound: BoundTransferFunction, *values: Factored) -> LoopFunction:
-        """Return functions with the same quotients that are polynomials over the ring."""
-        ring = bound.ratio.ring
-        below = Factored.number(ring, 1)
-        for value in values:
-            for factor, exponent in value.factors:
-                missing = -exponent - below.exponent_of(factor)
-                if missing > 0:
-                    below = below * Factored(ring, Fraction(1), ((factor, missing),))
-        scale = lcm(*(value.unit.denominator for value in values))
-        a, b, *others = ((value * below * scale).expand() for value in values)
-        return cls(bound, a, b, tuple(others))
-
-    @property
-    def parts(self) -> tuple[fmpz_mpoly, ...]:
-        """All of them."""
-        return self.a, self.b, *self.others
-
-    @cached_property
-    def arguments(self) -> tuple[Argument, ...]:
-        """What the exponentials are taken of."""
-        return arguments_of(self.bound.kernels) or ()
-
-    @cached_property
-    def sums(self) -> tuple[ExponentialSum, ...] | None:
-        """The parts as sums of exponentials, ``None`` where wavenumbers have no formula."""
-        if arguments_of(self.bound.kernels) is None:
-            return None
-        ring, kernels = self.bound.ratio.ring, self.bound.kernels
-        sums = [exponential_sum(ring, kernels, self.arguments, f) for f in self.parts]
-        known = tuple(each for each in sums if each is not None)
-        return known if len(known) == len(sums) else None
-
-    @cached_property
-    def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
-        return {}
-
-    def evaluator(self, bits: int) -> ExponentialValues | KernelFactors:
-        """Return what evaluates A and B at one precision."""
-        if bits not in self._evaluators:
-            with precision(bits):
-                kernels = self.bound.kernel_values()
-            self._evaluators[bits] = (
-                KernelFactors(kernels, self.parts)
-                if self.sums is None
-                else ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
-            )
-        return self._evaluators[bits]
-
-    @property
-    def turn(self) -> acb:
-        """The direction of the axis where functions are of a root of s: that of the root of j."""
-        order = self.bound.sheets
-        return acb(0, 1) if order == 1 else acb(0, arb.pi() / (2 * order)).exp()
-
-    def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return A and B on a ball of frequencies, and in its middle, as :meth:`parts_around`.
-
-        If there is a root of s, slopes are in a variable whose imaginary axis is that of s.
-        """
-        with precision(bits):
-            both, slope = self.around(omega * self.turn, bits), self.turn / acb(0, 1)
-            around, middle = (
-                replace(value, a_slope=value.a_slope * slope, b_slope=value.b_slope * slope) for value in both
-            )
-            return around, middle
-
-    def around(self, s: acb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return A and B on a ball and in its middle, as :meth:`parts_around`."""
-        (a, b), (a_mid, b_mid) = self.parts_around(s, bits)
-        return LoopValue(*a, *b), LoopValue(*a_mid, *b_mid)
-
-    def parts_around(self, s: acb, bits: int) -> tuple[Sequence[tuple[acb, acb]], Sequence[tuple[acb, acb]]]:
-        """Return values and slopes in s on a ball, and those in its middle.
-
-        The first values are enclosures by the mean value theorem where these are narrower.
-        """
-        with precision(bits):
-            middle = s.mid()
-            sums = self.evaluator(bits)
-            around = sums.at(expansion(s))
-            centre = sums.at(expansion(middle), around)
-            which = range(len(self.parts))
-            less = sums.largest(which, centre)
-            values = [[_derivatives(sums.value(i, place, less)) for i in which] for place in (around, centre)]
-            off, pairs = s - middle, zip(*values, strict=True)
-            return [(_narrower(x[0], mid[0] + x[1] * off), x[1]) for x, mid in pairs], values[1]
-
-    def is_blurred(self, omega: arb, bits: int = 96) -> bool:
-        """Tell whether next to nothing is known of A or B on a hundredth of a frequency."""
-        around, _ = self.on(omega * arb(1, 0.01), bits)
-        return bool(around.a.contains(0)) or bool(around.b.contains(0))
-
-    def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
-        """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
-        with precision(bits):
-            sums = self.evaluator(bits)
-            at = sums.at(expansion(acb(s.real, s.imag)))
-            less = sums.largest((0, 1), at)
-            a, b = (_derivatives(sums.value(i, at, less)) for i in (0, 1))
-            return complex(a[0].mid()), complex(a[1].mid()), complex(b[0].mid()), complex(b[1].mid())
-
-
 def independent(polynomials: Sequence[fmpz_mpoly]) -> tuple[list[int], list[list[fmpq]]]:
     """Return which polynomials are independent, and for each of these its shares in all of them."""
     monomials = sorted({m for f in polynomials for m in f.monoms()})
@@ -344,12 +193,3 @@ def independent(polynomials: Sequence[fmpz_mpoly]) -> tuple[list[int], list[list
     reduced, rank = matrix.rref()
     rows = [[reduced[i, j] for j in range(len(polynomials))] for i in range(rank)]
     return [next(j for j, share in enumerate(row) if share != 0) for row in rows], rows
-
-
-def _narrower(one: acb, other: acb) -> acb:
-    is_better = not one.is_finite() or other.rad() < one.rad()
-    return other if other.is_finite() and is_better else one
-
-
-def _derivatives(value: Value) -> tuple[acb, acb]:
-    return (value[0], value[1]) if isinstance(value, acb_series) else (value, acb(0))

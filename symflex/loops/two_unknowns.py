@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from flint import arb_series
 
-    from symflex.loops.loop import LoopFunction
+    from symflex.loops.loop_function import LoopFunction
 
     Weights = Callable[[arb], Sequence[arb_series]]
 

@@ -29,7 +29,7 @@ from symflex.library.words import hint_of_type
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
-from symflex.model.reading import read_entries, signed_number
+from symflex.model.reading import has_ports, read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, NumberValue, StringValue, TableValue, parse_with_recovery, read
 from symflex.model.units import lower
@@ -207,14 +207,6 @@ def _matrix(
     if name == "A":
         return tuple((f"A[{i}][{j}]", x) for i, row in enumerate(rows, 1) for j, x in enumerate(row, 1))
     return tuple((f"{name}[{i}]", x) for i, x in enumerate((x for row in rows for x in row), 1))
-
-
-def has_ports(value: Value) -> bool:
-    """Tell whether a block is an ``ss`` that lists what goes in and comes out."""
-    if not isinstance(value, TableValue) or not (value.get("from") or value.get("to")):
-        return False
-    kind = value.get("type")
-    return kind is not None and isinstance(kind.value, StringValue) and kind.value.text.value == "ss"
 
 
 def items_of(value: Value) -> tuple[Value, ...]:

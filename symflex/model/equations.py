@@ -32,9 +32,10 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
-from symflex.model.blocks import has_ports, items_of, matrix_rows
+from symflex.model.blocks import items_of, matrix_rows
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import Signal
+from symflex.model.reading import has_ports
 from symflex.model.spec import TableValue
 from symflex.model.units import lower
 

@@ -11,7 +11,6 @@ from symflex.errors import Diagnostic, nearest
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
-from symflex.model.blocks import has_ports
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
     INPUT_KINDS,
@@ -25,7 +24,7 @@ from symflex.model.model import (
     PlacedBlock,
     Signal,
 )
-from symflex.model.reading import NAME, Reader, read_entries, signed_number
+from symflex.model.reading import NAME, Reader, has_ports, read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, BooleanValue, StringValue, TableValue
 from symflex.quantities import name_hint, parse_unit, unit_of

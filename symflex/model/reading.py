@@ -240,3 +240,11 @@ def literal_value(expression: Expression) -> Fraction | None:
             return None if inner is None else -inner
         case _:
             return None
+
+
+def has_ports(value: Value) -> bool:
+    """Tell whether a block is an ``ss`` that lists what goes in and comes out."""
+    if not isinstance(value, TableValue) or not (value.get("from") or value.get("to")):
+        return False
+    kind = value.get("type")
+    return kind is not None and isinstance(kind.value, StringValue) and kind.value.text.value == "ss"
