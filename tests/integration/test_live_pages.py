@@ -186,6 +186,7 @@ def test_a_page_without_values_says_which_are_missing_and_draws_when_they_are_th
     assert float(pipeline.loads(text).parameters[2].value.nearly) == 70
 
 
+@pytest.mark.slow
 @pytest.mark.needs_module("anywidget")
 @pytest.mark.filterwarnings("ignore")
 def test_a_notebook_shows_the_page_in_a_frame_and_a_widget_knows_its_values(monkeypatch):

@@ -31,8 +31,8 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from symflex.budget import spend
-from symflex.data.fitting.observation import score_covariance
-from symflex.data.fitting.problem import FitProblem, FittedLines
+from symflex.data.fitting.observation import FittedLines, score_covariance
+from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Real, Resonances, Values, Whole
 
 STEPS = 100

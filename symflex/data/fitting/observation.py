@@ -21,17 +21,17 @@ makes leakage harmless to natural frequencies: errors that noise would leave ind
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
-from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.fitting.resonances import Complex, Real, Values, Whole
 
 if TYPE_CHECKING:
-    from symflex.data.fitting.problem import FittedLines
+    from symflex.data.measurement import MeasuredResponse
 
 Places = npt.NDArray[np.intp]
 
@@ -174,3 +174,69 @@ def _shared(lag: int, half_records: int) -> Complex:
     offsets = np.arange(skipped, amplitudes.size) / STEPS_PER_LINE - REACH_IN_LINES
     product = amplitudes[skipped:] * amplitudes[: amplitudes.size - skipped]
     return np.asarray(product * np.exp(1j * np.pi * half_records * offsets), np.complex128)
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLines:
+    """One measured response as the fit sees it."""
+
+    measured: MeasuredResponse  # the lines
+    observation: Observation  # how the lines follow from the response
+    # base and base_at_lines: the known factor where the observation needs it, and on the lines.
+    base: Complex
+    base_at_lines: Complex
+    # shape (n,): Standard deviation of each part over the magnitude; None when there is no coherence.
+    deviation: Real | None
+    is_coherence_used: bool = True
+    # All lines of the measurement, where this is a part of them.
+    whole: FittedLines | None = None
+
+    @property
+    def omega(self) -> Real:
+        """Angular frequencies of the lines [rad/s]."""
+        return self.measured.omega
+
+    @property
+    def ratio(self) -> Complex:
+        """Measured values over the base: what the resonances have to be."""
+        return self.measured.values / self.base_at_lines
+
+    @property
+    def coherence(self) -> Real | None:
+        """The coherence, if there is one that the scatter of lines does not contradict."""
+        return self.measured.coherence if self.is_coherence_used else None
+
+    @property
+    def parts(self) -> int:
+        """How many real numbers each line is: two, or a magnitude alone."""
+        return 1 if self.measured.is_magnitude else 2
+
+    def rest(self, model: Complex) -> Values:
+        """Return how far values of a model are off, real where magnitudes alone were measured."""
+        if self.measured.is_magnitude:
+            return np.asarray(np.abs(model) - np.abs(self.measured.values), np.float64)
+        return np.asarray(model - self.measured.values, np.complex128)
+
+    @property
+    def every(self) -> FittedLines:
+        """All lines of the measurement."""
+        return self.whole or self
+
+    def deviation_of_every(self) -> Real:
+        """Return the standard deviation of each part on all lines: what is left out has its neighbours'."""
+        size = np.abs(self.measured.values)
+        deviation = size if self.deviation is None else self.deviation * size
+        return np.interp(self.every.omega, self.omega, deviation)
+
+    def at(self, places: Whole) -> FittedLines:
+        """Return some of the lines."""
+        observation = self.observation.at(places)
+        return replace(
+            self,
+            measured=self.measured.taken(places),
+            observation=observation,
+            base=self.base if observation.matrix is not None else self.base[places],
+            base_at_lines=self.base_at_lines[places],
+            deviation=None if self.deviation is None else self.deviation[places],
+            whole=self.every,
+        )

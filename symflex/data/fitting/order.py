@@ -25,8 +25,9 @@ from scipy.special import fdtrc
 
 from symflex.budget import TIME_OVER, entered_budget
 from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined, refine, refine_directly
+from symflex.data.fitting.noise import estimated
 from symflex.data.fitting.numerator import FAR_OUTSIDE, STRANGE, over_poles, strange
-from symflex.data.fitting.problem import FitProblem, estimated
+from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Resonances, Whole
 from symflex.data.fitting.starts import poles_from_aaa, poles_from_vector_fitting, relocated, start_from_peaks
 from symflex.errors import BudgetError, Diagnostic

@@ -27,7 +27,8 @@ import numpy as np
 from scipy.signal import medfilt
 
 from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
-from symflex.data.fitting.problem import FitProblem, FittedLines
+from symflex.data.fitting.observation import FittedLines
+from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values
 
 Verdict = Literal["minimum", "undetermined", "nonminimum", "assumed"]

@@ -1,13 +1,4 @@
-"""What is fitted: measured lines, their accuracy, and the known function the resonances are multiplied by.
-
-Without coherence the noise is estimated from what a function without structure leaves of the lines. A
-rational function with more poles than are looked for, and powers of s of its own, follows whatever a
-laboratory measures; what it leaves is noise. Its variance is described by nonnegative shares of the
-response's own power, as multiplicative errors and leakage have it, and of powers of the frequency, as sensors
-that are integrated or differentiated have them. The shares are those of greatest likelihood for complex
-Gaussian errors, found by multiplicative steps that never lower it (Fevotte & Idier, Neural Computation 23(9),
-2011: the Itakura-Saito divergence).
-"""
+"""What is fitted: measured lines, and the known function the resonances are multiplied by."""
 
 from __future__ import annotations
 
@@ -16,99 +7,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from symflex.data.fitting.lines import telling_lines, written_step
-from symflex.data.fitting.observation import Observation, observe
-from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Values, Whole
-from symflex.data.fitting.starts import generous_fit
+from symflex.data.fitting.lines import telling_lines
+from symflex.data.fitting.observation import FittedLines, Observation, observe
+from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
 from symflex.data.measurement import MeasuredResponse
 
 FEWEST_FOR_SLOPE = 5
 """Lines from which a power of s is guessed."""
-STEPS = 60
-"""Multiplicative steps for the shares of the variance; none of them makes it worse."""
-POWERS = (0, 2, 4, -2, -4)
-"""Of the frequency, by which the variance of the noise is described."""
-LEAST = 1e-9
-"""Relative deviation below which no line is taken to be known: a thousandth of it is rounding on the way."""
 EXACT = 3e-6
 """Relative deviation of six digits: no instrument has it."""
-MOST_PAIRS = 14
-"""Of poles of the function without structure, where the number of resonances is open."""
-LINES_PER_PARAMETER = 2.0
-"""Real values that each parameter of that function takes at least."""
-PATIENCE = 2
-"""Numbers of pairs tried after the best one."""
-FEWEST = 5
-"""Lines from which the noise is guessed at all."""
-DECIBEL, DEGREE = np.log(10) / 20, np.pi / 180
-LARGEST = 20.0
-"""Power of an error, over what is expected of it, beyond which it counts as no more than this."""
-
-
-@dataclass(frozen=True, eq=False)
-class FittedLines:
-    """One measured response as the fit sees it."""
-
-    measured: MeasuredResponse  # the lines
-    observation: Observation  # how the lines follow from the response
-    # base and base_at_lines: the known factor where the observation needs it, and on the lines.
-    base: Complex
-    base_at_lines: Complex
-    # shape (n,): Standard deviation of each part over the magnitude; None when there is no coherence.
-    deviation: Real | None
-    is_coherence_used: bool = True
-    # All lines of the measurement, where this is a part of them.
-    whole: FittedLines | None = None
-
-    @property
-    def omega(self) -> Real:
-        """Angular frequencies of the lines [rad/s]."""
-        return self.measured.omega
-
-    @property
-    def ratio(self) -> Complex:
-        """Measured values over the base: what the resonances have to be."""
-        return self.measured.values / self.base_at_lines
-
-    @property
-    def coherence(self) -> Real | None:
-        """The coherence, if there is one that the scatter of lines does not contradict."""
-        return self.measured.coherence if self.is_coherence_used else None
-
-    @property
-    def parts(self) -> int:
-        """How many real numbers each line is: two, or a magnitude alone."""
-        return 1 if self.measured.is_magnitude else 2
-
-    def rest(self, model: Complex) -> Values:
-        """Return how far values of a model are off, real where magnitudes alone were measured."""
-        if self.measured.is_magnitude:
-            return np.asarray(np.abs(model) - np.abs(self.measured.values), np.float64)
-        return np.asarray(model - self.measured.values, np.complex128)
-
-    @property
-    def every(self) -> FittedLines:
-        """All lines of the measurement."""
-        return self.whole or self
-
-    def deviation_of_every(self) -> Real:
-        """Return the standard deviation of each part on all lines: what is left out has its neighbours'."""
-        size = np.abs(self.measured.values)
-        deviation = size if self.deviation is None else self.deviation * size
-        return np.interp(self.every.omega, self.omega, deviation)
-
-    def at(self, places: Whole) -> FittedLines:
-        """Return some of the lines."""
-        observation = self.observation.at(places)
-        return replace(
-            self,
-            measured=self.measured.taken(places),
-            observation=observation,
-            base=self.base if observation.matrix is not None else self.base[places],
-            base_at_lines=self.base_at_lines[places],
-            deviation=None if self.deviation is None else self.deviation[places],
-            whole=self.every,
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,120 +175,3 @@ class StructurelessFit:
 
     cost: float
     parameters: int
-
-
-def with_rough_noise(problem: FitProblem) -> FitProblem:
-    """Return the problem with deviations guessed from how lines differ from their neighbours' line.
-
-    Curvature of peaks is taken for noise too, so that these only weigh less than they might; lines that noise
-    drowns no longer weigh as if they were exact.
-    """
-    lines = []
-    for line in problem.lines:
-        if line.deviation is not None or line.omega.size < FEWEST:
-            lines.append(line)
-            continue
-        x, y = line.omega, line.measured.values
-        share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
-        between = y[1:-1] - (1 - share) * y[:-2] - share * y[2:]
-        power = np.abs(between) ** 2 / (2 * (1 + share**2 + (1 - share) ** 2))
-        size = np.abs(y)
-        variance = _variance(np.pad(power, 1, mode="edge"), x, size)
-        lines.append(replace(line, deviation=np.maximum(np.sqrt(variance) / size, LEAST)))
-    return replace(problem, lines=tuple(lines))
-
-
-def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitProblem:
-    """Return the problem with deviations estimated for the lines that have no coherence.
-
-    So far they are rough. ``count`` resonances are looked for, None when that is open. The poles of the
-    function without structure are found on ``most_lines`` lines of each response, and its values on all.
-    """
-    if all(line.coherence is not None and line.parts > 1 for line in problem.lines):
-        return problem
-    thin = problem.thinned(most_lines)
-    size = thin.size
-    best: tuple[float, int, Complex] | None = None
-    worse = 0
-    for pairs in range(1 if count is None else count, MOST_PAIRS if count is None else count + 4):
-        values, parameters, poles = generous_fit(thin, pairs)
-        if parameters * LINES_PER_PARAMETER > size and best is not None:
-            break
-        rest = 0.0
-        for v, line in zip(values, thin.lines, strict=True):
-            scale = 1.0 if line.deviation is None else line.deviation
-            rest += float(np.sum(np.abs(line.rest(v) / np.abs(line.measured.values) / scale) ** 2))
-        score = size * np.log(max(rest, LEAST**2 * size)) + parameters * np.log(size)
-        if best is None or score < best[0]:
-            best, worse = (float(score), pairs, poles), 0
-        else:
-            worse += 1
-        if worse > PATIENCE:
-            break
-    if best is None:
-        return problem
-    values, parameters, _ = generous_fit(problem, best[1], best[2])
-    return estimated(problem.rephased(values), values, parameters)
-
-
-def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> FitProblem:
-    """Return the problem with deviations of what these values leave, and how well they describe the lines."""
-    freedom = max(1 - parameters / problem.size, 0.2)
-    lines, cost = [], 0.0
-    for model, line in zip(values, problem.lines, strict=True):
-        deviation = line.deviation
-        if deviation is None or line.coherence is None:
-            power = np.abs(line.rest(model)) ** 2 / line.parts
-            variance = _variance(power, line.omega, np.abs(model), rounding(line, model)) / freedom
-            size = np.abs(line.measured.values)
-            deviation = np.maximum(np.sqrt(variance) / size, LEAST)
-        lines.append(replace(line, deviation=deviation))
-        rest = np.abs(line.rest(model)) / (deviation * np.abs(line.measured.values))
-        cost += float(np.sum(rest**2))
-    return replace(
-        problem, lines=tuple(lines), is_noise_estimated=True, reference=StructurelessFit(cost, parameters)
-    )
-
-
-def rounding(line: FittedLines, model: Complex) -> Real:
-    """Return the variance of each part that rounded frequencies, and rounded values, have at most.
-
-    Frequencies may be rounded in Hz or in rad/s, values in any of the ways in which files write them.
-    """
-    omega, values = line.omega, line.measured.values
-    size, turn = np.abs(values), np.angle(values)
-    written = (
-        (1.0, values.real), (1.0, values.imag), (1.0, size), (size * DECIBEL, np.log(size) / DECIBEL),
-        (size, turn), (size * DEGREE, turn / DEGREE),
-    )  # fmt: skip
-    rows = [np.sum([(scale * written_step(numbers)) ** 2 for scale, numbers in written], axis=0)]
-    if line.every.measured.spacing_hz is None:
-        steps = np.hypot(written_step(omega), 2 * np.pi * written_step(omega / (2 * np.pi)))
-        rows.append(np.abs(np.gradient(model, omega) * steps) ** 2)
-    return np.stack([row for row in rows if row.any()] or [np.zeros(0)]) / 24  # of two parts, a twelfth
-
-
-def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -> Real:
-    """Return the smooth expectation of the power of each part on every line.
-
-    Each row of ``known`` is a part of it, of which at most the whole is there.
-    """
-    x = omega / np.exp(np.mean(np.log(omega)))
-    unit = float(np.mean(size**2))  # whose square may be no number
-    power = power / unit
-    shapes = np.stack([size**2 / unit, *(x ** float(p) for p in POWERS)])
-    shapes = shapes / np.mean(shapes, axis=1, keepdims=True)
-    most = np.full(shapes.shape[0], np.inf)
-    if known is not None and known.size:
-        shapes, most = np.concatenate((shapes, known / unit)), np.append(most, np.ones(known.shape[0]))
-    # The square of a variance has to be a number, of exact data too.
-    floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny ** 0.4)
-    power = np.maximum(power, floor)
-    shares = np.full(shapes.shape[0], float(np.mean(power)) / shapes.shape[0])
-    for _ in range(STEPS):
-        expected = shares @ shapes
-        # Gaussian errors reach this once in a billion lines; what is larger is no noise.
-        bounded = np.minimum(power, LARGEST * expected)
-        shares = shares * np.sqrt((shapes @ (bounded / expected**2)) / (shapes @ (1 / expected)))
-        shares = np.minimum(shares, most)
-    return np.asarray(unit * (shares @ shapes), np.float64)
