@@ -34,6 +34,7 @@ if TYPE_CHECKING:
         BoundTransferFunction,
         Fit,
         Form,
+        MeasuredResponse,
         Model,
         ModeShape,
         NestedTransferFunction,
@@ -49,10 +50,10 @@ if TYPE_CHECKING:
         from_matrices,
         load,
         loads,
+        read_measurement,
         write_report,
     )
     from symflex.budget import Budget
-    from symflex.data.measurement import MeasuredResponse, read_measurement
     from symflex.errors import SymflexError
 
 __version__ = "1.0.0"
@@ -87,9 +88,7 @@ __all__ = [
 
 _ELSEWHERE = {
     "Budget": "symflex.budget",
-    "MeasuredResponse": "symflex.data.measurement",
     "SymflexError": "symflex.errors",
-    "read_measurement": "symflex.data.measurement",
 }
 """Modules of the public names that are not in ``symflex.api``."""
 

@@ -4,6 +4,7 @@ from symflex.api.fitted import Fit, fit
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
 from symflex.api.report import WrittenReport, write_report
+from symflex.api.response import MeasuredResponse, read_measurement
 from symflex.api.root import Mode, Residue, Root, Sensitivity
 from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace

@@ -12,6 +12,7 @@ from symflex import pipeline
 from symflex.api.analyses import budget_of
 from symflex.api.face import face_of
 from symflex.api.plots import plot_loop
+from symflex.api.response import MeasuredResponse
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import refuse_attribute
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
     from symflex import model as model_room
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
-    from symflex.data.measurement import MeasuredResponse
     from symflex.errors import Diagnostic
     from symflex.figures import AxesGiven
     from symflex.loops import DynamicColocation
@@ -551,15 +551,15 @@ class Model:
         >>> import symflex
         >>> model = Model(inputs={"u": {}}, outputs={"a": "s^2*u/(s^2 + 3*s + 4000)"})
         >>> data = model.measure("a", "u", (2, 40), 0.1)
-        >>> data.is_synthetic, data.frequency_hz.size
-        (True, 381)
+        >>> data.is_synthetic, data.frequency_hz.size, len(data.plot().axes)
+        (True, 381, 2)
         >>> symflex.fit(data, modes=1, slope=2)
         <Fit to synthetic data: 10.1 Hz>
         """
         from symflex.analysis.measured import measure
 
         given = MeasureOptions(f"{output}/{input}", "", band, spacing, averages, noise, rolloff, seed)
-        return measure(self.resolved, given)
+        return face_of(MeasuredResponse, measure(self.resolved, given))
 
     def sweep(
         self,

@@ -7,12 +7,17 @@ from typing import TYPE_CHECKING
 
 from symflex.analysis import response as response_room
 from symflex.analysis.time_response import EnclosedResponse
+from symflex.api.face import face_of
+from symflex.data import measurement
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.data.measurement import Estimate
     from symflex.figures import AxesGiven
 
 LARGEST_DRAWING = 4000
@@ -89,3 +94,47 @@ class TimeResponse(EnclosedResponse):
         from symflex.figures import render
 
         return render(self.plot(), "svg").decode() if 1 < len(self.times) <= LARGEST_DRAWING else None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredResponse(measurement.MeasuredResponse):
+    """A measured frequency response; see :class:`symflex.data.measurement.MeasuredResponse`."""
+
+    def plot(self, *, ax: AxesGiven | None = None) -> Figure:
+        """Return magnitude and, if it was measured, phase from -180 to 180 deg, on the lines.
+
+        Two axes of your own, ``ax``, get them in your own style.
+
+        Raises
+        ------
+        UsageError
+            SF902 for less than two lines, and for too many axes or too few.
+
+        Examples
+        --------
+        >>> figure = MeasuredResponse("X/F", [1.0, 2.0, 4.0], [1, -1j, -0.1], unit="m/N").plot()
+        >>> [line.get_ydata().tolist() for axes in figure.axes for line in axes.get_lines()]
+        [[0.0, 0.0, -20.0], [0.0, -90.0, 180.0]]
+        """
+        from symflex.figures import draw_measured  # imports matplotlib
+
+        if not self.frequency_hz[1:].size:
+            raise UsageError(Diagnostic("SF902", "a drawing of a response needs at least two frequencies"))
+        return draw_measured(self, ax=ax)
+
+
+def read_measurement(
+    path: str | Path,
+    columns: str = "",
+    estimate: Estimate | None = None,
+    axis: tuple[float, float] | None = None,
+) -> tuple[MeasuredResponse, ...]:
+    """Read measured responses that draw themselves; see :func:`symflex.data.measurement.read_measurement`.
+
+    Examples
+    --------
+    >>> read_measurement("derivations/eppinger1988/data/synthetic_figure_3.csv")
+    (<MeasuredResponse A_tip/V_cmd: synthetic, 393 lines, 2 to 100 Hz>,)
+    """
+    read = measurement.read_measurement(path, columns, estimate, axis)
+    return tuple(face_of(MeasuredResponse, one) for one in read)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
@@ -48,19 +49,27 @@ SMALL_POINTS, NAME_POINTS = 6.5, 5.5
 DATA_COLOUR: Final = "#555555"
 
 
-def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128], unit: str = "") -> Figure:
-    """Draw a model over a measured response.
+def draw_measured(
+    measured: MeasuredResponse, model: Complex | None = None, unit: str = "", ax: AxesGiven | None = None
+) -> Figure:
+    """Draw a measured response, and over it a model if there is one; on axes ``ax`` of the user's own.
 
     ``model`` is the model on the measured lines; ``unit`` is that of the values, where the data do not say.
     Synthetic data are called so in the title.
     """
-    with paper_style():
-        top, bottom = magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
-        phase = _unwrapped(model)
-        _draw_data(top, bottom, measured, model, phase)
-        top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
-        bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
-        return _finish(top, bottom, measured, unit, 2, is_new=True)
+    own = axes_of(ax)
+    with nullcontext() if own else paper_style():
+        top, bottom = Canvas(axes=own).own_axes(2) if own else magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
+        if model is None:
+            _draw_data(top, bottom, measured, measured.values, np.degrees(np.angle(measured.values)))
+            if measured.is_magnitude:
+                bottom.annotate("not measured", (0.5, 0.5), xycoords="axes fraction", ha="center")
+        else:
+            phase = _unwrapped(model)
+            _draw_data(top, bottom, measured, model, phase)
+            top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
+            bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
+        return _finish(top, bottom, measured, unit, 2, is_new=not own)
 
 
 def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | None = None) -> Figure:

@@ -11,6 +11,7 @@ MODULE = re.compile(r"`([a-z]\w\w+(?:/\w\w+)+(?:\.py)?)`")
 NO_MODULES = {"num/den"}
 ONE_IDEA = {
     "BoundTransferFunction",
+    "MeasuredResponse",
     "Model",
     "NestedTransferFunction",
     "PoleZeroMap",

@@ -64,6 +64,7 @@ DRAWINGS = {
     "nyquist of a loop": (1, lambda m, h, ax: m.nyquist("K", ax=ax)),
     "mode shape": (1, lambda m, h, ax: h.mode_shape(1).plot(ax=ax)),
     "response": (2, lambda m, h, ax: h.frequency_response([1.0, 2.0, 90.0]).plot(ax)),
+    "measurement": (2, lambda m, h, ax: symflex.MeasuredResponse("X/F", [1.0, 2.0], [1.0, -1j]).plot(ax=ax)),
 }
 
 
@@ -139,6 +140,19 @@ def test_values_in_place_of_declared_ones_move_the_locus(loop):
 
 def test_less_than_two_frequencies_are_no_figure(actuator):
     assert refusal(actuator.frequency_response([1.0]).plot) == "UsageError SF902"
+    assert refusal(symflex.MeasuredResponse("X/F", [1.0], [2.0]).plot) == "UsageError SF902"
+
+
+def test_measured_files_and_bands_of_them_draw_what_they_hold(tmp_path):
+    file = tmp_path / "frf.csv"
+    file.write_text("frequency_hz,mag_db,phase_deg\n1,20,0\n2,0,-90\n3,-20,170\n4,-40,-170\n")
+    (whole,) = symflex.read_measurement(file)
+    top, bottom = whole.between(2, 4).plot().axes
+    assert top.get_lines()[0].get_ydata() == pytest.approx([0, -20, -40])
+    assert bottom.get_lines()[0].get_ydata() == pytest.approx([-90, 170, -170])
+    level = symflex.MeasuredResponse("p", [1.0, 2.0], [1.0, 10.0], is_magnitude=True).plot()
+    assert not level.axes[1].get_lines()
+    assert level.axes[1].texts[0].get_text() == "not measured"
 
 
 def test_a_mode_in_which_nothing_is_drawn_says_so():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -126,11 +126,11 @@ class MeasuredResponse:
         """Return the rms error of the model's phase on the lines [deg]."""
         return float(np.degrees(np.sqrt(np.mean(np.angle(model / self.values) ** 2))))
 
-    def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:
+    def between(self, low_hz: float, high_hz: float) -> Self:
         """Return the lines within a band [Hz], including its ends."""
         return self.taken(np.flatnonzero((self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)))
 
-    def taken(self, lines: npt.NDArray[np.intp]) -> MeasuredResponse:
+    def taken(self, lines: npt.NDArray[np.intp]) -> Self:
         """Return the lines with these indices, in this order."""
         coherence = None if self.coherence is None else self.coherence[lines]
         return replace(
