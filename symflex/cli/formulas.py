@@ -122,10 +122,11 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
-    Without --tf, all are printed. Strings in JSON follow the expression grammar of specifications.
+    Without --tf, all are printed. A long denominator that several share is printed once, as D. Strings in
+    JSON follow the expression grammar of specifications, with every denominator in full.
     """
     from symflex import pipeline
-    from symflex.print.forms import print_forms, terms_to_print
+    from symflex.print.forms import print_forms, terms_to_print, with_shared_denominators
 
     if given.width is not None and (given.as_json or given.format != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
@@ -149,9 +150,11 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     forms, sentences = print_forms(derived, given.form, given.digits)
     for sentence in sentences:
         note(sentence)
-    entries = list(zip(derived, forms, strict=True))
+    is_json = given.as_json or given.format == "json"
+    printed_forms = forms if is_json else with_shared_denominators(derived, forms)
+    entries = list(zip(derived, printed_forms, strict=True))
     # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.
-    if given.as_json or given.format == "json":
+    if is_json:
         from symflex.print.json_format import derive_document
 
         emit_json(derive_document(entries))

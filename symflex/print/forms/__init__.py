@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import Name, Number, Sum, nodes, quotient
+from symflex.expressions import Name, Number, Sum, format_expression, names, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
+from symflex.print.forms.naming import Naming, names_of
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.polynomial import (
     constant_form,
@@ -97,6 +98,8 @@ SHARED = 5
 """Characters that a factor before a sum is worth which all its terms have."""
 FEW = 60
 """Terms up to which every form is arranged: that takes some hundredths of a second."""
+ONE_LINE = 60
+"""Characters of a denominator beyond which functions that share it print it once."""
 MORE = 1.25
 """How many times the terms of the form with the fewest another one may have, and still print shorter."""
 
@@ -279,6 +282,55 @@ def print_forms(
     return tuple(printed), tuple(sentences)
 
 
+def with_shared_denominators(
+    tfs: Sequence[AnyTransferFunction], forms: Sequence[PrintedForm]
+) -> tuple[PrintedForm, ...]:
+    """Return forms in which each long denominator that several share is a name, which the first explains.
+
+    All of them are read back with that name. Raises InternalError: SF992 as :func:`print_form` does.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.print.text import form_text
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... inputs.u = {}
+    ... signals.p = "u/(mass*s^2*(T*s + 1) + damping*s*(T*s + 1) + stiffness + integral_gain/s)"
+    ... outputs = { P = "p", V = "s*p" }
+    ... parameters = { mass = {}, T = {}, damping = {}, stiffness = {}, integral_gain = {} }
+    ... ''')
+    >>> tfs = pipeline.derive_all(model)
+    >>> for tf, form in zip(tfs, with_shared_denominators(tfs, print_forms(tfs)[0])):
+    ...     print(form_text(tf, form))
+    P/u = s/D
+      where D = s^2*(T*s + 1)*(mass*s + damping) + stiffness*s + integral_gain
+    V/u = s^2/D
+    """
+    groups: dict[object, list[int]] = {}
+    for i, (tf, form) in enumerate(zip(tfs, forms, strict=True)):
+        if tf.model.root is None and form.name not in DECIMAL_FORMS:
+            meaning = form.den, reachable((form.den,), form.where), form.laws, form.closed
+            groups.setdefault(meaning, []).append(i)
+    shared, naming = list(forms), Naming(())
+    for tf, form in zip(tfs, forms, strict=True):
+        parts = (form.num, form.den, *(e for _, e in (*form.where, *form.laws, *form.closed)))
+        naming.keep((*names_of(tf.model), *(n.name for e in parts for n in names(e))))
+        naming.keep(name for name, _ in (*form.where, *form.laws))
+    if len(groups) > 1:
+        naming.keep("D")  # LaTeX calls every long denominator D(s) that has no name
+    for first, *others in groups.values():
+        den = forms[first].den
+        if not others or len(format_expression(den)) <= ONE_LINE:
+            continue
+        (name,) = naming.take("D")
+        for i in (first, *others):
+            named = replace(forms[i], den=Name(name), where=((name, den), *forms[i].where))
+            read_back(tfs[i], named)
+            shared[i] = named if i == first else replace(named, where=forms[i].where)
+    return tuple(shared)
+
+
 def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
     """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
 
@@ -334,4 +386,5 @@ __all__ = [
     "print_forms",
     "terms_to_print",
     "with_hidden",
+    "with_shared_denominators",
 ]

@@ -1,8 +1,10 @@
+import re
+
 import pytest
 
 from symflex import pipeline
 from symflex.print.forms.printed import RATIONAL, forms_of
-from tests.contract.exact import read
+from tests.contract.exact import Point, read, value_of
 from tests.unit.cli.commands import TWO_MASS, WORKED
 from tests.unit.print.residues import point_for
 
@@ -99,6 +101,34 @@ def test_functions_that_lack_a_form_are_printed_in_their_own_with_a_note_unless_
     assert done.err.strip() == "X/G has no krylov form: printed in its definitions form"
     alone = shell("derive", "mixed.toml", "--form", "krylov", "--tf", "X/G")
     assert (alone.code, "SF902" in alone.err) == (2, True)
+
+
+LOOP = """symflex = 1
+parameters = { mass = {}, T = {}, damping = {}, stiffness = {}, integral_gain = {} }
+inputs.u = {}
+signals.p = "u/(mass*s^2*(T*s + 1) + damping*s*(T*s + 1) + stiffness + integral_gain/s)"
+outputs.P = "p"
+outputs.V = "s*p"
+"""
+BY_HAND = "(mass*s^3 + damping*s^2)*(T*s + 1) + stiffness*s + integral_gain"
+
+
+def test_a_long_denominator_of_several_functions_is_printed_once(shell):
+    values = {"mass": 2, "T": 3, "damping": 5, "stiffness": 7, "integral_gain": 11, "s": 13, "D": 3}
+    by_hand = value_of(read(BY_HAND), Point(1, **values))
+    other = LOOP + f'outputs.Y = "u/(1 + s*({BY_HAND}))"\n'
+    # A parameter may be called D already, and columns of LaTeX call every other long denominator D(s).
+    for text, name in ((LOOP, "D"), (LOOP.replace("T", "D"), "D_1"), (other, "D_1")):
+        (shell.folder / "loop.toml").write_text(text)
+        done = shell("derive", "loop.toml")
+        ((found, den),) = re.findall(r"where (\S+) = (.*)", done.out)
+        assert (found, value_of(read(den), Point(1, **values))) == (name, by_hand)
+        assert re.findall(r"^ +(\S+)$", done.out, re.MULTILINE).count(name) == 2
+        latex = shell("derive", "loop.toml", "--format", "latex", "--width", "ieee").out
+        label = name.replace("_1", "_{1}")
+        assert (latex.count(f"}}{{{label}}}"), latex.count(rf"{label} &=")) == (2, 1)
+    entries = shell("derive", "loop.toml", "--json").json["transfer_functions"]
+    assert [value_of(read(e["den"]), Point(1, **values)) for e in entries[:2]] == [by_hand, by_hand]
 
 
 def chain(count):
