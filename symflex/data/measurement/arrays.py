@@ -25,6 +25,7 @@ from symflex.data.measurement.array_files import (
 from symflex.data.measurement.columns import (
     CROSS,
     WITHOUT_AXIS,
+    WITHOUT_TIME,
     Assembled,
     ColumnMeaning,
     DataColumn,
@@ -33,6 +34,7 @@ from symflex.data.measurement.columns import (
     columns_asked,
     meaning_of,
     names_of,
+    option_in_time,
     unit_by_round_ends,
 )
 from symflex.data.measurement.isolated import read_isolated
@@ -372,6 +374,13 @@ def matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
     return None
 
 
+def largest_matrix(arrays: Arrays) -> tuple[str, Array]:
+    """Return the largest matrix of real numbers, its longer side down, empty if there is none."""
+    real = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.ndim == 2 and min(a.shape) > 1}  # noqa: PLR2004
+    key, matrix = max(real.items(), key=lambda item: item[1].size, default=("", np.empty((0, 0))))
+    return key, matrix if len(matrix) >= matrix.shape[1] else matrix.T
+
+
 def _goes_up(array: Array) -> bool:
     with np.errstate(all="ignore"):
         steps = np.diff(array.real)
@@ -422,8 +431,12 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         ]
         message = f"'{name}' has no array {what}; it has {listed_names(shapes) or 'none'}"
         option = f"--columns f={next(iter(named or rising), 'NAME')},h={next(iter(complexes), 'NAME')}"
-        hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=)"
-        raise DataError(Diagnostic("SF602", message, None, hint if rising else WITHOUT_AXIS))
+        hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=; or t=, u=, y=)"
+        key, matrix = largest_matrix(arrays)
+        timed = option_in_time(list(matrix.T)) if key else ""
+        timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format("u=NAME,y=NAME")
+        alone = WITHOUT_AXIS if complexes else f"{timed}; {WITHOUT_AXIS}"
+        raise DataError(Diagnostic("SF602", message, None, hint if rising else alone))
     ((f, h),) = pairs
     own = f.rpartition(".")[2].lower()
     guesses = [f"'{h}' is taken as the values, the only complex array as long as '{f}'"]

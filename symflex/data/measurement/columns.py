@@ -104,7 +104,7 @@ _SUFFIX = re.compile(
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
-WITHOUT_TIME: Final = "of a record in time, write the sampling time above the columns, as in '# dt: 0.01 s'"
+WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {},dt=SECONDS"
 WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ say them"
 UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
@@ -123,6 +123,8 @@ MOST_LISTED: Final = 6
 """Columns that are not used and are listed by name."""
 ROUNDED_COHERENCE: Final = 1.01
 """Up to which coherence was rounded upwards."""
+EVENLY, HELD = 0.02, 0.1
+"""Median deviation of the steps of a time, of their median; share of equal neighbours that signals have."""
 FILLED: Final = 0.95
 SAME_BAND: Final = 0.5
 """Share of the lines of each sweep in the band that all of them cover; less are segments of one."""
@@ -961,8 +963,12 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
     steps = np.sign(np.diff(columns[axis].numbers.real))
     most = max(np.sum(steps > 0), np.sum(steps < 0))
-    if not columns[axis].meaning.kind and most < MOST_ALIKE * steps.size:
-        return WITHOUT_TIME
+    is_counter = not steps.all() and np.mean(np.diff(columns[axis].numbers) == 1) > MOST_ALIKE
+    if not columns[axis].meaning.kind and (is_counter or most < MOST_ALIKE * steps.size):
+        return WITHOUT_TIME.format(signals([c.numbers for c in columns]))
+    is_open = not columns[axis].name and steps.size >= FEWEST_TO_DECIDE
+    timed = option_in_time([c.numbers for c in columns[axis:]], axis) if is_open else ""
+    is_held = any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
     open_ones: list[int] = []
     for i, c in enumerate(columns):
         if (
@@ -984,15 +990,33 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     readings = _likely(columns, axis, open_ones, UNDECIDED if pair else UNDECIDED / 3)
     if readings:
         options = [option(*zip(words, pair, strict=True)) for words, pair in readings]
-        if not columns[axis].name and columns[axis].numbers[0] == 0:
-            options += ["--columns t,u,y of a record in time"]
+        options = [o for o in ([timed, *options] if is_held else [*options, timed]) if o]
         return f"say what the columns are: {', or '.join(options)}"
     sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
     if not sizes:
         return "a phase alone is no response: save the magnitude too" if open_ones else HINT
     i = next((i for i in sizes if columns[i].meaning.kind), sizes[0])
     options = [option((word, i)) for word in ("mag", "mag_db", "psd") if _may_be(columns[i], word)]
-    return f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"
+    alone = f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"
+    return f"say what the columns are: {timed}, or {alone}" if timed else alone
+
+
+def signals(columns: Sequence[npt.NDArray[Any]]) -> str:
+    """Return the words of ``--columns`` for an input and an output: columns that change and do not count."""
+    do_count = [np.sum(np.diff(x) == 1) > MOST_ALIKE * x.size for x in columns]
+    changing = [i for i, x in enumerate(columns) if np.ptp(x.real) and not do_count[i]]
+    places = dict(zip(changing, "uy" if len(changing) > 1 else "y", strict=False))
+    return ",".join(places.get(i, "-") for i in range(max(places, default=-1) + 1)) or "y"
+
+
+@np.errstate(all="ignore")
+def option_in_time(columns: Sequence[npt.NDArray[Any]], before: int = 0) -> str:
+    """Return the option that reads columns as a record in time, nothing where the first is no time."""
+    times = columns[0].real
+    steps, usual = np.diff(times), np.median(np.diff(times))
+    if times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual:
+        return ""
+    return f"--columns {'-,' * before}t,{signals(columns[1:])} of a record in time"
 
 
 def _is_same(values: Real, other: Real) -> bool:

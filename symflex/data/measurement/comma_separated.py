@@ -20,6 +20,7 @@ from symflex.data.measurement.columns import (
     HINT,
     UNITS,
     WITHOUT_AXIS,
+    WITHOUT_TIME,
     Assembled,
     ColumnMeaning,
     DataColumn,
@@ -91,7 +92,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     blocks = table.blocks()
     if not blocks:
         are_alone = sum(number(line, table.decimal) is not None for line in table.lines) >= FEWEST_ROWS
-        hint = WITHOUT_AXIS if are_alone else HINT
+        hint = f"{WITHOUT_AXIS}; {WITHOUT_TIME.format('y')}" if are_alone else HINT
         raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, hint))
     if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
@@ -251,7 +252,7 @@ def _responses(
             columns = columns + others[1:]
     if asked:
         meanings = columns_asked(asked, len(columns), [c.name for c in columns])
-        better = re.search(r"--columns ([^\s,]+(?:,[^\s,]+)*)", ask(columns))
+        better = re.search(r"--columns (?![-,]*t,)([^\s,]+(?:,[^\s,]+)*)", ask(columns))
         if better and better[1] != asked and {"real", "phase"} & {m.kind for m in meanings}:
             places = {tuple(bool(w.strip("- ")) for w in words.split(",")) for words in (asked, better[1])}
             if len(places) == 1 or not header:

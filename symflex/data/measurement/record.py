@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.arrays import arrays_in, format_of
+from symflex.data.measurement.arrays import arrays_in, format_of, largest_matrix
 from symflex.data.measurement.columns import meaning_of
 from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
-from symflex.data.measurement.measured_response import MAX_LINES, are_few
+from symflex.data.measurement.measured_response import MAX_LINES, are_few, listed_names
 from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
 from symflex.errors import DataError, Diagnostic, UsageError
 
@@ -104,17 +104,19 @@ class TimeRecord:
 def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecord | None:
     """Return the record that a file holds, ``None`` if its columns do not say time.
 
-    ``asked`` is what ``--columns`` says: ``t,u,y``, ``t_ms,-,u,y``. SF602 for columns without a value; SF603
-    values that are no numbers; SF604 times that do not increase; SF605 too few samples.
+    ``asked`` is what ``--columns`` says: ``t,u,y``, ``t_ms,-,u,y``, ``u,y,dt=0.01``, ``t=NAME,y=NAME``.
+    SF602 to SF605: columns without a value, what is no number, times that do not increase, too few samples.
     """
-    words = [word.strip().lower() for word in asked.split(",")] if asked else []
-    is_asked = any(word.partition("_")[0] in ("t", "time") for word in words)
-    if asked and not is_asked:
+    given = [word.strip() for word in asked.split(",")] if asked else []
+    told = next((word for word in given if word.lower().startswith("dt=")), "")
+    words = [word for word in given if word != told]
+    if asked and not (told or any(re.fullmatch(r"(?:t|time)(?:[_=].*)?", word, re.I) for word in words)):
         return None
     suffix = format_of(name, data)
     if suffix in ARRAYS:
-        return _of_arrays(arrays_in(name, data, suffix), name, stem)
-    if not is_asked and not _may_be_record(data):
+        arrays = arrays_in(name, data, suffix)
+        return _asked_arrays(arrays, words, told, name, stem) if asked else _of_arrays(arrays, name, stem)
+    if not asked and not _may_be_record(data):
         return None
     table = TextTable.of(name, data)
     first = next((i for i in range(min(SEARCHED, len(table.lines))) if _is_row(table, i)), None)
@@ -122,9 +124,13 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         return None
     width = len(cut(table.lines[first], table.delimiter))
     guesses = list(table.guesses)
-    if is_asked:
-        return _asked(table, first, width, words, stem, guesses)
     names, at, unit, start = named_time(table, first)
+    if asked:
+        columns, lines = _numbers(table, first, width, guesses)
+        # A plain t has the unit of the header.
+        columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
+        channels = list(zip(_names(table, first, width) or [*words, *["-"] * width], columns, strict=False))
+        return _asked(channels, words, told, stem, guesses, (table, lines))
     step = None if names else _told_step(table, first)
     if not names and step is None:
         return None
@@ -132,6 +138,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         return None
     cells = names or _names(table, first, width) or [f"channel {i + 1}" for i in range(width)]
     columns, lines = _numbers(table, first, width, guesses)
+    if names and np.isfinite(columns[at]).sum() == 1 and np.nansum(columns[at]) > 0:  # the sampling time
+        names, step = [], float(np.nansum(columns[at])) * float(unit)
     if names:
         times = columns[at] * float(unit) + float(start)
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i != at]
@@ -141,9 +149,9 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None
-        guesses.append(f"the samples are {step:.6g} s apart, as the lines above say")
+        guesses.append(f"the samples are {step:.6g} s apart, as the file says")
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width])]
-    return _sorted(channels, step, stem, name, guesses)
+    return _sorted(channels, step, stem, name, guesses, "t,u,y" if names else f"u,y,dt={step:.6g}")
 
 
 def _is_frequency(name: str) -> bool:
@@ -189,16 +197,14 @@ def _told_step(table: TextTable, first: int) -> float | None:
             if not told or (unit := told[2].lower()) not in {"", *units}:
                 continue
             value = number(told[1], table.decimal)
-            if isinstance(value, float) and np.isfinite(value) and value > 0:
-                factor = float(SECONDS.get(unit, 1)) if units is SECONDS else _HERTZ[unit]
-                return value * factor if units is SECONDS else 1 / (value * factor)
+            if isinstance(value, float) and 0 < value < np.inf:
+                return value * float(SECONDS.get(unit, 1)) if units is SECONDS else 1 / (value * _HERTZ[unit])
     return None
 
 
 def _plain(cell: str, index: int) -> str:
     """Return the name of a channel without its unit."""
-    plain = _IN_BRACKETS.sub("", bare(cell)).strip()
-    return plain or f"channel {index + 1}"
+    return _IN_BRACKETS.sub("", bare(cell)).strip() or f"channel {index + 1}"
 
 
 def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tuple[list[Real], list[int]]:
@@ -221,8 +227,9 @@ def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tu
         pass  # some cell is no plain number
     rows = [cut(table.lines[i], table.delimiter) for i in lines]
     read = [[number(c, table.decimal) for c in row[:width]] + [None] * (width - len(row)) for row in rows]
+    read = [[x.real if isinstance(x, complex) and not x.imag else x for x in row] for row in read]
     empty = np.array([[not isinstance(x, float) for x in row] for row in read])
-    sparse = np.flatnonzero(empty.mean(axis=0) > 0.5).tolist()  # noqa: PLR2004 (most of its cells)
+    sparse = np.flatnonzero(2 * empty.sum(axis=0) > len(empty)).tolist()
     wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
@@ -231,7 +238,7 @@ def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tu
     if sparse:
         many = ", ".join(str(i + 1) for i in sparse[:12])
         guesses.append(f"columns in which most cells hold no number are left out: {many}")
-        read = [[np.nan if i in sparse else x for i, x in enumerate(row)] for row in read]
+        read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
     if wrong.any():
         listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
         guesses.append(f"left out what holds no number: line {listed}")
@@ -276,31 +283,52 @@ def _resampled(times: Real, values: Real, step: float) -> Real:
 
 
 def _asked(
-    table: TextTable, first: int, width: int, words: Sequence[str], stem: str, guesses: list[str]
-) -> TimeRecord:
+    channels: Sequence[tuple[str, Real]], words: Sequence[str], told: str, stem: str, guesses: list[str],
+    place: tuple[TextTable | None, Sequence[int]] = (None, ()),
+) -> TimeRecord:  # fmt: skip
     """Return the record whose columns are those that ``--columns`` names."""
-    if len(words) > width:
-        message = f"--columns has {len(words)} words, and there are {width} columns"
+    words = [word.lower() for word in words]
+    if len(words) > len(channels):
+        message = f"--columns has {len(words)} words, and there are {len(channels)} columns"
         raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y or t_ms,-,u,y"))
-    columns, lines = _numbers(table, first, width, guesses)
-    cells = _names(table, first, width) or list(words)
-    at = next(i for i, word in enumerate(words) if word.partition("_")[0] in ("t", "time"))
-    unit = SECONDS.get(words[at].partition("_")[2], 1)
-    times = columns[at] * float(unit)
-    step, kept = _even(times, table, lines, guesses)
+    at = next((i for i, word in enumerate(words) if word.partition("_")[0] in ("t", "time")), None)
+    step, kept, times = number(told[3:]), False, np.empty(0)
+    if not told and at is not None:
+        times = channels[at][1] * float(SECONDS.get(words[at].partition("_")[2], 1))
+        step, kept = _even(times, *place, guesses)
+    if not (isinstance(step, float) and 0 < step < np.inf):
+        message = f"--columns: '{told[:40]}' is no sampling time in seconds"
+        raise UsageError(Diagnostic("SF902", message, None, "such as u,y,dt=0.01"))
     made: dict[str, list[tuple[str, Real]]] = {"u": [], "y": []}
     for i, word in enumerate(words):
         if word in ("-", "") or i == at:
             continue
         if word.rstrip("0123456789") not in made:
             message = f"--columns: unknown column '{word[:40]}' of a record in time"
-            raise UsageError(Diagnostic("SF902", message, None, "t (or t_ms, t_us), u, y, -"))
-        values = _resampled(times, columns[i], step) if kept else columns[i]
-        made[word.rstrip("0123456789")].append((_plain(cells[i], i), values))
+            raise UsageError(Diagnostic("SF902", message, None, "t (or t_ms, t_us), u, y, -, dt=0.01"))
+        values = _resampled(times, channels[i][1], step) if kept else channels[i][1]
+        if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
+            message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or holds something else"
+            raise DataError(Diagnostic("SF603", message, None, "choose another column, or leave lines out"))
+        made[word.rstrip("0123456789")].append((_plain(channels[i][0], i), values))
     if len(made["u"]) > 1 or not made["y"]:
         message = "--columns of a record in time has one t, at most one u, and one y or more"
-        raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y"))
+        raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y or u,y,dt=0.01"))
     return TimeRecord(stem, step, tuple(made["y"]), next(iter(made["u"]), None), tuple(guesses))
+
+
+def _asked_arrays(arrays: Arrays, words: Sequence[str], told: str, name: str, stem: str) -> TimeRecord:
+    """Return the record of the arrays that ``--columns`` names, or of the columns of the largest matrix."""
+    keys = [key for _, is_named, key in (word.partition("=") for word in words) if is_named]
+    whole, matrix = largest_matrix(arrays)
+    chosen = [arrays[k].ravel() for k in keys if k in arrays and arrays[k].dtype.kind in "fiu"]
+    chosen = chosen if keys else list(matrix.T)
+    if len(chosen) < len(words) or len({x.size for x in chosen}) != 1:
+        message = f"'{name}': --columns {','.join(words)[:60]}: there are no such arrays of one length"
+        raise UsageError(Diagnostic("SF902", message, None, f"it has {listed_names(list(arrays))}"))
+    channels = [(c, np.asarray(x, np.float64)) for c, x in zip(keys or words, chosen, strict=False)]
+    words, guesses = [word.partition("=")[0] for word in words], [f"the columns are those of '{whole[:30]}'"]
+    return _asked(channels, words, told, stem, [] if keys else guesses)
 
 
 def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
@@ -319,24 +347,22 @@ def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
         channels = [(k, _resampled(times, x, step) if kept else x) for k, x in others]
     else:
         single = {k: float(a.ravel()[0]) for k, a in plain.items() if a.size == 1 and np.isfinite(a).all()}
-        rate = next((v for k, v in single.items() if _RATE.fullmatch(k) and v > 0), None)
-        told = next((v for k, v in single.items() if _INTERVAL.fullmatch(k) and v > 0), None)
-        if rate is None and told is None:
+        rate = next((v for k, v in single.items() if _RATE.fullmatch(k) and v > 0), np.inf)
+        step = next((v for k, v in single.items() if _INTERVAL.fullmatch(k) and v > 0), 1 / rate)
+        if not step:
             return None
-        step = told or 1 / (rate or 1.0)
-        sizes = Counter(x.size for x in long.values())
-        size = sizes.most_common(1)[0][0]
+        size = Counter(x.size for x in long.values()).most_common(1)[0][0]
         channels = [(k, x) for k, x in long.items() if x.size == size]
     if not channels or any(_is_frequency(k) for k, _ in channels):
         return None
-    return _sorted(channels, step, stem, name, guesses)
+    return _sorted(channels, step, stem, name, guesses, f"u=NAME,y=NAME,dt={step:.6g}")
 
 
 def _sorted(
-    channels: list[tuple[str, Real]], step: float, stem: str, name: str, guesses: list[str]
+    channels: list[tuple[str, Real]], step: float, stem: str, name: str, guesses: list[str], option: str
 ) -> TimeRecord:
     """Return the record with its input chosen among the channels."""
-    channels = [(c, x) for c, x in channels if not (np.isnan(x).all() or np.all(np.diff(x) == 1))]
+    channels = [(c, x) for c, x in channels if 2 * np.isnan(x).sum() <= x.size and np.any(np.diff(x) != 1)]
     for channel, values in channels:
         if not np.isfinite(values).all():
             place = int(np.argmin(np.isfinite(values))) + 1
@@ -357,8 +383,7 @@ def _sorted(
         if cut_off := _cut_off(values):
             guesses.append(f"'{channel[:30]}' stays at {cut_off:.4g} for several samples: is it saturated?")
     named = [c for c, _ in channels if _INPUT.fullmatch(c)]
-    family = Counter(_ALIKE.sub("", c).lower() for c, _ in channels)
-    alike, many = family.most_common(1)[0]
+    [(alike, many)] = Counter(_ALIKE.sub("", c).lower() for c, _ in channels).most_common(1)
     if named:
         source = named[0]
     elif len(channels) == 1 or (many > 1 and alike not in _OF_AN_INSTRUMENT):
@@ -366,12 +391,10 @@ def _sorted(
     else:
         source = channels[0][0]
         said = f"'{source[:30]}', the first channel, is taken as the input"
-        guesses.append(f"{said}; --columns t,u,y says otherwise")
+        guesses.append(f"{said}; --columns {option} says otherwise")
     excitation = next((c, x) for c, x in channels if c == source)
     outputs = tuple((c, x) for c, x in channels if c != source)
-    if not outputs:
-        return TimeRecord(stem, step, (excitation,), None, tuple(guesses))
-    return TimeRecord(stem, step, outputs, excitation, tuple(guesses))
+    return TimeRecord(stem, step, outputs or (excitation,), excitation if outputs else None, tuple(guesses))
 
 
 def _cut_off(values: Real) -> float | None:
@@ -380,8 +403,7 @@ def _cut_off(values: Real) -> float | None:
         return None
     for end in (values.max(), values.min()):
         at_end = np.flatnonzero(values == end)
-        if at_end.size >= SATURATED and np.any(np.diff(at_end, n=SATURATED - 1) == 0) and end != 0:
-            runs = np.split(at_end, np.flatnonzero(np.diff(at_end) != 1) + 1)
-            if max(map(len, runs)) >= SATURATED and len(runs) > 1:
-                return float(end)
+        runs = np.split(at_end, np.flatnonzero(np.diff(at_end) != 1) + 1)
+        if end != 0 and len(runs) > 1 and max(map(len, runs)) >= SATURATED:
+            return float(end)
     return None

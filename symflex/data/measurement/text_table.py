@@ -221,7 +221,7 @@ class TextTable:
         longest = max(range(len(lines)), key=lambda i: len(lines[i]))
         if len(lines[longest]) > LONGEST_LINE:
             message = f"{name}:{longest + 1}:1: a line of {len(lines[longest])} characters"
-            hint = f"a line may have at most {LONGEST_LINE} characters"
+            hint = f"at most {LONGEST_LINE} are read: turn lines that are channels into columns"
             raise DataError(Diagnostic("SF601", message, None, hint))
         lengths = np.cumsum([0, *(len(line) + 1 for line in lines)])
         delimiter, decimal = _format(lines)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import io
+import re
+
 import numpy as np
 import pytest
 from scipy import signal
@@ -222,3 +225,60 @@ def test_a_table_with_frequencies_beside_a_time_is_no_record():
         f"{i},{i + 1},3,4" for i in range(60)
     )
     assert read_record("a.csv", text.encode(), "a") is None
+
+
+def archive(**arrays):
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    return content.getvalue()
+
+
+def columns(*series, begin="", sep=","):
+    lines = (sep.join(f"{x:.9g}" for x in row) for row in zip(*series, strict=True))
+    return (begin + "\n".join(lines)).encode()
+
+
+def test_hints_followed_to_the_letter_read_the_record(tmp_path):
+    u, y = (x[:512] for x in simulated(inputs("chirp", 512)))
+    held = np.round(4 * u) / 4
+    t, zero = STEP * np.arange(1, 513), np.zeros(512)
+    shaken = t + STEP / 100 * np.sin(np.arange(512))
+    cases = {  # content, what stands for the words that only a person knows, the input that is meant
+        "from_one_step.csv": (columns(t, held, y), {}, held),
+        "behind_a_constant.txt": (columns(shaken, zero, held, y, sep=" "), {}, held),
+        "alone.csv": (columns(t, y), {}, None),
+        "counted.txt": (columns(np.maximum(np.arange(-1, 511), 0), u, y, sep="\t"), {"SECONDS": "2e-3"}, u),
+        "named.csv": (columns(u, y, begin="u,y\n"), {"SECONDS": "0.002"}, u),
+        "one_column.csv": (columns(y), {"SECONDS": "0.002"}, None),
+        "matrix.npz": (archive(m=np.column_stack([t - STEP, held, y])), {}, held),
+        "beside_others.npz": (archive(N=3, a=y[:90], data=np.array([t - STEP, zero, u, y])), {}, u),
+        "by_name.npz": (archive(v=u, w=y), {"u=NAME": "u=v", "y=NAME": "y=w", "SECONDS": ".002"}, u),
+    }
+    for name, (content, known, source) in cases.items():
+        path = tmp_path / name
+        path.write_bytes(content)
+        with pytest.raises(DataError) as caught:
+            read_measurement(path)
+        hint = caught.value.diagnostics[0].hint
+        (option,) = re.findall(r"--columns ((?:-,)*(?:t,|u,|u=|y,)[^\s;]*\w)", hint)
+        for word, meant in known.items():
+            assert word in option, (name, option)
+            option = option.replace(word, meant)
+        record = read_record(name, content, "a", option)
+        assert record.step_s == pytest.approx(STEP, rel=1e-3), name
+        assert record.input is source is None or np.allclose(record.input[1], source, atol=1e-3), name
+        assert len(record.outputs) == 1 and np.allclose(record.outputs[0][1], y, atol=1e-3), name
+    with pytest.raises(UsageError, match="'dt=SECONDS' is no sampling time"):
+        read_record("a.csv", cases["named.csv"][0], "a", "u,y,dt=SECONDS")
+
+
+def test_odd_columns_of_loggers_are_read():
+    noise = np.random.default_rng(1).normal(size=(64, 2))
+    bracketed = "\n".join(f"{i},{1e-5 * i:.9g},({x!r}+0j)" for i, (x, _) in enumerate(noise.tolist()))
+    record = read_record("a.csv", f",Time,Amplitude\n{bracketed}\n".encode(), "a")
+    assert np.array_equal(record.outputs[0][1], noise[:, 0]) and record.step_s == pytest.approx(1e-5)
+    told = '"u","y","Ts",\n' + "\n".join(f"{a},{b},{'' if i else 4}," for i, (a, b) in enumerate(noise))
+    record = read_record("a.csv", told.encode(), "a")
+    assert record.step_s == 4 and [name for name, _ in record.outputs] == ["y"]
+    timed = columns(np.arange(64), *noise.T, begin="Time (ms),a,b\n")
+    assert read_record("a.csv", timed, "a", "t,y,u").step_s == pytest.approx(1e-3)
