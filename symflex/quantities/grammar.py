@@ -96,6 +96,8 @@ SIGNED_NUMBER: Final = re.compile(rf"[+-]?[{SPACES}]*{NUMBER}")
 _INTEGER: Final = re.compile(r"[0-9]{1,60}")
 UNIT_START: Final = re.compile(_SYMBOL)
 _NO_UNIT: Final = Unit(Fraction(1))
+# As written in two words; read as a product, it would be an angle times a charge.
+_TEMPERATURE: Final = re.compile(rf"(?<!\w)(?:deg|\u00b0)[{SPACES}\u00b7\u22c5]+([CFK])(?!\w)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,6 +162,9 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
         if kind == "unit":
             hint = "a pure number has the unit '1'"
         raise RejectedError("SF202", f"the {kind} is empty", 0, len(value), hint)
+    if degrees := _TEMPERATURE.search(value):
+        message, hint = f"unknown unit '{degrees[0]}'", unit_hint(f"deg{degrees[1]}")
+        raise RejectedError("SF201", message, degrees.start(), degrees.end(), hint)
     _check_nesting(value)
     try:
         reading = Reading(_grammar(), value, kind)

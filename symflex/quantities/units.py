@@ -224,6 +224,7 @@ _INSTEAD: Final[dict[str, str]] = {
         "Ohm": "ohms Ohms",
         "H": "henry henries",
         "F": "farad farads",
+        "K": "kelvin kelvins degK \u00b0K",
         "Hz": "hertz cps",
         "kHz": "kilohertz",
         "rad": "radian radians",
