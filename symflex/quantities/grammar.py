@@ -163,8 +163,8 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
             hint = "a pure number has the unit '1'"
         raise RejectedError("SF202", f"the {kind} is empty", 0, len(value), hint)
     if degrees := _TEMPERATURE.search(value):
-        message, hint = f"unknown unit '{degrees[0]}'", unit_hint(f"deg{degrees[1]}")
-        raise RejectedError("SF201", message, degrees.start(), degrees.end(), hint)
+        message, meant = f"unknown unit '{degrees[0]}'", unit_hint(f"deg{degrees[1]}")
+        raise RejectedError("SF201", message, degrees.start(), degrees.end(), meant)
     _check_nesting(value)
     try:
         reading = Reading(_grammar(), value, kind)
