@@ -35,10 +35,9 @@ LARGEST = arb(10) ** LARGEST_POWER
 SHORTER = "ask for a shorter time"
 ROWS = 21
 """Rows of the table; all points are in the JSON and in files."""
-SHOWN_DIGITS = 17
 SHORT_DIGITS = 6
 NARROWEST = 99
-"""Digits behind the point to which a radius in the table goes: what lies within 1e-2913 does within 1e-99."""
+"""Digits behind the point to which a radius in the table goes, or those asked for: 1e-2913 is below 1e-99."""
 IMPULSES = ("an impulse", "the derivative of an impulse")
 
 
@@ -228,9 +227,9 @@ def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
 
 
 def _told(ball: arb, digits: int) -> tuple[str, str]:
-    told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS)).told
-    exponent = int(told.radius.partition("e-")[2] or 0)
-    return told.re, told.radius if exponent <= NARROWEST else f"1.0e-{NARROWEST}"
+    told = decimals(ball, arb(0), digits).told
+    exponent, narrowest = int(told.radius.partition("e-")[2] or 0), max(NARROWEST, digits)
+    return told.re, told.radius if exponent <= narrowest else f"1.0e-{narrowest}"
 
 
 def _short(ball: arb) -> str:

@@ -47,6 +47,13 @@ def test_json_has_the_schema_and_holds_the_closed_form(oscillator):
         assert abs(float(value) - step_of_oscillator(t)) <= float(radius) + 1e-17
 
 
+def test_the_table_has_the_digits_asked_for_where_they_are_known(shell, tmp_path):
+    (tmp_path / "lag.toml").write_text('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"')
+    for digits, value in ((30, "0.632120558828557678404476229839"), (5, "0.63212")):  # 1 - 1/e
+        out = shell("respond", "lag.toml", "--until", "1", "--points", "2", "--digits", str(digits)).out
+        assert out.splitlines()[-1].split()[1] == value
+
+
 def test_a_step_of_a_speed_is_in_the_unit_of_its_command(oscillator, tmp_path):
     loop = '[signals]\nw = "(r - w)/(s*T)"\n[inputs]\nr = { unit = "rad/s" }\n[outputs]\nW = "w"\n'
     text = f'symflex = 1\n[parameters]\nT = "1 s"\n{loop}'
