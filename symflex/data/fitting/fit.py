@@ -51,9 +51,9 @@ MEDIAN = 1.177
 """Median of the size of a complex Gaussian error whose parts have the deviation 1."""
 DECADE = 10.0
 """Frequency over that of an end of the band, or the other way round, from which a pole is far outside."""
-CLEAN, UNLIKE, MOST_AVERAGES = 0.99, 0.5, 500
+CLEAN, UNLIKE, MOST_AVERAGES, FEWEST_JUDGED = 0.99, 0.5, 500, 112
 """Median coherence from which its digits decide, loss of likelihood a line from which it is false, averages
-that there may be where data do not say."""
+that there may be where data do not say, lines that 14 pairs of poles leave enough scatter to judge it by."""
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
 NAMED_LINES = 6
@@ -329,7 +329,8 @@ def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem
     lines, said = list(problem.lines), []
     for r, line in enumerate(problem.lines):
         shares = line.measured.coherence
-        if shares is None or line.deviation is None or np.median(shares) > CLEAN:
+        are_few = line.omega.size < FEWEST_JUDGED
+        if are_few or shares is None or line.deviation is None or np.median(shares) > CLEAN:
             continue
         plain = replace(line, is_coherence_used=False, deviation=None)
         single = with_rough_noise(replace(problem, lines=(plain,), delays=()))
