@@ -105,7 +105,8 @@ def find_stable_gains(
     except UncertifiedError as error:
         if loop.nominal is None:
             raise
-        return _at_nominal(loop, (low, high), digits, error.diagnostics[0].message)
+        told = error.diagnostics[0]
+        return _at_nominal(loop, (low, high), digits, "; ".join(filter(None, (told.message, told.hint))))
     nominal = loop.nominal
     radius = end if along is None else loop.bound.from_root(along.radius[0])
     reasons = [] if along is None else along.reasons[end is not None :]

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from mpmath import asinh, atanh, e, exp, inf, lambertw, log, mpf, sqrt
+from mpmath import asinh, atanh, e, exp, findroot, inf, lambertw, log, mpc, mpf, sqrt
 
 import symflex
 
@@ -196,3 +196,25 @@ def test_with_a_dead_time_an_integrator_is_stable_up_to_pi_over_twice_the_time(f
     found = model.stability("K", (0, 1.2 * highest))
     assert found.certified
     assert float(found.stable[0][1]) == pytest.approx(highest, rel=1e-12)
+
+
+def test_a_search_that_takes_too_long_says_that_a_narrower_range_may_do_and_it_does():
+    # s + 3 sqrt(K) exp(-s T) + 0.3 K s exp(-2 s T): the slope of the root has no bound next to K = 0.
+    model = symflex.Model(
+        parameters={"K": {"value": 2}, "T": "0.1 s", "w": "3 rad/s"},
+        signals={"y": "(w*sqrt(K)*exp(-s*T)/s + 0.3*K*exp(-2*s*T))*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    wide, narrow = (model.stability("K", limits) for limits in ((0, 3), (0.5, 3)))
+    assert not wide.certified
+    assert wide.proved.reasons[0].endswith("; give a narrower --range")
+
+    def on_axis(gain, omega):
+        s = mpc(0, omega)
+        value = s + 3 * sqrt(gain) * exp(-s / 10) + mpf("0.3") * gain * s * exp(-s / 5)
+        return value.real, value.imag
+
+    gain, _ = findroot(on_axis, (2.3, 10))
+    assert narrow.certified
+    assert float(narrow.stable[0][1]) == pytest.approx(float(gain), rel=1e-12)
