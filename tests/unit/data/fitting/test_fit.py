@@ -121,6 +121,7 @@ def test_a_lag_of_the_sensor_is_found():
     assert fit.resonances.lag[0] == pytest.approx(2e-4)
 
 
+@pytest.mark.slow
 def test_responses_share_their_poles():
     other = replace(PAPER, f_z=1.05 * PAPER.f_p, zeta_z=np.full(5, 0.03))
     fit = fit_resonances([exact(PAPER, "a/u"), exact(other, "b/u")], UNIT * 2, FitOptions(modes=5))
