@@ -388,8 +388,8 @@ def _of_equations(
             if root.is_zero and is_fixed_at_zero(at, pair, root, is_pole=kind == "pole"):
                 place, known = acb(0), dict.fromkeys(names, acb(0))
             elif root.multiplicity > 1:
-                status = "multiple" if root.certified and not root.is_zero else "undecided"
-                place, known = root.enclosure(), {}
+                # Whether it parts is not read off the equations.
+                status, place, known = "undecided", root.enclosure(), {}
             elif root.im < 0 and upper is not None and upper[0].conjugate().overlaps(root.enclosure()):
                 place = _conjugate(upper[0])
                 known = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}

@@ -524,3 +524,17 @@ def test_waves_without_a_formula_have_no_formula_of_sensitivity():
     G = symflex.loads(SIXTH_ORDER).transfer_function("y", "u")
     with pytest.raises(UsageError, match=r"SF902.*no formula"):
         G.sensitivity_formula("c")
+
+
+def test_a_long_chain_does_not_say_that_a_zero_parts_which_is_double_for_all_values():
+    # Two couplings pass on k + d s: the zero -k/d is double whatever k and d are.
+    nodes = ["ground", *(f"x{i}" for i in range(1, 13))]
+    lines = [f'm{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(1, 13)]
+    for i in range(12):
+        ends = f'between = ["{nodes[i]}", "{nodes[i + 1]}"]'
+        lines.append(f'k{i} = {{ type = "spring", {ends}, k = "k" }}')
+        lines += [f'd{i} = {{ type = "damper", {ends}, b = "d" }}'] * (i in {3, 7})
+    head = 'symflex = 1\nparameters = { m = "1 kg", k = "1 kN/m", d = "2 N*s/m" }\n'
+    head += 'inputs = { F = { force = "x12" } }\noutputs = { X = "x1" }\n[elements]\n'
+    shown = [s for s in moved(pipeline.loads(head + "\n".join(lines))) if s.kind == "zero"]
+    assert {(complex(s.root), s.status) for s in shown} == {(-500, "undecided")}
