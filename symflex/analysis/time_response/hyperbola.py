@@ -71,7 +71,7 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
     assert root is not None
     last, nearest = float(times.seconds[end - 1]), (1 - sin(MIDDLE + ASIDE)) * (1 - 1e-9)
     start = next(i for i in range(end) if times.seconds[i] * BAND >= last)
-    # Of the path from the branch point, in z.
+    # The path from the branch point, in z.
     distance = max(TURNS[0] / (last or 1.0) * nearest, 2 * float(root.shift / root.slope))
     least = far.least(float((root.slope * distance) ** (arb(1) / root.order)))
     size = None if least is None else far.size(least)
