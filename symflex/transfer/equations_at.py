@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb
+from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra import LAPLACE, Factored, composed
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
@@ -29,7 +29,7 @@ from symflex.transfer.enclose_kernels import fundamental_functions
 from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from symflex.algebra import Dispersion
     from symflex.equations import Equations
@@ -78,21 +78,34 @@ class EquationsAt:
                 entries[j] = entries[j] + entry if j in entries else entry
         return entries
 
+    def matrix(self, forms: Sequence[LinearForm], values: Generators, columns: Sequence[Variable]) -> acb_mat:
+        """Return the values of linear forms as rows."""
+        places = {variable: j for j, variable in enumerate(columns)}
+        matrix = acb_mat(len(forms), len(columns))
+        for i, form in enumerate(forms):
+            for j, entry in self.row(form, values, places).items():
+                matrix[i, j] = at_centre(entry)
+        return matrix
+
     def moving(self, along: str) -> frozenset[str]:
         """Return the names whose values depend on s or a parameter, that itself among them."""
         equations, moving = self.equations, {along}
         for constant in equations.constants:
             if any(isinstance(n, Name) and n.name in moving for n in names(constant.expression)):
                 moving.add(constant.generator)
-        propagation, definitions = equations.propagation, equations.definitions
-        for _ in range(2):  # definitions may hold delays, and delays definitions
-            moving |= {name for name, value in definitions if _holds(value, moving)}
-            for p in () if propagation is None else propagation.propagators:
-                law = propagation.table.dispersions[p.dispersion] if propagation else None
-                length = propagation.lengths[p.dispersion][p.length] if propagation else None
-                parts = [] if law is None or length is None else [length, law.shift, *law.characteristic]
-                if any(_holds(part, moving) for part in parts):
-                    moving.add(p.generator)
+        known = 0
+        while len(moving) > known:  # definitions may hold delays, and delays definitions
+            known = len(moving)
+            for name, value in equations.definitions:  # each in terms of earlier ones
+                if holds(value, moving):
+                    moving.add(name)
+            if (propagation := equations.propagation) is not None:
+                laws, lengths = propagation.table.dispersions, propagation.lengths
+                for p in propagation.propagators:
+                    law = laws[p.dispersion]
+                    parts = (lengths[p.dispersion][p.length], law.shift, *law.characteristic)
+                    if any(holds(part, moving) for part in parts):
+                        moving.add(p.generator)
         return frozenset(moving)
 
     def _constants(self, along: str) -> Generators:
@@ -153,7 +166,8 @@ def number(value: Factored, values: Mapping[str, Value], one: Arithmetic) -> Val
     return result
 
 
-def _holds(value: Factored, names: Iterable[str]) -> bool:
+def holds(value: Factored, names: Iterable[str]) -> bool:
+    """Tell whether a value depends on any of these names."""
     return any(name in value.ring.index and value.depends_on(name) for name in names)
 
 

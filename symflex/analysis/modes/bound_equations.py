@@ -30,6 +30,9 @@ SEED = 7
 PASSES = 2
 """Passes of scaling rows and columns: units make entries differ by many powers of ten."""
 
+BESIDE = acb(1.0625, 0.03125)
+"""Times a root it is a point where nothing vanishes because of the root."""
+
 Column = tuple[acb, ...]
 
 
@@ -163,14 +166,10 @@ def system_at(equations: EquationsAt, s: acb) -> SystemAt:
     """Return equations at a ball of s [rad/s], at the current precision."""
     symbolic = equations.equations
     values, laws = equations.generators(s)
-    columns = {variable: j for j, variable in enumerate(symbolic.unknowns)}
-    matrix = acb_mat(len(symbolic.rows), len(columns))
-    for i, row in enumerate(symbolic.rows):
-        for j, entry in equations.row(row.form, values, columns).items():
-            matrix[i, j] = at_centre(entry)
+    matrix = equations.matrix([row.form for row in symbolic.rows], values, symbolic.unknowns)
     numbers = {name: at_centre(value) for name, value in values.items()}
     continua = tuple(_continuum(c, numbers, laws) for c in symbolic.continua)
-    return SystemAt(tuple(columns), matrix, continua)
+    return SystemAt(tuple(symbolic.unknowns), matrix, continua)
 
 
 @dataclass(frozen=True, slots=True)

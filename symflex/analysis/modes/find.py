@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import SystemAt, null_space, system_at
+from symflex.analysis.modes.bound_equations import BESIDE, SystemAt, null_space, system_at
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.balls import precision
 from symflex.budget import spend
@@ -41,8 +41,6 @@ SPARE_DIGITS = 15
 ROUNDS = 6
 """How often the digits of the pole are doubled until those of the shape suffice."""
 SPARE_BITS = 64
-BESIDE = acb(1.0625, 0.03125)
-"""Times a pole it is a point where nothing vanishes because of the pole."""
 DIMENSIONS = 6
 """Shapes of one pole that are sought at most."""
 NEAR = 1e-8

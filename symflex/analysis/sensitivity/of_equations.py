@@ -16,29 +16,28 @@ keeps it (Moore 1966), and its derivative is that of the implicit function.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series
 
 from symflex.algebra import LAPLACE
-from symflex.analysis.modes.bound_equations import SingularPair, singular_pair
-from symflex.balls import at_centre, bits_for_digits, precision, precisions
+from symflex.analysis.modes.bound_equations import BESIDE, SingularPair, singular_pair
+from symflex.balls import bits_for_digits, precision, precisions
 from symflex.budget import spend
 from symflex.model import with_numbers
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
+from symflex.transfer.equations_at import holds
 from symflex.transfer.of_model import assemble_sparse
 
 if TYPE_CHECKING:
-    from symflex.algebra import Factored
     from symflex.library.elements import LinearForm, Variable
     from symflex.roots import Root
     from symflex.transfer.equations_at import EquationsAt
 
 MOST_TIMES = 8
 """Largest factor on the first precision; what is not enclosed then is not for want of bits."""
-BESIDE = acb(1.0625, 0.03125)
-"""Times a root it is a point where nothing vanishes because of the root."""
 Entries = dict[tuple[int, int], acb]
 
 
@@ -65,19 +64,14 @@ class SingularMatrix:
     def value(self, s: acb) -> acb_mat:
         """Return the matrix on a ball of s."""
         values, _ = self.at.generators(s)
-        places = {v: j for j, v in enumerate(self.columns)}
-        matrix = acb_mat(len(self.rows), len(self.columns))
-        for i, form in enumerate(self.rows):
-            for j, entry in self.at.row(form, values, places).items():
-                matrix[i, j] = at_centre(entry)
-        return matrix
+        return self.at.matrix(self.rows, values, self.columns)
 
     def slope(self, s: acb, along: str) -> Entries:
         """Return the derivatives of the entries in s or a parameter on a ball of s; zeros are left out."""
         if along not in self._moving:
             names = self.at.moving(along)
             self._moving[along] = [
-                (i, form) for i, form in enumerate(self.rows) if any(_holds(c, names) for _, c in form.terms)
+                (i, form) for i, form in enumerate(self.rows) if any(holds(c, names) for _, c in form.terms)
             ]
         values, _ = self.at.generators(s, along)
         places = {v: j for j, v in enumerate(self.columns)}
@@ -89,10 +83,6 @@ class SingularMatrix:
         return slopes
 
 
-def _holds(value: Factored, names: frozenset[str]) -> bool:
-    return any(name in value.ring.index and value.depends_on(name) for name in names)
-
-
 @dataclass(eq=False)
 class MovingRoot:
     """A root of a matrix, enclosed ever closer."""
@@ -100,10 +90,14 @@ class MovingRoot:
     matrix: SingularMatrix
     place: acb  # holds one root [rad/s]
 
+    @cached_property
+    def _typical(self) -> acb_mat:
+        """The matrix beside the root, after which rows and columns are scaled."""
+        middle = self.place.mid()
+        return self.matrix.value(middle * BESIDE if middle != 0 else acb(1))
+
     def _pair(self, s: acb) -> SingularPair | None:
-        middle = s.mid()
-        typical = self.matrix.value(middle * BESIDE if middle != 0 else acb(1))
-        return singular_pair(self.matrix.value(s), typical)
+        return singular_pair(self.matrix.value(s), self._typical)
 
     def refine(self) -> tuple[SingularPair, acb] | None:
         """Enclose the root closer; return the vectors on it and dT/ds, None where these are not enclosed."""

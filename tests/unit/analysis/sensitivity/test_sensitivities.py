@@ -30,6 +30,24 @@ wall = { type = "spring", between = ["x", "ground"], k = "k" }
 loss = { type = "damper", between = ["x", "ground"], b = "b" }
 """
 
+DEFINED = """
+symflex = 1
+parameters = { p = "3", u_k = "1 N/m", m = "2 kg" }
+inputs.F = { force = "x11" }
+outputs.X = "x11"
+[definitions]
+a = "2*p"
+b = "a^2*u_k"
+c = "b/2 + b/2"
+k = "3*c - 2*c"
+[elements]
+first = { type = "spring", between = ["x1", "ground"], k = "k" }
+""" + "".join(
+    f'M{i} = {{ type = "mass", at = "x{i}", m = "m" }}\n'
+    + (f'K{i} = {{ type = "spring", between = ["x{i}", "x{i + 1}"], k = "k" }}\n' if i < 11 else "")
+    for i in range(1, 12)
+)
+
 SIXTH_ORDER = """
 symflex = 1
 parameters = { c = "2", l = "1.5 m", rho = "3" }
@@ -538,3 +556,11 @@ def test_a_long_chain_does_not_say_that_a_zero_parts_which_is_double_for_all_val
     head += 'inputs = { F = { force = "x12" } }\noutputs = { X = "x1" }\n[elements]\n'
     shown = [s for s in moved(pipeline.loads(head + "\n".join(lines))) if s.kind == "zero"]
     assert {(complex(s.root), s.status) for s in shown} == {(-500, "undecided")}
+
+
+def test_a_parameter_moves_roots_through_definitions_of_definitions():
+    # All springs are 4 p^2: natural frequencies of this chain of 22 elements are as p, and as m^-1/2.
+    for each in (m for m in moved(pipeline.loads(DEFINED), 2) if m.parameter.name != "u_k"):
+        right = 1 if each.parameter.name == "p" else -0.5
+        assert each.status == "certified"
+        assert complex(to_complex(each.normalised)) == pytest.approx(right, abs=1e-12)
