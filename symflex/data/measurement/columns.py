@@ -980,7 +980,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         is_again = any(_is_same(c.numbers.real, columns[k].numbers.real) for k in open_ones)
         if not is_again and not np.array_equal(c.numbers, columns[axis].numbers):
             open_ones.append(i)
-    open_ones = open_ones[is_indexed and axis == 0 :] if len(open_ones) > 2 else open_ones  # noqa: PLR2004
+    open_ones = open_ones[is_indexed and axis == 0 :] if open_ones[2:] else open_ones
 
     def option(*words: tuple[str, int]) -> str:
         """Return the option that says which word each column has, besides the frequency's."""
