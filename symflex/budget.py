@@ -105,7 +105,7 @@ class Budget:
             replace(self, seconds=None if self.seconds is None else max(self.seconds, seconds))
         )
 
-    def told(self, progress: Progress) -> Budget:
+    def reporting_to(self, progress: Progress) -> Budget:
         """Return this budget with another receiver of its progress."""
         return self._changed(replace(self, progress=progress))
 
@@ -196,7 +196,7 @@ def memory_used_up(memory: int) -> Diagnostic:
 
 
 def peak_memory() -> int:
-    """Return the most bytes this process ever held at once; 0 where that cannot be told."""
+    """Return the most bytes this process ever held at once; 0 where that is not known."""
     try:
         import resource  # not on every system, and not needed without a limit
     except ImportError:
@@ -206,7 +206,7 @@ def peak_memory() -> int:
 
 
 def memory_held(process: int | None = None) -> int:
-    """Return the bytes a process holds now, this one by default; its peak where that cannot be told."""
+    """Return the bytes a process holds now, this one by default; its peak where that is not known."""
     try:
         with open(f"/proc/{process or 'self'}/statm", "rb") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -192,7 +192,7 @@ def combination(exponent: Exponent, less: Exponent = REAL) -> Combination:
 
 
 def arguments_of(table: KernelTable) -> tuple[Argument, ...] | None:
-    """Return the arguments of all kernels, ``None`` where some have no formula."""
+    """Return the arguments of all kernels, ``None`` if some have no formula."""
     arguments: list[Argument] = []
     for kernel in table.kernels:
         if kernel.function in ("fundamental", "entry"):
@@ -205,7 +205,7 @@ def arguments_of(table: KernelTable) -> tuple[Argument, ...] | None:
 def exponential_sum(
     ring: Ring, table: KernelTable, arguments: Sequence[Argument], polynomial: fmpz_mpoly
 ) -> ExponentialSum | None:
-    """Return a polynomial in kernels as a sum of exponentials, ``None`` where these are too many."""
+    """Return a polynomial in kernels as a sum of exponentials, ``None`` if these are too many."""
     places = {
         ring.index[kernel.generator]: (
             kernel.function,

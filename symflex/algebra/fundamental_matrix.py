@@ -77,7 +77,7 @@ HIGHEST_CUT = 1000
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 TINY = 2.0**-200
-"""Share of the largest abs(u), of which a smaller one is not told apart where much is left to spare."""
+"""Share of the largest abs(u), of which a smaller one is not distinguished where much is left to spare."""
 MOST_MEMORY = 4e9
 """Bytes of all steps: a library that asks for more than there is ends the process."""
 SMALL = 2.0**-10

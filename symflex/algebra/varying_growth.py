@@ -334,8 +334,8 @@ def _bounded(
 ) -> tuple[arb, arb] | None:
     """Return how large solutions are on a radius at most, and up to the step's end.
 
-    Sizes are the norm of B on twice the radius, the radius, and the step. None where too many terms of v have
-    to be bounded before those that follow fall.
+    Sizes are the norm of B on twice the radius, the radius, and the step. The result is None if too many
+    terms of v have to be bounded before those that follow fall.
     """
     norm, radius, way = sizes
     with precision(BOUND_BITS):

@@ -102,7 +102,7 @@ def polynomials_along(
 ) -> Values:
     """Return powers of the bases over their limits, and what Z has of each on every piece.
 
-    None where waves are too many to be followed.
+    The result is None if waves are too many to be followed.
     """
     cut = edges_along(along, start, length, places, limits, where, tip)
     if cut is None:
@@ -199,7 +199,7 @@ def edges_along(
     """Return shares of the length at which it is cut, and by which power of e waves grow between two.
 
     After these come the parts of A at Chebyshev's points of every piece, and those of B on a tip's.
-    None where waves are too many to be followed.
+    The result is None if waves are too many to be followed.
     """
     n = 1 + max(max(place[:2]) for place in places)
     scales = [np.prod(limits ** np.array(place[2:])) for place in places]

@@ -62,7 +62,7 @@ class VaryingSystem(Protocol):
         ...
 
     def parts(self, x: arb) -> Sequence[RationalPart] | None:
-        """Return what entries are sums of about a point, ``None`` where some are not rational in x."""
+        """Return what entries are sums of about a point, ``None`` if some are not rational in x."""
         ...
 
     def bounds(self, x: acb, largest: arb) -> Mapping[Place, arb]:

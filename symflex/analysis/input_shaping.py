@@ -179,7 +179,7 @@ def input_shaper(
     UsageError
         SF902 for an unknown kind, or more modes than there are.
     ModelError
-        SF814 where a mode cannot be told from another, or is damped too much for the kind.
+        SF814 where a mode cannot be distinguished from another, or is damped too much for the kind.
 
     Examples
     --------

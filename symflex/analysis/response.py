@@ -146,7 +146,7 @@ def follow_phase(
 def _turned_by_roots(roots: PoleZeroMap, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
     """Return how far the argument of a function without losses turns from the first frequency on.
 
-    ``None`` where it is not proved that all roots between the frequencies are known.
+    The result is ``None`` if it is not proved that all roots between the frequencies are known.
     """
     region, certificate = roots.region, roots.certificate
     if not (isinstance(region, Band) and certificate.certified and omega.size) or roots.excluded:

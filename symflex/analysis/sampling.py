@@ -79,7 +79,7 @@ class SampledTransferFunction:
     numerator: tuple[arb, ...]  # in descending powers of z, as many as the denominator has
     denominator: tuple[arb, ...]  # monic
     poles: tuple[acb, ...]  # as often as their multiplicities say, without those of ``late``
-    zeros: tuple[acb, ...] | None  # likewise; None where they cannot be told apart
+    zeros: tuple[acb, ...] | None  # likewise; None if they cannot be separated
     bits: int  # of the precision all this was computed at
 
     @property
@@ -162,7 +162,7 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
     ModelError
         SF235 for beams, and for delays in loops; SF236 for a function that grows with s.
     UncertifiedError
-        SF810 where poles cannot be told apart.
+        SF810 where poles cannot be separated.
 
     Examples
     --------
@@ -419,7 +419,7 @@ def _told(coefficients: Sequence[arb], size: arb | None = None) -> tuple[arb, ..
 
 
 def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:
-    """Return the roots of a polynomial in descending powers; None where they cannot be told apart."""
+    """Return the roots of a polynomial in descending powers; None if they cannot be separated."""
     left = list(coefficients)
     while left and left[0] == 0:
         left.pop(0)

@@ -66,7 +66,7 @@ class Analyses(Plotted):
             SF811 for times that are negative or do not increase; SF812 when ``values`` are read and the
             response grows beyond the range of doubles, or at once if it grows beyond 10^100000.
         UncertifiedError
-            SF810 when poles cannot be told apart.
+            SF810 when poles cannot be separated.
 
         Examples
         --------
@@ -287,8 +287,8 @@ class Analyses(Plotted):
     ) -> tuple[Residue, ...]:
         r"""Return the residues at the poles, in their order; see :meth:`poles`.
 
-        Parameters and errors are those of :meth:`poles`. UncertifiedError: SF405 when poles cannot be told
-        apart, or the behaviour at one cannot be determined.
+        Parameters and errors are those of :meth:`poles`. UncertifiedError: SF405 when poles cannot be
+        separated, or the behaviour at one cannot be determined.
 
         Examples
         --------

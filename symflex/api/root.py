@@ -82,7 +82,7 @@ class Root:
 
     @property
     def certified(self) -> bool:
-        """False when several roots could not be told apart inside the enclosure, or nothing is proved."""
+        """False when several roots could not be separated inside the enclosure, or nothing is proved."""
         return self.certified_root.certified
 
     @property
@@ -112,7 +112,7 @@ class Root:
         return None if factor is None else float(factor.mid())
 
     def __repr__(self) -> str:
-        printed = self.certified_root.decimal(SHOWN_DIGITS).told
+        printed = self.certified_root.decimal(SHOWN_DIGITS).readable
         times = f", {self.multiplicity} times" if self.multiplicity > 1 else ""
         return f"<Root {printed.re}, {printed.im} j{times}, radius {printed.radius}>"
 
@@ -135,9 +135,9 @@ def complex_latex(printed: RootDecimals) -> str:
     >>> print(complex_latex(RootDecimals("0e-28", "2.0", "1e-12")))
     {\sim}0 + 2.0\,\mathrm{j}
     """
-    told = printed.told
+    readable = printed.readable
     real, imaginary = (
-        _POWER.sub(r"\\cdot 10^{\1}", part).replace("~", r"{\sim}") for part in (told.re, told.im)
+        _POWER.sub(r"\\cdot 10^{\1}", part).replace("~", r"{\sim}") for part in (readable.re, readable.im)
     )
     if printed.im == "0":
         return real
@@ -313,7 +313,7 @@ class Sensitivity:
         if self.moved.derivative is None:
             return f"<Sensitivity of a {self.kind} to {self.parameter}: {self.status}>"
         derivative = self.moved.derivative
-        printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS).told
+        printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS).readable
         return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
 
 

@@ -217,7 +217,7 @@ class StateSpace:
         return "\n".join(self._printed.lines())
 
     def _repr_latex_(self) -> str | None:
-        """Return the matrices for a notebook; None where they would not fit on a page."""
+        """Return the matrices for a notebook; None if they would not fit on a page."""
         from sympy import latex
 
         if len(self.states) > MOST_STATES:

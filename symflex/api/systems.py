@@ -284,10 +284,10 @@ def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression 
 def _symbols(entries: Sequence[Any]) -> dict[str, object]:
     """Return the symbols of entries as parameters without value."""
     symbols = {str(x): x for e in entries for x in getattr(e, "free_symbols", ())}
-    told = [(name, x) for name, x in sorted(symbols.items()) if name not in RESERVED]
+    free = [(name, x) for name, x in sorted(symbols.items()) if name not in RESERVED]
     return {
         name: {} if x.is_positive else {"assume": "nonnegative" if x.is_nonnegative else "real"}
-        for name, x in told
+        for name, x in free
     }
 
 

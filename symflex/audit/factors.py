@@ -30,7 +30,7 @@ class LowestTerms:
 
 
 def lowest_terms(field: Arithmetic, value: Factored) -> LowestTerms | None:
-    """Return a function's factors, ``None`` where roots in them may keep them from being unique."""
+    """Return a function's factors, ``None`` if roots in them may keep them from being unique."""
     ring = Ring(tuple(n.replace("cos(", "u(").replace("sin(", "t(") for n in field.ring.names))
     counted: list[tuple[fmpz_mpoly, int]] = []
     for factor, exponent in value.factors:
@@ -111,7 +111,7 @@ def _vanishes(field: Arithmetic, ring: Ring, factor: fmpz_mpoly, varying: list[i
 
 
 def full_angles(field: Arithmetic, ring: Ring, factor: fmpz_mpoly) -> Factored | None:
-    """Return a factor in cosines and sines again, ``None`` where it holds only half of one."""
+    """Return a factor in cosines and sines again, ``None`` if it holds only half of one."""
     total = field.number(0)
     waves = range(len(field.ground.waves))
     places = [(ring.index[f"u({i})"], ring.index[f"t({i})"]) for i in waves]

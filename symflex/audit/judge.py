@@ -47,7 +47,7 @@ class Audit:
     correction: Correction | None = None  # the smallest change found that makes the formula right
     # The derived function in the print's symbols, where that is possible and no correction says so.
     derived: Expression | None = None
-    comparison: Comparison | None = None  # what numbers say; ``None`` where a proof needs none
+    comparison: Comparison | None = None  # what numbers say; ``None`` if a proof needs none
     # On the frequency axis; ``None`` when equal, or where parameters have no value.
     deviation: Deviation | None = None
     laws: tuple[LawCheck, ...] = ()  # structural laws
@@ -153,12 +153,12 @@ def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:
     measure = constant_measure([], inherited, [*(d for d in model.definitions if d.name not in hidden), *own])
     roots = [published.expression, published.scale, *(e for _, e in published.where)]
     sums = dict.fromkeys(n for e in roots if e is not None for n in nodes(e) if isinstance(n, Sum))
-    told: list[Sum] = []
+    reported: list[Sum] = []
     for part in reversed(sums):
         known = {format_expression(t): d for t in part.terms if (d := measure(t)) is not None}
         # What holds a sum that disagrees may disagree for that reason alone.
-        if len(set(known.values())) > 1 and not any(inner in nodes(part) for inner in told):
-            told.append(part)
+        if len(set(known.values())) > 1 and not any(inner in nodes(part) for inner in reported):
+            reported.append(part)
             terms = ", ".join(f"{term} in '{dimension}'" for term, dimension in known.items())
             yield f"the terms of {format_expression(part)} disagree: {terms}"
 

@@ -50,7 +50,7 @@ def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple
     """Return every law that could be checked.
 
     ``reading`` holds both functions exactly, None when they could not be read; ``numbers`` both with the
-    model's own values, None where a parameter has none.
+    model's own values, None if a parameter has none.
     """
     checks: list[LawCheck | None] = []
     if reading is not None:
@@ -73,10 +73,10 @@ def _poles(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) 
         ("it has poles that the system does not have", printed, extra),
         ("poles of the system are missing", derived, missing),
     )
-    told = [(said, _shown(reading, terms, factors)) for said, terms, factors in wrong if factors]
-    if not told:
+    differing = [(said, _shown(reading, terms, factors)) for said, terms, factors in wrong if factors]
+    if not differing:
         return LawCheck("poles", True, "proved", "the denominators vanish at the same s, equally often")
-    parts = [f"{said}, where {text} = 0" if text else said for said, text in told]
+    parts = [f"{said}, where {text} = 0" if text else said for said, text in differing]
     return LawCheck("poles", False, "proved", "; ".join(parts))
 
 
@@ -209,7 +209,7 @@ def _alternate(events: Sequence[_Event]) -> bool:
 
 
 def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]) -> list[_Event] | None:
-    """Return sign changes of a lossless function on the imaginary axis, ``None`` where it is not lossless."""
+    """Return sign changes of a lossless function on the imaginary axis, ``None`` if it is not lossless."""
     low, high = float(band[0]), float(band[1])
     grid = [low * (high / low) ** (i / (AXIS_POINTS - 1)) for i in range(AXIS_POINTS)]
     component: str | None = None

@@ -226,7 +226,7 @@ def _function(field: Arithmetic, name: str, exponent: int) -> Expression:
 
 
 def derived_in_symbols(reading: FormulaReading) -> Expression | None:
-    """Return the derived function in the symbols of the print, ``None`` where that does not work out."""
+    """Return the derived function in the symbols of the print, ``None`` if that does not work out."""
     field = reading.field
     symbols, terms = symbols_of(reading), lowest_terms(field, reading.derived)
     if terms is None or not symbols:

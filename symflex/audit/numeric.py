@@ -69,7 +69,7 @@ class Numbers:
             return _value(self.formula.whole, known)
 
     def ratio_at(self, frequency: float) -> tuple[float, float] | None:
-        """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` where it has no value."""
+        """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` if it has no value."""
         with precision(FIRST_BITS):
             s = acb(0, arb(frequency) * 2 * arb.pi())
             ratio = self.printed_at(s, FIRST_BITS) / self.derived_at(s, FIRST_BITS)

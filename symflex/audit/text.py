@@ -81,7 +81,7 @@ def _derived(audit: Audit, width: int) -> list[str]:
 
 
 def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], width: int) -> list[str]:
-    """Return an expression in lines, with the parts that differ underlined where they can be told."""
+    """Return an expression in lines, with the parts that differ underlined where they are found."""
     lines = wrapped(expression, width - 2 * len(INDENT))
     marked = []
     for i, line in enumerate(lines):

@@ -1,6 +1,6 @@
 """A path in pieces short enough that something is decided on every one of them.
 
-Input: what decides on a piece of t from 0 to 1, ``None`` where the piece is too long.
+Input: what decides on a piece of t from 0 to 1, ``None`` if the piece is too long.
 Output: the pieces, each with what was decided on it.
 
 Example: cos(x) on [0, 3] has no sign on the whole; every piece but those about pi/2 decides.

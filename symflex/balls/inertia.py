@@ -34,7 +34,7 @@ class Pivots:
     """What is left of a matrix when all unknowns but the borders are gone."""
 
     negative: int  # how many pivots are
-    determinant: arb | None  # their product; None where there is none
+    determinant: arb | None  # their product; None if there is none
     borders: tuple[arb | None, ...]  # what became of the borders' diagonals
 
 
@@ -117,7 +117,7 @@ def pivots(rows: Rows, order: Sequence[int], borders: Sequence[int] = ()) -> Piv
 
 
 def _negative_of_pair(determinant: arb, *diagonal: arb | None) -> int:
-    """Return how many eigenvalues of two rows and columns are negative; UndecidedError if it is not told."""
+    """Return how many eigenvalues of two rows and columns are negative; UndecidedError if undecided."""
     if determinant < 0:
         return 1
     corner = next((x for x in diagonal if x is not None and _is_usable(x)), None)

@@ -36,7 +36,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     of each natural frequency, and the change of each damping ratio, per relative change of a parameter. Put
     it after SPEC: it takes the next word as the name of a parameter.
 
-    Exit code 4: some roots could not be told apart, or their number could not be proved. Exit code 5: the
+    Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots proved so far are shown.
     """
     from symflex import pipeline
@@ -53,7 +53,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         shown = given.digits or model.analysis.digits or 15
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=is_explained, is_named=is_explained)
-    with ProgressBar() as bar, entered_budget().told(bar).entered():
+    with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
@@ -132,7 +132,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.stability_map import stability_text
 
     model = spec.load()
-    with ProgressBar() as bar, entered_budget().told(bar).entered():
+    with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         stable = of_model.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: stability_text(stable))
     return 0 if stable.certified else 4

@@ -68,13 +68,13 @@ def fit(given: FitOptions) -> int:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
         given = replace(given, tfs=(given.driving,))
     budget = entered_budget()
-    with ProgressBar() as bar, budget.told(bar).entered():
+    with ProgressBar() as bar, budget.reporting_to(bar).entered():
         resonances = fitted(every, given)
     shapes = mode_shapes(resonances, every) if given.driving else None
     whole = resonances
     if given.driving and len(every) > 1 and (given.output or given.figure):
         driven_first = sorted(every, key=lambda response: response.name != given.driving)
-        with ProgressBar() as bar, budget.told(bar).entered():
+        with ProgressBar() as bar, budget.reporting_to(bar).entered():
             whole = fitted(driven_first, replace(given, tfs=(), modes=int(resonances.modes.sum()) or None))
         why = "".join(f" (poor: {reason})" for reason in whole.poor)
         note(f"files and figures have all responses, fitted with the same poles{why}")

@@ -101,7 +101,7 @@ def say(text: str, *, nl: bool = True, err: bool = False) -> None:
     Raises
     ------
     UsageError
-        SF903 when standard output cannot be written: a full disk. Of standard error nobody can be told.
+        SF903 when standard output cannot be written: a full disk. Of standard error nobody hears.
     """
     _print(printable(text, LAYOUT), nl=nl, err=err)
 

@@ -105,11 +105,13 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     if given.output:
         _write(response, given, Path(given.output))
     else:
-        is_told = given.to == "step" and not (signal or shaper or free) and response.certified
-        info = find_step_info(bound, given.digits, response.modes) if is_told and _may_rest(known) else None
+        is_step = given.to == "step" and not (signal or shaper or free) and response.certified
+        rests = is_step and _may_rest(known)
+        info = find_step_info(bound, given.digits, response.modes) if rests else None
         if given.as_json:
-            told = {"step_info": info.to_json_dict(given.digits)} if info else {}
-            emit_json({**response.to_json_dict(), **told})
+            emit_json(
+                response.to_json_dict() | ({"step_info": info.to_json_dict(given.digits)} if info else {})
+            )
         else:
             compared = [response.comparison] if response.comparison else _growth(known)
             say(response_text(response, info.lines(response.unit) if info else compared))

@@ -59,7 +59,7 @@ def _measured(markup: str, size: float, family: str) -> tuple[float, float, floa
 
 
 def text(latex: str, size: float = SIZE) -> Lettering | None:
-    """Return a text at the origin, None where matplotlib cannot typeset it."""
+    """Return a text at the origin, None if matplotlib cannot typeset it."""
     # Matplotlib makes small raised marks of apostrophes; fonts have primes of their own.
     markup = f"${_PRIMES.sub(lambda m: PRIMES[m[0]], latex)}$"
     measured = _measured(markup, size, str(rcParams["mathtext.fontset"])) if latex else None

@@ -141,7 +141,7 @@ def abbreviated(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[Draw
             touching[node].append(part)
 
     def look(node: str) -> list[str] | None:
-        """Return the types of what stands at a node and before it, None where it is no link of a chain."""
+        """Return the types of what stands at a node and before it, None if it is no link of a chain."""
         for part in touching[node]:
             is_far = any(abs(at[n] - at[node]) > 1 for n in part.nodes)
             if is_far or part.tags or part.points or part.kind != "element" or part.symbol.role == "source":

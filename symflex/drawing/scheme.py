@@ -505,7 +505,7 @@ def depths(
 
 
 def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None:
-    """Return the value of an expression of parameters, None where one is unknown."""
+    """Return the value of an expression of parameters, None if one is unknown."""
     try:
         return fold(
             expression,

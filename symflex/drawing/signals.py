@@ -194,7 +194,7 @@ def whole(value: Expression) -> Expression:
 
 
 def formula(block: PlacedBlock) -> Expression | None:
-    """Return the transfer function of a block with its values, None where it has no formula.
+    """Return the transfer function of a block with its values, None if it has no formula.
 
     Examples
     --------

@@ -45,7 +45,7 @@ def compare(expression: Expression, read: int | None, leaf: Callable[[Expression
 
 
 def number_of(terms: Iterable[tuple[object, Factored]], point: Point) -> int | None:
-    """Return the number a combination of unknowns is at a point, None where it has none there."""
+    """Return the number a combination of unknowns is at a point, None if it has none there."""
     total = 0
     try:
         for unknown, value in terms:
@@ -61,7 +61,7 @@ def at_random(unknown: object, prime: int) -> int:
 
 
 def number_of_form(value: Factored | LinearForm, point: Point) -> int | None:
-    """Return the number a value or a combination is at a point, None where it has none there."""
+    """Return the number a value or a combination is at a point, None if it has none there."""
     if not isinstance(value, Factored):
         return number_of(value.terms, point)
     try:

@@ -136,7 +136,7 @@ def _local(
 
 
 State = tuple[tuple["Variable | None", Factored], ...]
-"""Per state, the variable it equals, and the factor with which it does; None where it is zero."""
+"""Per state, the variable it equals, and the factor with which it does; None if it is zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,8 +250,8 @@ class _Demands:
         is_followed: bool,
     ) -> None:
         self.along = along
-        self.settled = settled  # of components(), None where wavenumbers get no names
-        self.root = root  # one of a square's two, None where it has none
+        self.settled = settled  # of components(), None if wavenumbers get no names
+        self.root = root  # one of a square's two, None if it has none
         self.is_followed = is_followed
         self.keys: dict[tuple[str, ...], int] = {}
         self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
@@ -524,7 +524,7 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
 def _singular(
     part: Component, along: AlongX, end: Expression, name: str, span: Span | None
 ) -> SingularStart | None:
-    """Return the solutions of a part that are finite at an end, None where all are."""
+    """Return the solutions of a part that are finite at an end, None if all are."""
     way = Factored.generator(part.matrix[0][0].ring, COORDINATE) - along.evaluator.constant(end)
     try:
         return singular_start(part.matrix, way, COORDINATE, lambda value: along.at(value, end))

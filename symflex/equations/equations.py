@@ -51,7 +51,7 @@ class Continuum:
     # start and length: where x begins, and how far it reaches; over the same ring.
     start: Factored
     length: Factored
-    # Per state, the unknown it equals at the start; None where it is zero there.
+    # Per state, the unknown it equals at the start; None if it is zero there.
     initial: tuple[Variable | None, ...]
     loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
     # Of a line element, per state, the unknown it equals at the end, and the sign with which it does.

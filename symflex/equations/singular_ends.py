@@ -70,7 +70,7 @@ def vanishing_order(value: Factored, h: fmpz_mpoly) -> tuple[int, Factored]:
 def singular_start(
     matrix: Matrix, way: Factored, variable: str, at_start: Callable[[Factored], Factored]
 ) -> SingularStart | None:
-    """Return the solutions that are finite where the way from the start is zero, None where all are.
+    """Return the solutions that are finite where the way from the start is zero, None if all are.
 
     ``at_start`` gives an analytic coefficient's value there. Raises UnsolvedEndError: what is in the way.
     """
@@ -87,12 +87,12 @@ def singular_start(
         )
         for i in size
     )
-    told = [[vanishing_order(x, h) for x in row] for row in scaled]
-    first = [[at_start(x) for _, x in row] for row in told]
+    leading = [[vanishing_order(x, h) for x in row] for row in scaled]
+    first = [[at_start(x) for _, x in row] for row in leading]
     return SingularStart(
         powers,
-        tuple(tuple(order for order, _ in row) for row in told),
-        tuple(tuple(x / way**order for order, x in row) for row in told),
+        tuple(tuple(order for order, _ in row) for row in leading),
+        tuple(tuple(x / way**order for order, x in row) for row in leading),
         _values(first, powers),
     )
 

@@ -245,5 +245,5 @@ def inline_svg(svg: str, prefix: str, label: str) -> str:
     # xlink is not declared in HTML, and not needed there.
     tail = tail.replace("xlink:href", "href")
     style = f'style="max-width:{points / 72 * 1.75:.2f}in"'
-    told = f'class="plot" role="img" aria-label="{html.escape(label)}" {style}'
-    return f"{head} {told}>{tail.rstrip()}"
+    attributes = f'class="plot" role="img" aria-label="{html.escape(label)}" {style}'
+    return f"{head} {attributes}>{tail.rstrip()}"

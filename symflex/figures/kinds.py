@@ -111,7 +111,7 @@ def draw_shape(
 
 
 def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
-    """Return one mode shape as a notebook shows it; None where nothing moves that could be drawn."""
+    """Return one mode shape as a notebook shows it; None if nothing moves that could be drawn."""
     return raster_of(draw_shape(model, shape)) if panels_of(model, [shape]) else None
 
 

@@ -118,16 +118,16 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         # Infinitely many zeros have no number that those listed could tell.
         outside = 0 if kind == ZERO and locus.start.is_infinite else len(points) - len(inside)
         if inside or (points and kind != ZERO):
-            told = f"{label} ({outside if inside else 'all'} outside)" if outside else label
-            draw_points(axes, inside, LOOKS[kind], told)
-    for branches, line, told_of in (
+            legend_entry = f"{label} ({outside if inside else 'all'} outside)" if outside else label
+            draw_points(axes, inside, LOOKS[kind], legend_entry)
+    for branches, line, said_of in (
         (locus.branches, "-", ""),
         (locus.entering, "--", "from poles not marked"),
     ):
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
-            entry = told_of if told_of and not i else None
+            entry = said_of if said_of and not i else None
             axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=entry)
     _draw_holes(axes, locus)
     label_s_plane(axes)
@@ -256,17 +256,18 @@ def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
 
 
 def _draw_curves(
-    followed: Sequence[Curve], told: Sequence[str], canvas: Canvas, verdict: str | None = None
+    followed: Sequence[Curve], labels: Sequence[str], canvas: Canvas, verdict: str | None = None
 ) -> Figure:
-    """Draw curves with what they are told by; with a verdict, of a closed loop, these are loop gains."""
+    """Draw curves with their labels; with a verdict, of a closed loop, these are loop gains."""
     width = canvas.width or COLUMN_INCHES
     is_loop = verdict is not None
     if len(followed) > 1:
-        told = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in zip(told, followed, strict=True)]
-    columns = _columns(told, width)
+        pairs = zip(labels, followed, strict=True)
+        labels = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in pairs]
+    columns = _columns(labels, width)
     counted = _sentence_of_poles([poles for _, poles in followed], is_loop=is_loop)
     lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
-    rows = -(-len(told) // columns)
+    rows = -(-len(labels) // columns)
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + rows))
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
@@ -277,7 +278,7 @@ def _draw_curves(
     axes.set_xlim(*across)
     axes.set_ylim(*upwards)
     reach = max(map(abs, (*across, *upwards)))
-    for curve, label, colour in zip(curves, told, cycle(COLOURS), strict=False):
+    for curve, label, colour in zip(curves, labels, cycle(COLOURS), strict=False):
         values = drawable(curve, reach)
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)

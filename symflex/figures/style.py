@@ -37,9 +37,9 @@ TITLE_SPACING: Final = 0.95
 DOTS_SHOWN: Final = 120
 """Dots per inch of a figure in a notebook: a column is then as wide as its lines of text."""
 
-# Okabe and Ito (2008), told apart with every kind of colour blindness; their yellow is too pale for a line.
+# Okabe and Ito (2008), distinct for every kind of colour blindness; their yellow is too pale for a line.
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-# Told apart in black and white too.
+# Distinct in black and white too.
 DASHES: Final = ("-", (0, (5, 1.5)), (0, (5, 1.2, 1.2, 1.2)), (0, (1.2, 1.2)))
 QUIET: Final = "#8C8C8C"
 FAINT: Final = "#E3E3E3"

@@ -70,7 +70,7 @@ OVERDAMPED: Final = 1.5
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
 FEW_LINES: Final = 12
-"""Lines per mode that are told apart by how pale they are."""
+"""Lines per mode that are distinguished by how pale they are."""
 PALEST: Final = 0.3
 CROWD: Final = 4000
 """Points of a cloud beyond which marks become dots."""

@@ -40,7 +40,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 def check_writable(path: Path) -> None:
     """Refuse, before anything is computed for it, a file that could not be written afterwards.
 
-    Raises UsageError: SF903 as :func:`write_atomically`, as far as it can be told beforehand.
+    Raises UsageError: SF903 as :func:`write_atomically`, as far as that is known beforehand.
 
     Examples
     --------

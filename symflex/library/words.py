@@ -148,7 +148,7 @@ FORMULAS = {("T_i", "k_i"): 'k_i = "k_p/T_i"', ("T_n", "k_i"): 'k_i = "k_p/T_n"'
 
 
 def key_meant(word: str, known: Iterable[str]) -> str | None:
-    """Return which of the known keys an unknown one means, None where that is not plain.
+    """Return which of the known keys an unknown one means, None if that is not plain.
 
     Examples
     --------
@@ -161,7 +161,7 @@ def key_meant(word: str, known: Iterable[str]) -> str | None:
 
 
 def thing(word: str) -> Thing | None:
-    """Return what a word names, in any case, with blanks or hyphens; None where nothing is known of it.
+    """Return what a word names, in any case, with blanks or hyphens; None if nothing is known of it.
 
     Examples
     --------

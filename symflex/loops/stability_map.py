@@ -480,7 +480,7 @@ def _end(value: arb | None, infinite: str, digits: int, interval: GainInterval) 
 
 def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
     boundary, digits, change = stability.boundaries[index], stability.digits, stability.change(index)
-    printed = decimals(boundary.gain, arb(0), digits).told
+    printed = decimals(boundary.gain, arb(0), digits).readable
     kinds, places = boundary.crossings, boundary.frequencies
     omegas = ", ".join(figure(w, digits) for w in places[:SHOWN])
     if places[SHOWN:]:

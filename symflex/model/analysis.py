@@ -204,7 +204,7 @@ def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) ->
 
 
 def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction | None:
-    """Return the last time that a figure shows [s], None where it does not say."""
+    """Return the last time that a figure shows [s], None if it does not say."""
     entry = table.get("until")
     if entry is None:
         return None
@@ -252,7 +252,7 @@ def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model)
 def _range(
     reader: Reader, table: TableValue, kind: str, what: str, gain: ModelParameter | None
 ) -> tuple[Fraction, Fraction] | None:
-    """Return the first and last gain of a locus in SI units, None where it does not say."""
+    """Return the first and last gain of a locus in SI units, None if it does not say."""
     entry = table.get("range")
     if entry is None:
         return None

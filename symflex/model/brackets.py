@@ -182,7 +182,7 @@ class _Opener:
         return _placed(number(0) if operand is None else operand, bracket.span)
 
     def slope(self, expression: Expression) -> Expression | None:
-        """Return the derivative along x, None where an expression is constant."""
+        """Return the derivative along x, None if an expression is constant."""
         match expression:
             case Name(name) if name in self.unknowns:
                 return Derivative(name, 1, span=expression.span)
@@ -234,7 +234,7 @@ class _Opener:
 
 
 def slope_along_x(expression: Expression, name: str = COORDINATE) -> Expression | None:
-    """Return the derivative of a coefficient along x, or in another name, None where it is constant."""
+    """Return the derivative of a coefficient along x, or in another name, None if it is constant."""
     return _Opener(frozenset(), has_coordinate=True, is_condition=False, coordinate=name).slope(expression)
 
 

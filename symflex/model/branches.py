@@ -128,7 +128,7 @@ def _radical(node: Expression) -> Radical | None:
 
 
 def _factor(radical: Radical, base: Expression) -> Expression | None:
-    """Return what a root is times that of ``base*s + ...``, to the same power; None where it has no name."""
+    """Return what a root is times that of ``base*s + ...``, to the same power; None if it has no name."""
     exponent, slope, _ = radical
     if slope == base:
         return number(1)

@@ -64,7 +64,7 @@ class DeclaredParameter:
 
     @property
     def measured(self) -> Quantity | None:
-        """What it is measured in, with its cycles; ``None`` where no unit was written."""
+        """What it is measured in, with its cycles; ``None`` if no unit was written."""
         if self.quantity is None:
             return one_of(self.unit_text) if self.unit_text else None
         return self.quantity if self.has_unit else None
@@ -372,7 +372,7 @@ def _read_definition(reader: Reader, entry: KeyValue) -> Definition | None:
 
 
 def _value_and_label(reader: Reader, entry: KeyValue, what: str, example: str) -> tuple[Value | None, str]:
-    """Return what an entry holds, alone or as ``expr`` beside a label; None where that is missing."""
+    """Return what an entry holds, alone or as ``expr`` beside a label; None if that is missing."""
     if not isinstance(entry.value, TableValue):
         return entry.value, ""
     reader.keys(entry.value, ("expr", "latex", "doc"), what)

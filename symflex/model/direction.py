@@ -62,7 +62,7 @@ def direction_of(angle: Expression) -> Mapping[str, Expression]:
 
 
 def _part(angle: Expression) -> Fraction | None:
-    """Return an angle as a part of half a turn, None where it is none that the text shows."""
+    """Return an angle as a part of half a turn, None if it is none that the text shows."""
     match angle:
         case Number(value) if not value:
             return value
@@ -85,7 +85,7 @@ def _part(angle: Expression) -> Fraction | None:
 
 
 def _square(part: Fraction) -> Fraction | None:
-    """Return the square of the cosine of a part of half a turn, None where it is not rational."""
+    """Return the square of the cosine of a part of half a turn, None if it is not rational."""
     within = part % 1
     return SQUARES.get(min(within, 1 - within))
 

@@ -300,7 +300,7 @@ class DrawingHints:
 
     order: tuple[str, ...] = ()  # nodes from left to right
     symbols: tuple[tuple[str, str], ...] = ()  # transformers with what they are drawn as
-    rollers: bool | None = None  # below masses; None where that is left to the drawing
+    rollers: bool | None = None  # below masses; None if that is left to the drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -417,12 +417,12 @@ class Model:
         """
         network = {n.name for n in self.nodes} | {use.name for use in self.elements}
         uses: dict[str, set[str]] = {"": set()}
-        told = [(d.name, d.expression) for d in self.definitions]
-        told += [(x.name, x.expression) for x in self.signals if not isinstance(x.expression, Equation)]
+        owned = [(d.name, d.expression) for d in self.definitions]
+        owned += [(x.name, x.expression) for x in self.signals if not isinstance(x.expression, Equation)]
         for use in self.elements:
             driven = {port.name for port in use.element.parameters if port.signal}
-            told += [("", value) for name, value in use.values if name in driven]
-        for owner, expression in told:
+            owned += [("", value) for name, value in use.values if name in driven]
+        for owner, expression in owned:
             owners = {n.owner if isinstance(n, Attribute) else n.name for n in names(expression)}
             uses.setdefault(owner, set()).update("" if name in network else name for name in owners)
         for start, first in uses.items():

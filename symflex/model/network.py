@@ -292,7 +292,7 @@ def _references(
 
 
 def _as_ports(table: TableValue, element: Element) -> str | None:
-    """Return how nodes given under another element's port are written, None where that is not told."""
+    """Return how nodes given under another element's port are written, None if that is not known."""
     own = {name for p in element.ports for name in (p.name, p.pair)}
     missing = [p for p in element.ports if table.get(p.name) is None and p.default is None]
     for entry in table.entries:

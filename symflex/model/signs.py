@@ -104,7 +104,7 @@ class Line:
             self._opened[name] = self._read(expression)
 
     def sign(self, difference: Expression) -> int | None:
-        """Return the sign of an expression, ``None`` where it cannot be told."""
+        """Return the sign of an expression, ``None`` if it cannot be decided."""
         polynomial = self._read(difference)
         if polynomial is None:
             return self._sign_in_balls(difference)
@@ -388,7 +388,7 @@ def _ball(number: Fraction) -> arb:
 
 
 def value_along(value: Expression, x: arb, line: Line) -> arb | None:
-    """Return what varies along x on a ball of x, None where a parameter has no value."""
+    """Return what varies along x on a ball of x, None if a parameter has no value."""
     known = {**line.enclosures, COORDINATE: x}
     for name, expression in line.definitions.items():
         if name not in known and (number := _enclosed(expression, known)) is not None:
@@ -397,7 +397,7 @@ def value_along(value: Expression, x: arb, line: Line) -> arb | None:
 
 
 def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
-    """Return an enclosure of an expression, None where a name has no value."""
+    """Return an enclosure of an expression, None if a name has no value."""
     try:
         enclosure: arb = fold(
             lower(expression),
@@ -412,7 +412,7 @@ def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
 
 
 def _slope_along(value: Expression, x: arb, line: Line) -> arb | None:
-    """Return the slope of what varies along x on a ball of x, None where it is not known."""
+    """Return the slope of what varies along x on a ball of x, None if it is not known."""
     beside = arb_series([x, 1], 2)
     # Series have the arithmetic of balls.
     series = cast("arb_series | arb | None", value_along(value, cast("arb", beside), line))
@@ -453,7 +453,7 @@ def sign_between(
     slope: Callable[[arb], arb | None],
     is_zero: tuple[bool, bool],
 ) -> int | None:
-    """Return the sign of a function of x all along an interval, but at ends; ``None`` where it is not told.
+    """Return the sign of a function of x all along an interval, but at ends; ``None`` if it is not known.
 
     ``value`` and ``slope`` enclose the function and its slope on a ball of x; ``is_zero`` says of each end
     whether the function vanishes there.
@@ -485,7 +485,7 @@ def sign_between(
 
 
 def sign_of(number: arb | None) -> int | None:
-    """Return the sign of all numbers of a ball, ``None`` where they have none in common.
+    """Return the sign of all numbers of a ball, ``None`` if they have none in common.
 
     Examples
     --------
@@ -572,7 +572,7 @@ def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> b
 
 
 def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
-    """Return the signs of an element's parameters, ``None`` where one cannot be told.
+    """Return the signs of an element's parameters, ``None`` if one cannot be decided.
 
     One that varies along a member has a sign where that is proved to be positive everywhere.
     """

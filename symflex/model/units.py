@@ -122,7 +122,7 @@ def _check_fields(
 def declared_quantities(
     declared: Sequence[DeclaredParameter], inherited: Sequence[ModelParameter]
 ) -> dict[str, Quantity | None]:
-    """Return what every parameter is measured in, ``None`` where no unit was written."""
+    """Return what every parameter is measured in, ``None`` if no unit was written."""
     quantities = {p.name: p.measured for p in declared}
     return quantities | {p.name: _in_si(p) for p in inherited}
 

@@ -162,8 +162,8 @@ _TIMES: Final = RootColumn(
     "multiplicity", ("Multi-", "plicity"), "", lambda root, printed, digits: str(root.multiplicity)
 )
 
-_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.told.re)  # beside a radius
-_TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.told.im)
+_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.readable.re)  # beside a radius
+_TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.readable.im)
 PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
 """Columns of tables on web pages."""
 PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)

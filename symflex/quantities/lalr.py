@@ -50,7 +50,7 @@ class UnexpectedError(Exception):
     def __init__(self, start: int, token: Token | None, expected: frozenset[str]) -> None:
         super().__init__(start)
         self.start = start  # an offset in the text
-        self.token = token  # what stands there; None where no word of the language begins
+        self.token = token  # what stands there; None if no word of the language begins
         self.expected = expected  # the terminals that could stand there
 
 

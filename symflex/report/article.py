@@ -132,7 +132,7 @@ def _drawn_width(picture: PageFigure) -> float:
 
 
 def picture_size(svg: str) -> tuple[float, float] | None:
-    """Return width and height of a drawing [pt], None where it does not say.
+    """Return width and height of a drawing [pt], None if it does not say.
 
     Examples
     --------

@@ -153,9 +153,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     if len(models) < 2:  # noqa: PLR2004 - one model compares with nothing
         return None
     structures = [facts for facts in models if not facts.loops]
-    told = [facts for facts in models if facts.data]
+    compared = [facts for facts in models if facts.data]
     controlled = [facts for facts in models if facts.loops or facts.colocations]
-    chosen = ((structures, COLUMNS), (told, DATA_COLUMNS), (controlled, LOOP_COLUMNS))
+    chosen = ((structures, COLUMNS), (compared, DATA_COLUMNS), (controlled, LOOP_COLUMNS))
     tables = [_table(rows, heads) for rows, heads in chosen if rows]
     explained: tuple[Paragraph, ...] = (
         text(

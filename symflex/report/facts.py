@@ -80,11 +80,11 @@ class TransferFacts:
     certified: bool  # all of them are proved, and their number
     is_infinite: bool  # there are more: the function is transcendental
     counts: tuple[int, int] | None = None  # zeros and poles of a rational function, with multiplicity
-    # rigid and undamped: the same with all compliances rigid, and with all dampers taken away; None where
+    # rigid and undamped: the same with all compliances rigid, and with all dampers taken away; None if
     # there is no limit. Zeros are None where the rigid model has no response, as nothing moves.
     rigid: tuple[int | None, int] | None = None
     undamped: tuple[int, int] | None = None
-    # colocated: the output is taken where the input acts; None where one of them has no place.
+    # colocated: the output is taken where the input acts; None if one of them has no place.
     colocated: bool | None = None
     # What its zeros are the poles of: a kind of :class:`~symflex.analysis.explanation.ZeroExplanation`.
     explained: str = "unknown"
@@ -195,7 +195,7 @@ class LoopFacts:
     # gain and unit: name and SI unit.
     gain: str
     unit: str
-    # Intervals with all closed-loop poles in the left half plane; None where there is no end.
+    # Intervals with all closed-loop poles in the left half plane; None if there is no end.
     stable: tuple[tuple[float | None, float | None], ...]
     unstable_at_last: int  # poles right of the imaginary axis for the largest gains examined
     crossings_hz: tuple[float, ...]  # where poles are on the axis at the boundaries [Hz]

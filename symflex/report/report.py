@@ -215,9 +215,9 @@ def write_chapters(
     if processes < 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
-            told = progress if len(named) == 1 else None
+            heard = progress if len(named) == 1 else None
             with entered_budget().share(CHAPTERS).entered():
-                done[stem] = chapter_of(path, stem, measured, allow_outside, told)
+                done[stem] = chapter_of(path, stem, measured, allow_outside, heard)
         return tuple(done.values())
     done = _in_processes(named, processes, progress, measured, allow_outside)
     # A process that ends takes with it what others have begun: alone, the models show which one it is.

@@ -1,7 +1,7 @@
 """Where a model bends and gives way, whether an output is taken where an input acts, and what limits count.
 
 Eppinger and Seering (1988, "Discussion") divide flexibility into that of the base, the transmission and the
-links. Here the three are told apart by what a compliance joins: one with an end on ground belongs to the
+links. Here the three are distinguished by what a compliance joins: one with an end on ground belongs to the
 base; between moving parts one in bending belongs to a link, one in tension or torsion to the transmission.
 None of them is what an axis touches: a compliance on ground whose force an output or a signal shows, as that
 of a force sensor, is a contact.
@@ -86,7 +86,7 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
 def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     """Tell whether an output is taken where an input acts, or rigidly joined to it.
 
-    None where the output shows no motion of a place, or where the input acts at none.
+    The result is None if the output shows no motion of a place, or where the input acts at none.
     """
     model = in_one_way(model)
     (output,) = (each for each in model.outputs if each.name == output.name)

@@ -248,7 +248,7 @@ class Study:
 
         What the zeros mean tells which that is: of it they are the poles of the system held there.
         """
-        kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), told.kind) for tf, _, told in self.located]
+        kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), meaning.kind) for tf, _, meaning in self.located]
         joints = {key: tf for tf, key, kind in kinds if kind == "colocated"}
         colocations = []
         for tf, key, kind in kinds:
@@ -260,7 +260,7 @@ class Study:
         return tuple(colocations)
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
-        """Return the product of the lowest modes of a function, None where there is no such approximation."""
+        """Return the product of the lowest modes of a function, None if there is no such approximation."""
         bound = next(b for b in self.bounds if b.name == tf.name)
         if not isinstance(bound, BoundTransferFunction):
             return None

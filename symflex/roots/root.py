@@ -35,17 +35,17 @@ HUNDRED = 100
 class RootDecimals:
     """A root in decimals: the true root lies within ``radius`` of ``re + j im``."""
 
-    # re and im: decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when only not told
-    # from 0.
+    # re and im: decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when it cannot be
+    # distinguished from 0.
     re: str
     im: str
     radius: str  # distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact
 
     @property
-    def told(self) -> RootDecimals:
+    def readable(self) -> RootDecimals:
         """The same for people, for whom ``0e-15`` says no more than that a part may be zero.
 
-        >>> RootDecimals("0e-15", "2.0", "1e-15").told.re
+        >>> RootDecimals("0e-15", "2.0", "1e-15").readable.re
         '~0'
         """
         re, im = (NEARLY_ZERO if part.startswith("0e") else part for part in (self.re, self.im))

@@ -167,7 +167,7 @@ def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) 
     """Return the matrices with every entry the double nearest to its exact value.
 
     SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is too
-    large or too small for double precision, SF401 when it cannot be told whether an entry is zero.
+    large or too small for double precision, SF401 when it cannot be decided whether an entry is zero.
     """
     rounding = rounding_of(system, values)
     arrays = []

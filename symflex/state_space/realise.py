@@ -242,7 +242,7 @@ class _Rows:
 
 
 def _as_filter(row: Row, column: int) -> tuple[dict[int, FieldElement], Row] | None:
-    """Return num and the row ``den z - x`` of a row ``den y - num x``, ``None`` where num is constant."""
+    """Return num and the row ``den z - x`` of a row ``den y - num x``, ``None`` if num is constant."""
     parts: dict[int, dict[int, FieldElement]] = {}
     for (other, power), value in row.items():
         if other != column:

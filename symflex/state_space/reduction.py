@@ -192,7 +192,7 @@ def _at_random_point(
 ) -> tuple[int, dict[int, dict[int, int]]] | None:
     """Return a prime, and the least such space modulo it with random numbers in place of parameters.
 
-    Entries stand by pivot. ``None`` where no numbers satisfy the relations of roots.
+    Entries stand by pivot. The result is ``None`` if no numbers satisfy the relations of roots.
     """
     n = system.order
     point = system.radicals.point(seed)

@@ -316,7 +316,7 @@ def _matrix(rows: Sequence[Sequence[arb]], columns: int) -> arb_mat:
 
 
 def _doubles(matrix: arb_mat) -> npt.NDArray[np.float64] | None:
-    """Return the nearest double of every entry; None where more precision is needed, or nothing fits."""
+    """Return the nearest double of every entry; None if more precision is needed, or nothing fits."""
     rows, columns = matrix.nrows(), matrix.ncols()
     doubles = np.zeros((rows, columns))
     entries = [(i, j, matrix[i, j]) for i in range(rows) for j in range(columns)]

@@ -155,7 +155,7 @@ def between(limits: Range, count: int) -> tuple[ExactValue, ...]:
 def points_between(start: Point, end: Point, pieces: int) -> list[Point] | None:
     """Return the points that divide the way from one point to another into equal pieces.
 
-    ``None`` where their values differ by a power of pi.
+    The result is ``None`` if their values differ by a power of pi.
     """
     if any(a.pi_power != b.pi_power for a, b in zip(start, end, strict=True)):
         return None

@@ -288,7 +288,7 @@ class FolderJournal:
         return sum(1 for _ in self.folder.glob("chunk-*.npz"))
 
     def read(self, chunk: int) -> Rows | None:
-        """Return a chunk that was kept, ``None`` where it was not or is not as it was written."""
+        """Return a chunk that was kept, ``None`` if it was not or is not as it was written."""
         try:
             data = read_bytes(os.fspath(self._path(chunk)), SIZE_LIMIT)
             content = data[len(self._head(chunk, b"")) :]

@@ -36,7 +36,7 @@ Between = Callable[[int, int, int], Sequence[Complexes] | None]
 Integers = npt.NDArray[np.int64]
 
 CLEAR = 2.0
-"""Paths are told apart when they stay further apart than this many times the errors of what was foretold."""
+"""Paths are distinct when they stay further apart than this many times the errors of what was foretold."""
 LINE, FACTOR = 0.25, 0.5
 """What was foretold along a line, or by one factor, is trusted no further than to these shares of a move."""
 FAR = 1.5
@@ -53,7 +53,7 @@ class NameOrigin(IntEnum):
     """How a root got its name.
 
     ``START``: here names begin, in order of natural frequency. ``SIMILAR``: from the predecessor, whose roots
-    are the same but for one factor. ``CLEAR``: told apart from all others. ``DOUBTFUL``: its path
+    are the same but for one factor. ``CLEAR``: distinguished from all others. ``DOUBTFUL``: its path
     comes close to another's or crosses it, or the step is too long. ``REAL_AXIS``: a pair became two real
     roots or the reverse. ``APPEARS``: no root of the predecessor is left for it.
     """
@@ -230,7 +230,7 @@ def _steps_before(seen: dict[int, Complexes], steps: Predecessors, i: int, old: 
 def _divided(
     between: Between, ends: tuple[int, int], before: Complexes, old: Integers, own: Complexes
 ) -> tuple[Integers, npt.NDArray[np.int8]] | None:
-    """Return names and links by way of points in between, ``None`` where roots come or go on the way."""
+    """Return names and links by way of points in between, ``None`` if roots come or go on the way."""
     result = None
     for pieces in PIECES:
         halfway = between(*ends, pieces)

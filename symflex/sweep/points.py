@@ -138,7 +138,7 @@ class FoundRoot:
 
     place: Doubles  # centre and radius [rad/s]
     multiplicity: int  # exact where certified; else how many roots the disc holds
-    status: RootStatus  # certified, or several that could not be told apart
+    status: RootStatus  # certified, or several that could not be separated
 
 
 @dataclass(frozen=True, slots=True)
@@ -330,8 +330,8 @@ def solve_response(task: Task) -> Solver:
             values[i] = [bound(complex(0, w)) for w in omega]
             return PointStatus.CERTIFIED
 
-        told = _each(points, one)
-        return {"re": values.real.copy(), "im": values.imag.copy(), **told}
+        outcome = _each(points, one)
+        return {"re": values.real.copy(), "im": values.imag.copy(), **outcome}
 
     return solve
 
@@ -362,11 +362,11 @@ def solve_margins(task: Task) -> Solver:
                 values[name][i], values[f"{name}_radius"][i] = centre, radius
             return PointStatus.CERTIFIED if stability.certified else PointStatus.NOT_CERTIFIED
 
-        told = _each(points, one)
+        outcome = _each(points, one)
         said = _said(verdicts)
         word = said["verdict"]
         stable = np.where(word == STABLE, 1, np.where(word == UNKNOWN, -1, 0)).astype(np.int8)
-        return {**values, "stable": stable, **said, **told}
+        return {**values, "stable": stable, **said, **outcome}
 
     return solve
 

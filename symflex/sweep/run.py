@@ -175,7 +175,7 @@ def run_sweep(
     done: dict[int, Rows] = {chunk: rows for chunk, rows in kept.items() if rows is not None}
     missing = [chunk for chunk in chunks if chunk not in done]
     before = sum(len(rows["point_status"]) for rows in done.values())
-    ended, start, told = before, clock(), progress or Silent()
+    ended, start, heard = before, clock(), progress or Silent()
     pickled = pickle.dumps(task)
     solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
     try:
@@ -185,7 +185,7 @@ def run_sweep(
                 journal.write(chunk, rows)
             ended += len(rows["point_status"])
             left = time_left((clock() - start) / (ended - before) * (design.count - ended))
-            told.report(ended / design.count, f"{ended} of {design.count} points, {left} left")
+            heard.report(ended / design.count, f"{ended} of {design.count} points, {left} left")
     except BrokenExecutor as error:
         hint = "there may be too little memory; with -o, the same command continues where this one stopped"
         message = f"a worker stopped before it was done: {error}"

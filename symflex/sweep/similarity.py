@@ -89,7 +89,7 @@ class Similarities:
         self._order = first.order
 
     def at(self, values: Mapping[str, ExactValue]) -> Similarity | None:
-        """Return the similarity at a point, ``None`` where the function has no such scale."""
+        """Return the similarity at a point, ``None`` if the function has no such scale."""
         if not self._is_possible:
             return None
         point = _Point(values, self._waves, self._polynomials)

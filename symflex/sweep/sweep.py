@@ -98,7 +98,7 @@ class Sweep:
 
     @property
     def is_certified(self) -> bool:
-        """Nothing is missing at any point, and all roots are told apart."""
+        """Nothing is missing at any point, and all roots are separated."""
         if np.any(self["point_status"] > PointStatus.EXCEPT_ACCUMULATION):
             return False
         return self.of not in ("poles", "zeros") or not bool(np.any(self["status"] == RootStatus.TOGETHER))
@@ -303,7 +303,7 @@ def _stability(sweep: Sweep, points: str) -> list[str]:
 
 
 def _doubts(sweep: Sweep) -> list[str]:
-    """Return where roots, or the names of modes, are not told apart."""
+    """Return where roots, or the names of modes, are not separated."""
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
     holding = f"{counted(together, 'enclosure')} {'holds' if together == 1 else 'hold'}"
     lines = [f"{INDENT}{holding} roots that cannot be told apart"] if together else []

@@ -257,7 +257,7 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
 
     With c_1/(s - p) + c_2/(s - p)^2 + ... at every pole and g_0 the coefficient of s^0 in the Laurent series
     of G at s = 0, the correction is g_0 minus what the poles other than 0 contribute at s = 0. SF405 when a
-    residue cannot be told.
+    residue cannot be decided.
     """
     residues = residues_at(bound, kept.poles, digits)
     start = expand_at_zero(bound, kept.excess, digits)
@@ -317,7 +317,7 @@ def _array(roots: Sequence[acb]) -> np.ndarray[tuple[int], np.dtype[np.complex12
 
 
 def _real_coefficients(polynomial: acb_poly) -> tuple[mpmath.mpf, ...]:
-    """Return the real parts in descending powers, without leading ones that cannot be told from zero."""
+    """Return the real parts in descending powers, without leading ones that may be zero."""
     coefficients = [c.real for c in polynomial.coeffs()]
     while len(coefficients) > 1 and coefficients[-1].contains(0):
         coefficients.pop()

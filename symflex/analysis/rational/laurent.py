@@ -103,7 +103,7 @@ class LaurentSeries:
 def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSeries:
     """Return the Laurent series at s = 0 up to the power ``last``, and at least its leading term.
 
-    Every coefficient that is not zero has so many significant digits. SF405 when they cannot be told.
+    Every coefficient that is not zero has so many significant digits. SF405 when they cannot be decided.
     """
     if isinstance(bound, BoundNested):
         return _network_at_zero(NetworkSides(bound, 0.0), last, digits)
@@ -210,7 +210,7 @@ def expand_at_pole(
 ) -> tuple[acb, LaurentSeries]:
     """Return a pole other than 0, refined, and the principal part there, to so many significant digits.
 
-    SF405 when poles cannot be told apart, or the coefficients cannot be told.
+    SF405 when poles cannot be separated, or the coefficients cannot be decided.
     """
     name = bound.bound.name if isinstance(bound, NetworkSides) else bound.name
     if not root.certified:
@@ -408,7 +408,7 @@ class PrincipalPart:
     pole: acb  # its enclosure, refined [rad/s]
     # Enclosures of the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order.
     coefficients: tuple[acb, ...]
-    is_estimate: bool  # the pole could not be told from others, or the residue is not proved
+    is_estimate: bool  # the pole could not be distinguished from others, or the residue is not proved
 
     @property
     def value(self) -> acb:
@@ -429,7 +429,7 @@ def find_residues(
     """Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
 
     The region is one of :func:`symflex.roots.locate.locate`; SF505 or SF506 where the search for poles takes
-    too long, SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
+    too long, SF405 when poles cannot be separated, or the behaviour at one cannot be decided.
     """
     check_causal(bound.source.model, "a residue")
     if not isinstance(bound, BoundNested):
@@ -479,7 +479,7 @@ BRANCHES = 4
 def local_values(
     evaluator: KernelValues, centre: acb, terms: int, branches: int = 1
 ) -> dict[str, Value] | None:
-    """Return the series of all generators about p [rad/s]; None where a wavenumber is no such series.
+    """Return the series of all generators about p [rad/s]; None if a wavenumber is no such series.
 
     So many ``terms`` in e are computed with; roots of what vanishes lose some. ``branches`` is n: 1 where
     wavenumbers neither vanish nor meet, else :data:`BRANCHES`.

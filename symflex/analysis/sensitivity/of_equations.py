@@ -100,7 +100,7 @@ class MovingRoot:
         return singular_pair(self.matrix.value(s), self._typical)
 
     def refine(self) -> tuple[SingularPair, acb] | None:
-        """Enclose the root closer; return the vectors on it and dT/ds, None where these are not enclosed."""
+        """Enclose the root closer; return the vectors on it and dT/ds, None if these are not enclosed."""
         enclosed = self._on_place()
         while enclosed is not None:
             middle = self.place.mid()

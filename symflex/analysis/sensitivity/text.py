@@ -50,7 +50,7 @@ def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str
 def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
     rows: list[tuple[str, ...]] = [HEAD]
     roots = {m.index: m.root for m in moved}
-    printed = {i: decimals(r.re, r.im, DIGITS).told for i, r in roots.items()}
+    printed = {i: decimals(r.re, r.im, DIGITS).readable for i, r in roots.items()}
     places = {(p.re, p.im) for p in printed.values()}
     for index, group in groupby(moved, key=lambda m: m.index):
         re, im = printed[index].re, printed[index].im
@@ -95,7 +95,7 @@ def _row(derivative: RootDerivative) -> tuple[str, ...]:
         return (f"{name}: {OBSTACLES[derivative.status]}",)
     relative, damping = derivative.relative, derivative.damping_ratio
     if relative is None:
-        slope = decimals(derivative.derivative.real, derivative.derivative.imag, DIGITS).told
+        slope = decimals(derivative.derivative.real, derivative.derivative.imag, DIGITS).readable
         shown = slope.re if slope.im == "0" else f"{slope.re} + ({slope.im}) j"
         return (f"{name}: ds/dp = {shown}",)
     if _is_zero(derivative):

@@ -84,7 +84,7 @@ class DelayedQuotient:
 
 
 def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
-    """Return a function as a quotient of sums of delays; None where it holds anything else, or too much."""
+    """Return a function as a quotient of sums of delays; None if it holds anything else, or too much."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
         return None
@@ -128,7 +128,7 @@ class DelayReader:
     def of(
         cls, bound: BoundTransferFunction, arguments: tuple[Argument, ...], slowness: Mapping[str, Factored]
     ) -> DelayReader | None:
-        """Return the reader of a function; None where an argument is no delay."""
+        """Return the reader of a function; None if an argument is no delay."""
         ring = bound.ratio.ring
 
         def real_value(value: Factored) -> arb:
@@ -183,7 +183,7 @@ class DelayReader:
         return sum_of(*(((self.delays[x][0], self.delays[x][1] * a),) for x, a, _ in exponent))
 
     def read(self, factor: fmpz_mpoly) -> dict[Delay, Amplitude] | None:
-        """Return a factor as a sum of delays; None where there are too many."""
+        """Return a factor as a sum of delays; None if there are too many."""
         terms = exponential_sum(self.bound.ratio.ring, self.bound.kernels, self.arguments, factor)
         if terms is None:
             return None

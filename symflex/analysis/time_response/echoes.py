@@ -165,7 +165,7 @@ def earliest(below: Iterable[Delay], durations: Durations) -> Delay:
 
 
 def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int) -> Sampled | None:
-    """Return the response at one precision, from poles of so many digits; None where these may be too few."""
+    """Return the response at one precision, from poles of so many digits; None if these may be too few."""
     first = earliest(quotient.below, quotient.durations)
     leading = quotient.durations.exact(quotient.below[first])
     poles = find_polynomial_roots(RootProblem(((leading, 1),)), digits) if leading.degree else ()

@@ -150,17 +150,17 @@ class EnclosedResponse:
         """How far each value may be off, what rounding to doubles takes away among it."""
         return self._doubles[1]
 
-    def told(self, ball: arb) -> RootDecimals:
+    def in_decimals(self, ball: arb) -> RootDecimals:
         """Return a number in decimals, as ``re`` with its ``radius``."""
         return decimals(ball, arb(0), self.digits)
 
-    def _told_json(self, name: str, ball: arb) -> dict[str, object]:
-        told = self.told(ball)
-        return {name: told.re, f"{name}_radius": told.radius}
+    def _json(self, name: str, ball: arb) -> dict[str, object]:
+        shown = self.in_decimals(ball)
+        return {name: shown.re, f"{name}_radius": shown.radius}
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the response as ``symflex respond --json`` prints it."""
-        told = [self.told(y) for y in self.enclosures]
+        shown = [self.in_decimals(y) for y in self.enclosures]
         document: dict[str, object] = {
             "schema": SCHEMA,
             "tf": self.tf,
@@ -168,15 +168,13 @@ class EnclosedResponse:
             "unit": self.unit,
             "certified": self.certified,
             "time": self.times.tolist(),
-            "value": [t.re for t in told],
-            "radius": [t.radius for t in told],
+            "value": [t.re for t in shown],
+            "radius": [t.radius for t in shown],
             "impulses": [
-                {**self._told_json("time", i.time), "order": i.order, **self._told_json("weight", i.weight)}
+                {**self._json("time", i.time), "order": i.order, **self._json("weight", i.weight)}
                 for i in self.impulses
             ],
-            "jumps": [
-                self._told_json("time", j.time) | self._told_json("height", j.height) for j in self.jumps
-            ],
+            "jumps": [self._json("time", j.time) | self._json("height", j.height) for j in self.jumps],
         }
         document |= {"shaper": self.shaper} if self.shaper else {}
         document |= {"initial": self.initial} if self.initial else {}
@@ -193,8 +191,8 @@ class EnclosedResponse:
         heads += [f"# initial: {self.initial}"] if self.initial else []
         if not self.certified:
             heads.append(f"# not certified: {self.reason}")
-        told = [self.told(y) for y in self.enclosures]
-        rows = [f"{t!r},{d.re},{d.radius}" for t, d in zip(self.times.tolist(), told, strict=True)]
+        shown = [self.in_decimals(y) for y in self.enclosures]
+        rows = [f"{t!r},{d.re},{d.radius}" for t, d in zip(self.times.tolist(), shown, strict=True)]
         return "\n".join([*heads, "time_s,value,radius", *rows]) + "\n"
 
 
@@ -219,17 +217,17 @@ def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     step = max(1, -(-(count - 1) // (ROWS - 1)))
     rows = [("t [s]", "value", "radius")]
     for i in range(0, count, step):
-        rows.append((f"{response.times[i]:.12g}", *_told(response.enclosures[i], response.digits)))
+        rows.append((f"{response.times[i]:.12g}", *_columns(response.enclosures[i], response.digits)))
     lines += aligned(rows, "  ")
     if step > 1:
         lines += ["", f"  every {step} of {count} points; --json and -o FILE.csv have them all"]
     return "\n".join(lines)
 
 
-def _told(ball: arb, digits: int) -> tuple[str, str]:
-    told = decimals(ball, arb(0), digits).told
-    exponent, narrowest = int(told.radius.partition("e-")[2] or 0), max(NARROWEST, digits)
-    return told.re, told.radius if exponent <= narrowest else f"1.0e-{narrowest}"
+def _columns(ball: arb, digits: int) -> tuple[str, str]:
+    shown = decimals(ball, arb(0), digits).readable
+    exponent, narrowest = int(shown.radius.partition("e-")[2] or 0), max(NARROWEST, digits)
+    return shown.re, shown.radius if exponent <= narrowest else f"1.0e-{narrowest}"
 
 
 def _short(ball: arb) -> str:

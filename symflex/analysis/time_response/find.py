@@ -100,7 +100,7 @@ def time_response(
     ModelError
         SF813 for large networks with delays.
     UncertifiedError
-        SF810 when poles cannot be told apart, or modes do not say what the response is.
+        SF810 when poles cannot be separated, or modes do not say what the response is.
 
     Examples
     --------

@@ -58,7 +58,7 @@ class SizeOfExponentials:
 
     @classmethod
     def of(cls, bound: BoundTransferFunction) -> SizeOfExponentials | None:
-        """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
+        """Return the evaluator of a function; None if a wavenumber has no formula, or for long sums."""
         sums = exponential_sums(bound.ratio, bound.kernels)
         if sums is None:
             return None
@@ -186,7 +186,7 @@ class ModesBound(ABC):
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
         """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
 
-        The input is an impulse, integrated so often. None where nothing is proved.
+        The input is an impulse, integrated so often. The result is None if nothing is proved.
         """
 
     @property

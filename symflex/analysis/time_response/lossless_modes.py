@@ -234,7 +234,7 @@ class LosslessModes(ModesBound):
     def _largest(self, factor: AxisFactor, least: arb) -> tuple[arb, int] | None:
         """Return how large a residue may be over powers of t, and at how many places in a turn it may be one.
 
-        None where the slope may vanish, or another factor that has poles.
+        The result is None if the slope may vanish, or another factor that has poles.
         """
         cell = 2 * arb.pi() / EFFORT.cells
         largest, signs = arb(0), []
@@ -301,8 +301,8 @@ def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
 def _multiplied(bound: BoundTransferFunction) -> Factored | None:
     """Return the function with one factor for all kernels above, and one for those below.
 
-    One by one they need not be real on the axis: ``cosh(q) cos(q)`` is, and ``cosh(q)`` is not. None where
-    factors below are powers.
+    One by one they need not be real on the axis: ``cosh(q) cos(q)`` is, and ``cosh(q)`` is not. The result is
+    None if factors below are powers.
     """
     ring = bound.ratio.ring
     above, below = ring.constant(1), ring.constant(1)

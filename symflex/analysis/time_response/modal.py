@@ -65,7 +65,7 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
 def proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int | None = None
 ) -> PartialSum | None:
-    """Return a sum over modes with a proved bound of those left out; None where there is none.
+    """Return a sum over modes with a proved bound of those left out; None if there is none.
 
     At most so many modes are summed, where so many digits would need more.
     """
@@ -124,7 +124,7 @@ class BoundedModes:
         self.is_exhausted = False  # whether a search for more modes ended by itself
 
     def summed(self, count: int) -> PartialSum | None:
-        """Return the sum over so many modes, None where it is not proved.
+        """Return the sum over so many modes, None if it is not proved.
 
         Where they are hard to find, fewer are taken; where the bound holds farther out only, more.
         """
@@ -218,7 +218,7 @@ class BoundedModes:
         return rings, terms, missing
 
     def _continued(self, count: int) -> tuple[float, list[Root]] | None:
-        """Return ln of a radius and all roots within, those found so far continued; None where that fails.
+        """Return ln of a radius and all roots within, those found so far continued; None if that fails.
 
         Square roots of high poles of bending, of waves damped in the material too, are evenly spaced, nearly,
         so each is next to where the last four point to. That none is missing a count of the ring says.
@@ -276,7 +276,7 @@ def _root_of(pole: Root) -> complex:
 
 
 def term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> ExponentialTerm | None:
-    """Return what a pole and its conjugate add; None where it is not told from other points."""
+    """Return what a pole and its conjugate add; None if it is not distinguished from other points."""
     try:
         (part,) = residues_at(bound, [root], EFFORT.pole_digits)
     except UncertifiedError:
@@ -310,7 +310,7 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
 
 
 def proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
-    """Return what the pole at s = 0 adds; None where that is not proved."""
+    """Return what the pole at s = 0 adds; None if that is not proved."""
     series = expand_at_zero(bound, integrations - 1, EFFORT.pole_digits)
     return None if series.is_estimate else at_origin(series, integrations)
 

@@ -123,8 +123,8 @@ def partial_fractions(
 ) -> list[ExponentialTerm] | None:
     """Return the inverse Laplace transform of a quotient over ``s^integrations`` for t > 0.
 
-    ``poles`` are all poles of the quotient, proved, with both members of each conjugate pair. None where
-    poles are not told apart, or balls are too wide.
+    ``poles`` are all poles of the quotient, proved, with both members of each conjugate pair. The result is
+    None if poles are not separated, or balls are too wide.
     """
     if not all(root.certified for root in poles):
         return None

@@ -104,7 +104,7 @@ class Asked:
 
     @cached_property
     def quotient(self) -> DelayedQuotient | None:
-        """The function as a quotient of delays; None where it holds anything else."""
+        """The function as a quotient of delays; None if it holds anything else."""
         return delayed_quotient(self.bound) if self.bound.is_distributed else None
 
 

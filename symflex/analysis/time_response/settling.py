@@ -139,7 +139,7 @@ def late_response(
     """Return what a step response settles into, at the current precision, from poles of so many digits.
 
     With more integrations it is that of a ramp, on whose line H/s is divided by s, and s is no smaller than
-    the rate. None where that is not proved: delayed terms do not fall off against D_0, or H does not.
+    the rate. It is None if that is not proved: delayed terms do not fall off against D_0, or H does not.
     """
     loop = _Loop(quotient, digits)
     if not loop.falls_off:
@@ -179,7 +179,7 @@ def settled(
     times: SampleTimes,
     digits: int,
 ) -> Sampled | None:
-    """Return a response to a step or ramp: echoes at first, then residues; None where there is no bound.
+    """Return a response to a step or ramp: echoes at first, then residues; None if there is no bound.
 
     Residues begin when the bound on the other poles is below the ``goal``, in digits of the largest value.
     Raises TooManyEchoesError when too many echoes arrive until then.
@@ -233,7 +233,7 @@ def _right_of(
 def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
     """Return the integral of abs(H/s) along a line over pi, and how many poles are right of it.
 
-    None where a pole is too close to the line.
+    The result is None if a pole is too close to the line.
     """
     radius = (1 + rate).mid()
     while not loop.far(loop.below, rate, radius) < radius / 2:
@@ -277,7 +277,7 @@ def pieces_of(
 ) -> list[tuple[arb, tuple[ExponentialTerm, ...]]] | None:
     """Return a step response as pieces up to a time [s]: when each begins, and its terms from then on.
 
-    None where poles are not told apart. Raises TooManyEchoesError.
+    The result is None if poles are not separated. Raises TooManyEchoesError.
     """
     loop = _Loop(quotient, digits)
     below = acb_poly(loop.leading)

@@ -80,7 +80,7 @@ ZERO: Final = arb(0)
 
 @dataclass(frozen=True, slots=True)
 class StepInfo:
-    """Properties of a step response that comes to rest, each a ball; None where it is not found.
+    """Properties of a step response that comes to rest, each a ball; None if it is not found.
 
     Times are in seconds, values in the output's unit.
     """
@@ -150,9 +150,9 @@ def find_step_info(
 ) -> StepInfo | None:
     """Return the properties of a step response, from poles of about so many digits, or from a known sum.
 
-    None where it does not come to rest, or at 0, where poles cannot be told apart, with a root of s, with
-    waves in a loop with a delay, and with those whose modes are not bounded, as of large networks. With
-    waves, numbers are as sharp as the modes left out allow.
+    The result is None if it does not come to rest, or at 0, where poles cannot be separated, with a root of
+    s, with waves in a loop with a delay, and with those whose modes are not bounded, as of large networks.
+    With waves, numbers are as sharp as the modes left out allow.
     """
     check_causal(bound.source.model, "a step response")
     if isinstance(bound, BoundNested):
@@ -199,7 +199,7 @@ def _of_modes(bound: BoundTransferFunction, known: PartialSum | None) -> StepInf
 
 
 def _resting(terms: Sequence[ExponentialTerm]) -> arb | None:
-    """Return where a response comes to rest; None where it does not, or at 0."""
+    """Return where a response comes to rest; None if it does not, or at 0."""
     resting = [t for t in terms if t.rate.is_zero()]
     final = sum((t.coefficients[0].real for t in resting if t.coefficients), arb(0))
     if any(c != 0 for t in resting for c in t.coefficients[1:]) or final.contains(0):
@@ -264,7 +264,7 @@ def _size(term: ExponentialTerm, t: arb) -> arb:
 
 
 def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
-    """Return the properties of a step response; None where it does not come to rest, or at 0.
+    """Return the properties of a step response; None if it does not come to rest, or at 0.
 
     Examples
     --------
@@ -348,7 +348,7 @@ class NormalisedResponse:
 
     def __init__(self, pieces: Sequence[Piece]) -> None:
         self.pieces = pieces
-        self.is_lost = False  # something could not be told
+        self.is_lost = False  # something could not be decided
 
     def parts(self, until: arb) -> list[tuple[Piece, arb, arb]]:
         """Return the pieces up to a time, each with when it begins and ends."""
@@ -370,8 +370,8 @@ class NormalisedResponse:
     def peak(self) -> tuple[arb | None, arb] | None:
         """Return when the response is the highest and how high; no time where it exceeds 1 nowhere.
 
-        None where it cannot be told. Of all intervals that may hold the highest value the one that may be the
-        highest is halved, until all that are left are short.
+        The result is None if it cannot be decided. Of all intervals that may hold the highest value the one
+        that may be the highest is halved, until all that are left are short.
         """
         close = CLOSE + 4 * float(self.pieces[-1].rest)
         until = self.quiet(close)
@@ -426,7 +426,7 @@ class NormalisedResponse:
         return None if most is None or least is None else most.union(least)
 
     def settling(self, band: float, until: arb) -> arb | None:
-        """Return after which time the response stays within a band about 1; None where that is not told."""
+        """Return after which time the response stays within a band about 1; None if that is not known."""
         self.is_lost = False
         earliest, latest = arb(0), arb(0)
         for sign in (1, -1):
@@ -440,7 +440,7 @@ class NormalisedResponse:
     def crossing(self, level: float, sign: int, until: arb, *, is_last: bool) -> arb | None:
         """Return the first or last time at which the most, or least, that it may be passes a level.
 
-        None where it does not; None, and ``is_lost``, too, where that cannot be told.
+        The result is None if it does not; None, and ``is_lost``, too, where that cannot be decided.
         """
         shortest = until * arb(2) ** -HALVINGS
         pending = self.parts(until)[:: 1 if is_last else -1]

@@ -119,7 +119,7 @@ class WaveQuotient:
     ) -> tuple[dict[Delay, arb], dict[Delay, arb]] | None:
         """Return how large what begins and what follows are at most outside a circle.
 
-        None where they are not analytic there: where a root, or D_0, may turn about 0 on the circle.
+        They are None if not analytic there: where a root, or D_0, may turn about 0 on the circle.
         """
         above: dict[Delay, arb] = {}
         below: dict[Delay, arb] = {}
@@ -135,7 +135,7 @@ class WaveQuotient:
         return above, below
 
     def _normalised(self, place: _AtInfinity) -> _Parts | None:
-        """Return the function over powers of s; None where D_0 may be 0."""
+        """Return the function over powers of s; None if D_0 may be 0."""
         above: dict[Delay, Value] = {NO_DELAY: acb(ball(self.bound.ratio.unit))}
         below: dict[Delay, Value] = {NO_DELAY: acb(1)}
         for number, (_, exponent) in enumerate(self.sums):
@@ -226,9 +226,9 @@ class _AtInfinity:
 
     @classmethod
     def on(cls, waves: WaveQuotient, x: Value, origin: _AtInfinity | None = None) -> _AtInfinity | None:
-        """Return the place; None where wavenumbers over s are not analytic.
+        """Return the place; None if wavenumbers over s are not analytic.
 
-        A ball is one on a circle about the ``origin``, at which ``spread`` is not told.
+        A ball is one on a circle about the ``origin``, at which ``spread`` is not known.
         """
         values = waves.values
         roots: dict[str, Value] = {}
@@ -320,7 +320,7 @@ def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -
 
 
 def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
-    """Return a function as waves with speeds, None where it holds anything else."""
+    """Return a function as waves with speeds, None if it holds anything else."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
         return None

@@ -281,8 +281,8 @@ def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     if equations.unknowns and any(int(x) for x in through.entries()):
         felt = whole.transpose().solve(seen.transpose())
         diagnostics += _idle_elements(equations, driven, felt)
-    told = {d.span for d in model.warnings}
-    return tuple(d for d in diagnostics if d.span not in told)
+    warned = {d.span for d in model.warnings}
+    return tuple(d for d in diagnostics if d.span not in warned)
 
 
 def _zero_ends(equations: Equations, through: nmod_mat) -> Iterator[Diagnostic]:
@@ -312,8 +312,8 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
     model = equations.model
     read = {n.owner for _, e in model.expressions() for n in names(e) if isinstance(n, Attribute)}
     place = {v: i for i, v in enumerate(equations.unknowns)}
-    told = {d.span for d in model.warnings}
-    loose = {n.name for n in model.nodes if n.span in told}
+    warned = {d.span for d in model.warnings}
+    loose = {n.name for n in model.nodes if n.span in warned}
     balance = {r.about: i for i, r in enumerate(equations.rows) if r.role == "balance"}
     idle: dict[str, list[PlacedElement]] = {}
     for use in model.elements:

@@ -199,7 +199,7 @@ class Passivity:
 
 @dataclass(frozen=True, slots=True)
 class PortTerminal:
-    """The across variables of one attached node, ``None`` where it is the reference.
+    """The across variables of one attached node, ``None`` if it is the reference.
 
     A non-planar node has only ``across``; a planar one has ``y`` and ``theta``, and ``x`` in the plane.
     """

@@ -94,7 +94,7 @@ class LineElement(Element):
         )
 
     def initial_state(self, use: ElementUse) -> tuple[Variable | None, ...]:
-        """Return the unknowns that are the state at x = 0, None where it is held to zero."""
+        """Return the unknowns that are the state at x = 0, None if it is held to zero."""
         return (*self._across(use.terminals["between"][0]), *self._delivered_first(use))
 
     def final_state(self, use: ElementUse) -> list[tuple[Variable | None, Factored]]:

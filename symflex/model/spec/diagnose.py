@@ -188,7 +188,7 @@ def _bad_value(source: Source, text: str, statement: Statement, message: str, of
 
 
 def _escape(text: str, statement: Statement, message: str, offset: int) -> tuple[int, int] | None:
-    """Return where the escape stands that a message of tomllib is about, None where it is about another."""
+    """Return where the escape stands that a message of tomllib is about, None if it is about another."""
     escape = next((escape for begins, escape in _ESCAPES.items() if message.startswith(begins)), None)
     if escape is None:
         return None

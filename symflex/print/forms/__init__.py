@@ -209,7 +209,7 @@ def _order(tf: TransferFunction) -> int:
 
 
 def _written(tf: TransferFunction) -> PrintedForm | None:
-    """Return a function as a sum of blocks, None where it is not written so."""
+    """Return a function as a sum of blocks, None if it is not written so."""
     from symflex.print.forms.written import written_form  # few prints are so long
 
     return _proposed(tf, written_form(tf))

@@ -74,7 +74,7 @@ def apart(tf: TransferFunction) -> TransferFunction:
 
 
 def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
-    """Return a function in kernels of two multiples of one angle, None where no two serve."""
+    """Return a function in kernels of two multiples of one angle, None if no two serve."""
     source = tf.ratio.ring
     other = {f: f"{g} apart" for f, g in angle.kernels.items()}
     ring = Ring((*source.names, *other.values()))
@@ -121,7 +121,7 @@ def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
 
 
 def _as_sums(multiples: Collection[int], pair: tuple[int, int]) -> dict[int, tuple[int, int]] | None:
-    """Return multiples as sums of few of two numbers, None where one of them is no such sum."""
+    """Return multiples as sums of few of two numbers, None if one of them is no such sum."""
     few = sorted(product(range(-TWO, TWO + 1), repeat=2), key=lambda n: abs(n[0]) + abs(n[1]))
     sums = {x * pair[0] + y * pair[1]: (x, y) for x, y in reversed(few)}
     if not all(n in sums for n in multiples):

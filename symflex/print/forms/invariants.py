@@ -114,7 +114,7 @@ class Invariants:
         return None
 
     def _invariant(self, polynomial: fmpz_mpoly) -> Factored | None:
-        """Return a polynomial in the K, times powers of wavenumbers; ``None`` where it has no such form."""
+        """Return a polynomial in the K, times powers of wavenumbers; ``None`` if it has no such form."""
         work: fmpz_mpoly = self.embed(polynomial)
         scale = Factored.number(self.ring, 1)
         for number, dispersion in enumerate(self.table.dispersions):
@@ -309,7 +309,7 @@ def factor_by_factor(
     one: Callable[[fmpz_mpoly], Factored | None],
     whole: Callable[[fmpz_mpoly], Factored | None],
 ) -> Factored | None:
-    """Return a quotient over another ring, ``None`` where it has no image there.
+    """Return a quotient over another ring, ``None`` if it has no image there.
 
     ``one`` is the image of a factor, and ``whole`` that of the product of those of a side that have none by
     themselves.
@@ -337,8 +337,8 @@ def in_krylov_functions(
 ) -> tuple[Invariants, Factored] | None:
     """Return the change, and a quotient in Krylov-Duncan functions; of half the lengths if it must be.
 
-    ``None`` where numerator and denominator are invariant only after both are multiplied by more than a
-    wavenumber.
+    The result is ``None`` if numerator and denominator are invariant only after both are multiplied by more
+    than a wavenumber.
     """
     change = Invariants(source, table)
     converted = change.convert(value)

@@ -34,7 +34,7 @@ def krylov_form(tf: TransferFunction) -> PrintedForm:
 
 
 def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
-    """Return what :func:`krylov_form` arranges; ``None`` where the function has no such form."""
+    """Return what :func:`krylov_form` arranges; ``None`` if the function has no such form."""
     if not tf.has_formula:
         return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "krylov", tf.ratio, arranged))
     converted = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)

@@ -52,7 +52,7 @@ SIMPLE: Final = 64
 
 
 def own_form(tf: TransferFunction) -> PrintedForm | None:
-    """Return a form in one's own names, None where no factor of the function is one in them."""
+    """Return a form in one's own names, None if no factor of the function is one in them."""
     lines = tf.model.analysis.print
     if tf.is_distributed or tf.is_large:
         return None

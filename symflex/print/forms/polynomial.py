@@ -132,7 +132,7 @@ def hyperbolic_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
 
 
 def factored_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
-    """Return what :func:`factored_form` arranges, ``None`` where kernels do not factor."""
+    """Return what :func:`factored_form` arranges, ``None`` if kernels do not factor."""
     from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 
     value = irreducible_kernels(tf.ratio, tf.kernels)

@@ -103,7 +103,7 @@ def terms_of(value: Factored) -> int:
 Arrange = Callable[..., PrintedForm]
 """A function that arranges a transfer function; one that prints decimals takes their digits, too."""
 Begin = Callable[..., BegunForm | None]
-"""A function that begins a form of a transfer function; ``None`` where it is no other than the first one."""
+"""A function that begins a form of a transfer function; ``None`` if it is no other than the first one."""
 RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
 DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")

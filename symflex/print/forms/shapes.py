@@ -641,7 +641,7 @@ def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) 
 
 
 def _scaled(total: Sum, divisor: Fraction, digits: int) -> Expression | None:
-    """Return a sum divided by a number, None where that has no short decimals."""
+    """Return a sum divided by a number, None if that has no short decimals."""
     terms = []
     for term in total.terms:
         front, powers = powers_of(term)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 def written_form(tf: TransferFunction) -> PrintedForm | None:
-    """Return a transfer function as sums of its output and signals, None where these say something else."""
+    """Return a transfer function as sums of its output and signals, None if these say something else."""
     model, name = tf.model, tf.input.name
     if (
         tf.hidden

@@ -42,7 +42,7 @@ def column_width(said: float | str) -> float:
 
 
 def width_of(said: float | str | None) -> float | None:
-    """Return the width of a column [mm] as :func:`column_width` does, None where nothing is said."""
+    """Return the width of a column [mm] as :func:`column_width` does, None if nothing is said."""
     return None if said is None else column_width(said)
 
 

@@ -246,11 +246,11 @@ def best_fit(
     publication gives no measure, and the claim is not examined. ``synthetic`` is said where the only data are
     synthetic.
     """
-    told = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
-    measured = [(stem, fact) for stem, fact in told if not fact.is_synthetic]
+    compared = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
+    measured = [(stem, fact) for stem, fact in compared if not fact.is_synthetic]
     if not measured:
         lacking = "The comparison needs measured data, and the report has none."
-        return _unexamined(f"{lacking} {synthetic} {_off(told)}." if told else lacking)
+        return _unexamined(f"{lacking} {synthetic} {_off(compared)}." if compared else lacking)
     if not decibels:
         return _unexamined(f"The claim does not say what counts as close. {_off(measured)}.")
     good = {stem for stem, fact in measured if fact.decibels < decibels}
@@ -333,8 +333,10 @@ def _unexamined(reason: str) -> Finding:
     return Finding("not examined", (reason,))
 
 
-def _off(told: list[tuple[str, DataFact]]) -> str:
-    return "; ".join(f"{stem} is off by {f.decibels:.3g} dB, {f.degrees:.3g} degrees rms" for stem, f in told)
+def _off(facts: list[tuple[str, DataFact]]) -> str:
+    return "; ".join(
+        f"{stem} is off by {f.decibels:.3g} dB, {f.degrees:.3g} degrees rms" for stem, f in facts
+    )
 
 
 def _loop(models: Models, stem: str) -> LoopFacts:

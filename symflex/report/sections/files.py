@@ -114,14 +114,16 @@ def _picture(
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
     data = study.comparisons if figure.has_data and chosen else ()
-    told = next((c for c in data if c.measured.name == chosen[0].name), None)
+    beside = next((c for c in data if c.measured.name == chosen[0].name), None)
     if figure.gain and figure.kind in LOOP_FIGURES:
         drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
         caption = f"{LOOP_WORDS[figure.kind]} {figure.gain}."
-    elif told is not None:
-        drawn = draw_measured(told.measured, told.model, told.unit)
-        kind = "SYNTHETIC data, computed and not measured" if told.measured.is_synthetic else "measured data"
-        caption = f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
+    elif beside is not None:
+        drawn = draw_measured(beside.measured, beside.model, beside.unit)
+        kind = (
+            "SYNTHETIC data, computed and not measured" if beside.measured.is_synthetic else "measured data"
+        )
+        caption = f"{beside.measured.name} over {kind}, {beside.measured.values.size} lines."
     else:
         frame = AxisLimits(x=(0.0, float(figure.until))) if figure.until else FREE
         drawn = draw(figure.kind, chosen, band_hz=figure.band, frame=frame)

@@ -56,7 +56,7 @@ COMPLEX: Final = (
 
 def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
-    explained = {each.tf: told for _, each, told in study.located}
+    explained = {each.tf: meaning for _, each, meaning in study.located}
     reasons = {each.tf: reason for _, each, reason in study.unexplained}
     derived = attempt(lambda: study.tfs)
     tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
@@ -85,7 +85,7 @@ def root_section(study: Study) -> ChapterPart:
     return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
 
 
-def _of(located: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
+def _of(located: PoleZeroMap, meaning: ZeroExplanation | None) -> tuple[Block, ...]:
     certificate = located.certificate
     if certificate.certified:
         mark = Badge("certified", "good")
@@ -110,8 +110,8 @@ def _of(located: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]
             blocks.append(Table(heads, rows, f"{title}: {count}{cut}", root_table(located, kind)))
         elif kind != "hidden":
             blocks.append(text(f"{title}: none."))
-    if told is not None:
-        blocks += [text(*lines) for lines in _told(told)]
+    if meaning is not None:
+        blocks += [text(*lines) for lines in _paragraphs(meaning)]
     return tuple(blocks)
 
 
@@ -134,9 +134,9 @@ def stability_mark(word: str) -> Badge:
     return Badge(word, tones.get(word, "fair"))
 
 
-def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
+def _paragraphs(meaning: ZeroExplanation) -> list[tuple[str, ...]]:
     """Return what the zeros mean, a paragraph as its lines; what concerns the command line is left out."""
-    kept = (p for p in explanation_paragraphs(told) if not p[0].startswith("To see that system"))
+    kept = (p for p in explanation_paragraphs(meaning) if not p[0].startswith("To see that system"))
     shown = ([line.replace("+-", "±").replace("*", "·") for line in paragraph] for paragraph in kept)
     return [tuple(x for line in lines for x in (line, "\n"))[:-1] for lines in shown]
 
