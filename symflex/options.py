@@ -804,8 +804,8 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
 
     wrong = refused(f"--range takes values such as 0, 1e4 or inf, found '{given[:60]}'")
     quantity = _quantity(given, "--range", wrong)
-    known = unit_of(parameter.unit).dimension if parameter.unit else None
-    if quantity.unit and quantity.dimension != known:
+    dimension = unit_of(parameter.unit).dimension if parameter.unit else None
+    if quantity.unit and quantity.dimension != dimension:
         own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
         message = f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"
         raise UsageError(Diagnostic("SF203", message))

@@ -229,11 +229,13 @@ class KernelTable:
     def pairs(self) -> tuple[tuple[Kernel, Kernel], ...]:
         """The even and the odd function, cosh and sinh or cos and sin, of every argument."""
         odd = {"cosh": "sinh", "cos": "sin"}
-        known: dict[tuple[str, str, Factored], Kernel] = {
+        by_argument: dict[tuple[str, str, Factored], Kernel] = {
             (k.function, k.wavenumber, k.length): k for k in self.kernels
         }
         return tuple(
-            (k, known[odd[k.function], k.wavenumber, k.length]) for k in self.kernels if k.function in odd
+            (k, by_argument[odd[k.function], k.wavenumber, k.length])
+            for k in self.kernels
+            if k.function in odd
         )
 
     def embedded(self, images: Iterable[tuple[Factored, Factored]]) -> KernelTable:

@@ -98,14 +98,14 @@ def _joined(terms: Mapping[Product, fmpz_mpoly], matrix: int) -> dict[Product, f
         own = [m for m in product if m.matrix == matrix]
         others = tuple(m for m in product if m.matrix != matrix)
         rows, columns = ([m.rows[0] for m in own], [m.columns[0] for m in own])
-        known: dict[Product, int] = {}
+        signs: dict[Product, int] = {}
         if 1 < len(own) == len(set(rows)) == len(set(columns)):
             for order in permutations(range(len(own))):
                 twins = (Minor(matrix, (i,), (columns[k],)) for i, k in zip(rows, order, strict=True))
-                known[tuple(sorted((*others, *twins)))] = _sign(order)
-        is_whole = all(t in left and (left[t] - part * sign).is_zero() for t, sign in known.items())
-        if known and is_whole:
-            for twin in known:
+                signs[tuple(sorted((*others, *twins)))] = _sign(order)
+        is_whole = all(t in left and (left[t] - part * sign).is_zero() for t, sign in signs.items())
+        if signs and is_whole:
+            for twin in signs:
                 del left[twin]
             # Rows ascend, as factors are sorted.
             ranks = [sorted(columns).index(c) for c in columns]

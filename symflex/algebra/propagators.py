@@ -130,9 +130,9 @@ class Propagation:
         entries = []
         for i, reached in enumerate(reachable(law)):
             for j in range(n):
-                known = self._known.get((dispersion, position, i * n + j))
+                step = self._known.get((dispersion, position, i * n + j))
                 stays = i == j and i not in reached and j in free
-                entries.append(known if known is not None else one * int(stays))
+                entries.append(step if step is not None else one * int(stays))
         return tuple(entries)
 
 
@@ -195,8 +195,8 @@ def _repeated(plain: list[Factored], kappa: Factored, x: Factored, multiplicity:
     n, functions = len(plain), plain
     for m in range(1, multiplicity):
         # The next derivative of g follows from its equation, whose coefficients are binomial.
-        known = [functions[n * i] * (-kappa) ** (m - i) * comb(m, i) for i in range(m) if not kappa.is_zero]
-        beyond = [*functions, -sum(known, x * 0)]
+        lower = [functions[n * i] * (-kappa) ** (m - i) * comb(m, i) for i in range(m) if not kappa.is_zero]
+        beyond = [*functions, -sum(lower, x * 0)]
         # ``(x g)^(k) = x g^(k) + k g^(k-1)``
         product = [x * g + (beyond[k - 1] * k if k else x * 0) for k, g in enumerate(beyond)]
         high = [p / (n * m) for p in product]

@@ -230,9 +230,9 @@ class Workbench:
         if defined is not None:
             return defined
         key = (_GENERATOR, position)
-        known = self._known.get(key)
-        if known is not None:
-            return known
+        step = self._known.get(key)
+        if step is not None:
+            return step
         return self._make(_GENERATOR, (position,), key)
 
     def define(self, position: int, value: int) -> None:

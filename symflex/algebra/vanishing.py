@@ -157,11 +157,11 @@ class TaylorField:
         if lead is None:
             return None
         square, root = series.right_shift(first), self.constant(lead)
-        half, known = pow(2, -1, self.prime), 1
-        while known < self.terms - first:
-            known = min(2 * known, self.terms - first)
+        half, terms = pow(2, -1, self.prime), 1
+        while terms < self.terms - first:
+            terms = min(2 * terms, self.terms - first)
             # Newton's iteration doubles the number of terms.
-            root = (root + square.mul_low(root.inverse_series_trunc(known), known)) * half
+            root = (root + square.mul_low(root.inverse_series_trunc(terms), terms)) * half
         return root.left_shift(first // 2).truncate(self.terms)
 
     def even_odd(self, argument: nmod_poly, start: int, *, circular: bool) -> tuple[nmod_poly, nmod_poly]:
@@ -296,8 +296,10 @@ def _find_point(
     name, zero = ring.names[index], ring.constant(0)
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
-        known = [field.polynomial(parts.get(k, zero), ring.names, values) for k in range(max(parts) + 1)]
-        there = nmod_poly([int(coefficient[0]) for coefficient in known], field.prime)
+        coefficients = [
+            field.polynomial(parts.get(k, zero), ring.names, values) for k in range(max(parts) + 1)
+        ]
+        there = nmod_poly([int(coefficient[0]) for coefficient in coefficients], field.prime)
         root = next((root for root, _ in there.roots()), None)
         if root is None or not int(there.derivative()(root)):
             return False
@@ -332,13 +334,13 @@ def _with_kernels(
     ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
 ) -> dict[str, nmod_poly] | None:
     starts: dict[tuple[int, int], int] = {}
-    known: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
+    pairs: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
     for kernel in table.kernels:
         if kernel.function in ("fundamental", "entry"):
             continue
         circular = kernel.function in ("cos", "sin")
         pair = (kernel.dispersion, kernel.wavenumber, kernel.length, circular)
-        if pair not in known:
+        if pair not in pairs:
             length = field.rational(kernel.length, ring.names, values)
             shift = field.rational(kernel.dispersion.shift, ring.names, values)
             if length is None or shift is None:
@@ -347,8 +349,8 @@ def _with_kernels(
             # Where two wavenumbers meet, both start from one exponential per length.
             place = (int(rate[0]), int(length[0]))
             start = starts.setdefault(place, pow(BASE, 1001 + 2 * len(starts), field.prime))
-            known[pair] = field.even_odd(field.times(rate, length), start, circular=circular)
-        even, odd = known[pair]
+            pairs[pair] = field.even_odd(field.times(rate, length), start, circular=circular)
+        even, odd = pairs[pair]
         if kernel.function == "exp":
             values[kernel.generator] = even + odd
         else:

@@ -395,11 +395,11 @@ def _network_turns(
     below = np.geomspace(lowest / 1000, lowest, TO_REST, endpoint=False)
     path = np.concatenate((below, steps))
     there = np.where(omega < 0, np.conj(values), values)[first]
-    known = np.concatenate((evaluate(bound, below), there))
+    there_and_below = np.concatenate((evaluate(bound, below), there))
     order = _order_at_rest(roots)
     phase = order * np.pi / 2 + _phase_of(roots.zeros, path) - _phase_of(roots.poles, path)
-    usable = np.isfinite(known) & (known != 0) & (path > 0)
-    rest = np.angle(np.where(usable, known, 1) * np.exp(-1j * phase))
+    usable = np.isfinite(there_and_below) & (there_and_below != 0) & (path > 0)
+    rest = np.angle(np.where(usable, there_and_below, 1) * np.exp(-1j * phase))
     rest[usable] = np.unwrap(rest[usable])
     start = rest[usable][0]
     if np.cos(start) < 0:
@@ -596,21 +596,21 @@ def _followed(
     values: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.complex128]], grid: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.float64]:
     """Return a grid with points added where a straight line misses the logarithm of the values between."""
-    known = dict(zip(grid.tolist(), values(grid).tolist(), strict=True))
+    by_frequency = dict(zip(grid.tolist(), values(grid).tolist(), strict=True))
     pending = list(pairwise(grid.tolist()))
     for _ in range(FOLLOWING_ROUNDS):
         middles = np.array([(a * b) ** 0.5 for a, b in pending])
         between = values(middles).tolist()
-        known.update(zip(middles.tolist(), between, strict=True))
+        by_frequency.update(zip(middles.tolist(), between, strict=True))
         split = []
         for (a, b), middle, value in zip(pending, middles.tolist(), between, strict=True):
-            product = known[a] * known[b]
+            product = by_frequency[a] * by_frequency[b]
             if not abs(value * value - product) < FOLLOWING_ERROR * abs(product):
                 split += [(a, middle), (middle, b)]
         pending = split
-        if not pending or len(known) > MOST_POINTS:
+        if not pending or len(by_frequency) > MOST_POINTS:
             break
-    return np.array(sorted(known))
+    return np.array(sorted(by_frequency))
 
 
 def _offsets(width: float, centre: float, reach: float) -> npt.NDArray[np.float64]:

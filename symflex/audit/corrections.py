@@ -239,8 +239,8 @@ def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
     reading, part = wanted.reading, wanted.part
     others: list[Expression] = []
     if isinstance(part, Name):
-        known = (*reading.lines, "s", *sorted(reading.formula.parameters))
-        others = [Name(n) for n in known if n != part.name]
+        available = (*reading.lines, "s", *sorted(reading.formula.parameters))
+        others = [Name(n) for n in available if n != part.name]
     elif isinstance(part, Call):
         others = [Call(f, part.argument) for f in FUNCTION_SWAPS if f != part.name]
     quotients = [n for n in nodes(reading.formula.expression) if isinstance(n, Quotient)]

@@ -155,11 +155,11 @@ def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:
     sums = dict.fromkeys(n for e in roots if e is not None for n in nodes(e) if isinstance(n, Sum))
     reported: list[Sum] = []
     for part in reversed(sums):
-        known = {format_expression(t): d for t in part.terms if (d := measure(t)) is not None}
+        dimensions = {format_expression(t): d for t in part.terms if (d := measure(t)) is not None}
         # What holds a sum that disagrees may disagree for that reason alone.
-        if len(set(known.values())) > 1 and not any(inner in nodes(part) for inner in reported):
+        if len(set(dimensions.values())) > 1 and not any(inner in nodes(part) for inner in reported):
             reported.append(part)
-            terms = ", ".join(f"{term} in '{dimension}'" for term, dimension in known.items())
+            terms = ", ".join(f"{term} in '{dimension}'" for term, dimension in dimensions.items())
             yield f"the terms of {format_expression(part)} disagree: {terms}"
 
 

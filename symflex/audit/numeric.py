@@ -61,12 +61,12 @@ class Numbers:
     def printed_at(self, s: acb, bits: int) -> acb:
         """Return the printed formula's value on a ball."""
         with precision(bits):
-            known: dict[str, acb] = {LAPLACE: s, "pi": acb(arb.pi())}
+            point: dict[str, acb] = {LAPLACE: s, "pi": acb(arb.pi())}
             for name, value in self.values.items():
-                known[name] = acb(ball(value.rational) * arb.pi() ** value.pi_power)
+                point[name] = acb(ball(value.rational) * arb.pi() ** value.pi_power)
             for name, expression in self.formula.lines:
-                known[name] = _value(expression, known)
-            return _value(self.formula.whole, known)
+                point[name] = _value(expression, point)
+            return _value(self.formula.whole, point)
 
     def ratio_at(self, frequency: float) -> tuple[float, float] | None:
         """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` if it has no value."""

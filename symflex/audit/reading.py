@@ -54,10 +54,10 @@ def formula_of(published: Published, model: Model) -> Formula:
             problems.append(Diagnostic("SF225", message, part.exponent.span or part.span))
     if problems:
         raise SpecError(*problems)
-    known = {d.name: d.expression for d in model.definitions} | dict(published.where)
+    meanings = {d.name: d.expression for d in model.definitions} | dict(published.where)
     parameters = frozenset(p.name for p in model.parameters)
-    occurring, _ = lines_in_order(roots, known)
-    lines = tuple((name, known[name]) for name in occurring)
+    occurring, _ = lines_in_order(roots, meanings)
+    lines = tuple((name, meanings[name]) for name in occurring)
     return Formula(published.expression, published.scale, lines, parameters)
 
 
@@ -125,8 +125,8 @@ class _FormulaReader:
             case Number(value):
                 return self.field.number(value)
             case Name(name):
-                known = self.lines.get(name)
-                return self.field.name(name) if known is None else known
+                line = self.lines.get(name)
+                return self.field.name(name) if line is None else line
             case Negative(operand):
                 return -self._value(operand)
             case Sum(terms):

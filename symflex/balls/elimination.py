@@ -154,12 +154,12 @@ def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: in
         target = rows[m]
         factor = target.pop(j) / row[j]
         for k, x in items:
-            known = target.get(k)
-            if known is None:
+            entry = target.get(k)
+            if entry is None:
                 target[k] = -(factor * x)
                 columns[k].add(m)
             else:
-                target[k] = known - factor * x
+                target[k] = entry - factor * x
     columns[j] = set()
 
 

@@ -104,11 +104,11 @@ def pivots(rows: Rows, order: Sequence[int], borders: Sequence[int] = ()) -> Piv
         for place, (j, x) in enumerate(items):
             factor = x / pivot
             target = rows[j]
-            known = target.get(j)
-            target[j] = -(factor * x) if known is None else known - factor * x
+            entry = target.get(j)
+            target[j] = -(factor * x) if entry is None else entry - factor * x
             for k, y in items[place + 1 :]:
-                known = target.get(k)
-                target[k] = rows[k][j] = -(factor * y) if known is None else known - factor * y
+                entry = target.get(k)
+                target[k] = rows[k][j] = -(factor * y) if entry is None else entry - factor * y
         if waiting:
             # What waited may have become usable.
             pending += reversed(waiting)
@@ -158,8 +158,8 @@ def _eliminate_pair(rows: Rows, i: int, j: int, block: arb) -> None:
         for m in around[place:]:
             change = _sum(_times(first.get(m), top), _times(second.get(m), low))
             if change is not None:
-                known = rows[k].get(m)
-                rows[k][m] = rows[m][k] = -change / block if known is None else known - change / block
+                entry = rows[k].get(m)
+                rows[k][m] = rows[m][k] = -change / block if entry is None else entry - change / block
 
 
 def _times(a: arb | None, b: arb | None) -> arb | None:

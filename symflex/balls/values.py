@@ -136,8 +136,8 @@ def balancing(sizes: Sequence[Mapping[int, int]], columns: int, passes: int) -> 
         largest: list[int | None] = [None] * columns
         for i, row in enumerate(sizes):
             for j, e in row.items():
-                known = largest[j]
-                largest[j] = e + left[i] if known is None else max(known, e + left[i])
+                exponent = largest[j]
+                largest[j] = e + left[i] if exponent is None else max(exponent, e + left[i])
         right = [0 if e is None else -e for e in largest]
     return left, right
 

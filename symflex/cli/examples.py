@@ -42,7 +42,7 @@ def examples(context: click.Context, *, as_json: bool) -> int:
     """
     if context.invoked_subcommand is not None:
         return 0
-    known = every_example()
+    examples = every_example()
     if as_json:
         rows = [
             {
@@ -51,12 +51,12 @@ def examples(context: click.Context, *, as_json: bool) -> int:
                 "title": title_of(name, path),
                 "path": str(path),
             }
-            for name, path in known.items()
+            for name, path in examples.items()
         ]
         emit_json({"schema": "symflex.examples/1", "examples": rows})
         return 0
-    for name, path in known.items():
-        say(_line(name, path, max(len(p.stem) for p in known.values() if p.parent in (path, path.parent))))
+    for name, path in examples.items():
+        say(_line(name, path, max(len(p.stem) for p in examples.values() if p.parent in (path, path.parent))))
     return 0
 
 

@@ -270,16 +270,16 @@ def units(unit: str | None, *, as_json: bool) -> int:
     """
     from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 
-    known = {**PREFIXABLE_UNITS, **PLAIN_UNITS} if unit is None else {unit: _checked_unit(unit)}
+    units = {**PREFIXABLE_UNITS, **PLAIN_UNITS} if unit is None else {unit: _checked_unit(unit)}
     if as_json:
         rows = [
             {"unit": name, **_unit_json(one), "takes_prefix": name in PREFIXABLE_UNITS}
-            for name, one in known.items()
+            for name, one in units.items()
         ]
         prefixes = {name: str(factor) for name, factor in PREFIXES.items()} if unit is None else {}
         emit_json({"schema": "symflex.units/1", "units": rows, "prefixes": prefixes})
     elif unit is not None:
-        say(f"{unit} = {in_si(known[unit])}")
+        say(f"{unit} = {in_si(units[unit])}")
     else:
         for title, table in (("with a prefix", PREFIXABLE_UNITS), ("without", PLAIN_UNITS)):
             say(title)

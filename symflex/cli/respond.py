@@ -80,12 +80,12 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         from symflex.analysis.input_shaping import input_shaper
 
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
-    known = None
+    roots = None
     if signal is None:
         # With waves, poles are found only where they are needed for the last time anyway.
-        known = roots_if_found(bound) if until is None or not bound.is_distributed else None
+        roots = roots_if_found(bound) if until is None or not bound.is_distributed else None
         last = until or Fraction(
-            f"{max(default_until(bound, known), default_until(free) if free else 0):.2g}"
+            f"{max(default_until(bound, roots), default_until(free) if free else 0):.2g}"
         )
         times = SampleTimes.evenly(last, given.points or POINTS)
         response = response_from(free, bound, given.to, times, given.digits, shaper)
@@ -106,14 +106,14 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         _write(response, given, Path(given.output))
     else:
         is_step = given.to == "step" and not (signal or shaper or free) and response.certified
-        rests = is_step and _may_rest(known)
+        rests = is_step and _may_rest(roots)
         info = find_step_info(bound, given.digits, response.modes) if rests else None
         if given.as_json:
             emit_json(
                 response.to_json_dict() | ({"step_info": info.to_json_dict(given.digits)} if info else {})
             )
         else:
-            compared = [response.comparison] if response.comparison else _growth(known)
+            compared = [response.comparison] if response.comparison else _growth(roots)
             say(response_text(response, info.lines(response.unit) if info else compared))
     if given.strict and not response.certified:
         raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {response.reason}"))

@@ -122,13 +122,13 @@ class _Plan:
         return part.type_name in ALONE and len(part.nodes) == 1 and any(not e.node for e in part.ends)
 
     def _vectors(self) -> dict[str, tuple[float, float]]:
-        known = values_of(self.model)
+        values_by_name = values_of(self.model)
         values = {use.name: dict(use.values) for use in self.model.elements}
         vectors = {}
         for part in self.members:
             given = values[part.name]
-            length = evaluate(given["l" if "l" in given else "length"], known) or 1.0
-            angle = evaluate(given["angle"], known) or 0.0
+            length = evaluate(given["l" if "l" in given else "length"], values_by_name) or 1.0
+            angle = evaluate(given["angle"], values_by_name) or 0.0
             vectors[part.name] = (length * cos(angle), length * sin(angle))
         return vectors
 

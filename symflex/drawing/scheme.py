@@ -190,9 +190,9 @@ def with_readings(scheme: Scheme, readings: Sequence[str], labels: Labels) -> Sc
                 at = next((m for m in net.marks if (m.style, m.node) == (style, owner)), None)
                 marks = [m for m in net.marks if m is not at]
                 place = net.marks.index(at) if at else len(marks)
-                known = at.labels if at else ()
-                if all(label != shown[2] for *_, label in known):
-                    marks.insert(place, Mark(style, owner, (*known, shown)))
+                beside = at.labels if at else ()
+                if all(label != shown[2] for *_, label in beside):
+                    marks.insert(place, Mark(style, owner, (*beside, shown)))
                     networks[i] = replace(net, marks=tuple(marks))
             elif component and any(p.name == owner for p in net.parts):
                 parts = [replace(p, tags=(*p.tags, shown)) if p.name == owner else p for p in net.parts]
@@ -462,8 +462,8 @@ def _share(model: Model, place: Call) -> float:
     """Return where a point lies along an element, as a share of its length; a half where that is unknown."""
     use = next(e for e in model.elements if e.name == place.name.partition(".")[0])
     length = dict(use.values)["l"]
-    known = values_of(model)
-    at, whole = evaluate(place.argument, known), evaluate(length, known)
+    values = values_of(model)
+    at, whole = evaluate(place.argument, values), evaluate(length, values)
     if at is None or not whole:
         return 0.5
     return min(1.0, max(0.0, at / whole))
@@ -471,11 +471,11 @@ def _share(model: Model, place: Call) -> float:
 
 def values_of(model: Model) -> dict[str, float]:
     """Return what parameters and definitions are, where that is known."""
-    known = {p.name: float(p.value.nearly) for p in model.parameters if p.value}
+    numbers = {p.name: float(p.value.nearly) for p in model.parameters if p.value}
     for one in model.definitions:
-        if (value := evaluate(one.expression, known)) is not None:
-            known[one.name] = value
-    return known
+        if (value := evaluate(one.expression, numbers)) is not None:
+            numbers[one.name] = value
+    return numbers
 
 
 STATIONS: Final = 24

@@ -273,15 +273,13 @@ class _Assembly:
             element, use = self.lines[place.owner]
             return tuple(element.final_state(use))
         cuts = self.cuts.setdefault(place.owner, [])
-        known = next((c for c in cuts if (c.at - place.at).is_zero), None)
-        if known is None:
+        cut = next((c for c in cuts if (c.at - place.at).is_zero), None)
+        if cut is None:
             names = place.medium.system.states
-            known = Cut(
-                place.at, tuple(Variable("field", place.owner, f"{n}({len(cuts) + 1})") for n in names)
-            )
-            cuts.append(known)
-            self.unknowns += known.state
-        return tuple((v, one) for v in known.state)
+            cut = Cut(place.at, tuple(Variable("field", place.owner, f"{n}({len(cuts) + 1})") for n in names))
+            cuts.append(cut)
+            self.unknowns += cut.state
+        return tuple((v, one) for v in cut.state)
 
     def _pieces(self) -> Iterable[Continuum]:
         """Return the distributed parts, cut where their states are unknowns."""
@@ -560,8 +558,8 @@ class _Assembly:
     def _take(self, use: PlacedElement, stamp: Stamp) -> None:
         for branch in stamp.branches:
             key = (branch.b, branch.a) if (branch.b, branch.a) in self.branches else (branch.a, branch.b)
-            known = self.branches.get(key)
-            self.branches[key] = branch.admittance if known is None else known + branch.admittance
+            earlier = self.branches.get(key)
+            self.branches[key] = branch.admittance if earlier is None else earlier + branch.admittance
         for injection in stamp.injections:
             if injection.node is not None:
                 minus = Factored.number(self.ring, -1)

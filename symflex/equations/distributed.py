@@ -165,11 +165,13 @@ def guess(value: Factored, numbers: Mapping[str, ExactValue | None]) -> float:
 
     It tells which of two points along x comes first.
     """
-    known = {n: float(v.rational) * pi**v.pi_power for n, v in numbers.items() if v is not None} | {"pi": pi}
+    doubles = {n: float(v.rational) * pi**v.pi_power for n, v in numbers.items() if v is not None} | {
+        "pi": pi
+    }
     names = value.ring.names
     product = float(value.unit)
     for factor, exponent in value.factors:
-        terms = (int(c) * prod(known.get(names[i], 1.0) ** e for i, e in m) for m, c in terms_of(factor))
+        terms = (int(c) * prod(doubles.get(names[i], 1.0) ** e for i, e in m) for m, c in terms_of(factor))
         product *= sum(terms) ** exponent
     return product
 

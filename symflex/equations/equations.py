@@ -113,8 +113,8 @@ def radicals_of(
         roots = [c for c in roots if not varies_along_x(c)]
     roots = [c for c in roots if format_expression(c) in ring.index]
     units = [ring.index[p.name] for p in parameters if p.is_imaginary and p.name in ring.index]
-    known = {p.name for p in parameters if p.assume != "real"} | {"pi"}
-    positive = frozenset(i for n, i in ring.index.items() if n in known or n.startswith("exp("))
+    signed = {p.name for p in parameters if p.assume != "real"} | {"pi"}
+    positive = frozenset(i for n, i in ring.index.items() if n in signed or n.startswith("exp("))
     if not (roots or units) or ring.is_sparse:
         return Radicals(ring, positive=positive)
 

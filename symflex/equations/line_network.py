@@ -69,18 +69,20 @@ class LineNetwork:
         exponential: Callable[[Value], Value],
     ) -> list[Value]:
         """Return the entries in whatever arithmetic the values of names, s and parameters, have."""
-        known: dict[str, Value] = {}
+        values_by_name: dict[str, Value] = {}
         definitions, delays = dict(self.equations.definitions), self.equations.delays
 
         def generator(key: str) -> Value:
-            if key not in known:
+            if key not in values_by_name:
                 if key in definitions:
-                    known[key] = value(definitions[key])
+                    values_by_name[key] = value(definitions[key])
                 elif key in delays:
-                    known[key] = exponential(product([number(Fraction(-1)), *map(value, delays[key])]))
+                    values_by_name[key] = exponential(
+                        product([number(Fraction(-1)), *map(value, delays[key])])
+                    )
                 else:
-                    known[key] = name(key)
-            return known[key]
+                    values_by_name[key] = name(key)
+            return values_by_name[key]
 
         def polynomial(names: Sequence[str], factor: fmpz_mpoly) -> Value:
             return total(

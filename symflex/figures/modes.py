@@ -219,14 +219,14 @@ def _smooth(
     few = part.intervals()
     many = few * max(1, min(FINER, MOST_POINTS // few))
     points = list(part.sampled(many if part.varying is None else few))
-    known = np.array([float(share) for share, _ in points])
+    shares = np.array([float(share) for share, _ in points])
     moved = np.array([[complex(z[i].mid()) for _, z in points] for i in states])
     if part.varying is None:
-        return known, moved
+        return shares, moved
     from scipy.interpolate import CubicSpline  # other figures need none
 
     share = np.linspace(0, 1, many + 1)
-    return share, CubicSpline(known, moved, axis=1)(share)
+    return share, CubicSpline(shares, moved, axis=1)(share)
 
 
 def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:

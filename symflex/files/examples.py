@@ -83,12 +83,12 @@ def find_example(name: str) -> Path:
     symflex.errors.exceptions.UsageError: error[SF902]: there is no example 'quarter_cart'
       hint: did you mean 'quarter_car'?
     """
-    known = examples()
-    known |= {name.rpartition("/")[2]: path for name, path in known.items()}
+    paths = examples()
+    paths |= {name.rpartition("/")[2]: path for name, path in paths.items()}
     try:
-        return known[name.rstrip("/")]
+        return paths[name.rstrip("/")]
     except KeyError:
-        hint = nearest(name, known) or LISTED
+        hint = nearest(name, paths) or LISTED
         raise UsageError(Diagnostic("SF902", f"there is no example '{name[:64]}'", None, hint)) from None
 
 

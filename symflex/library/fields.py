@@ -389,8 +389,8 @@ def _split(plain: Share, matrix: Matrix, settled: Callable[[Factored], Factored]
     kinds = [classify(p).kind for p, _ in factored]
     if "general" in kinds or any(k == "pair" and m > 1 for k, (_, m) in zip(kinds, factored, strict=True)):
         return (plain,)
-    known = [f for row in matrix for x in row for f, e in x.factors if e < 0]
-    return shares(factored, plain.adjugate, known) or (plain,)
+    inverted = [f for row in matrix for x in row for f, e in x.factors if e < 0]
+    return shares(factored, plain.adjugate, inverted) or (plain,)
 
 
 def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) -> Matrix:

@@ -141,7 +141,7 @@ def pick_tf(
 def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tuple[Figure, ...]:
     """Return the figures asked for."""
     figures: list[Figure] = []
-    known = named_pairs(model) if section else {}
+    pairs = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"figure '{entry.key}'"
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
@@ -151,7 +151,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
-        chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t.value, t.span, known)))
+        chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t.value, t.span, pairs)))
         gain = _gain(reader, table, kind, what, model)
         title = reader.plain(table, "title", what)
         has_data = _has_data(reader, table, kind, chosen, what)
@@ -299,10 +299,10 @@ def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
 def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
     """Return the printed formulas; :mod:`symflex.model.analysis` checks their names."""
     published: list[Published] = []
-    known = named_pairs(model) if section else {}
+    pairs = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"published '{entry.key[:80]}'"
-        tf = pick_tf(reader, entry.key, entry.key_span, known)
+        tf = pick_tf(reader, entry.key, entry.key_span, pairs)
         table = reader.table(entry, what, 'for instance { expr = "1/(m*s^2 + k)" }')
         if table is None or tf is None:
             continue
@@ -379,19 +379,19 @@ def check_printed(published: Published, readable: Readable) -> list[Diagnostic]:
     SF210 an unknown name or function, SF212 a name that may not stand there, SF215 lines that use each other
     in a circle, SF225 an exponent that is not a number.
     """
-    known = {**readable.definitions, **dict(published.where)}
+    meanings = {**readable.definitions, **dict(published.where)}
     roots = [published.expression, *([published.scale] if published.scale is not None else [])]
     problems: list[Diagnostic] = []
     for expression in (*roots, *(e for _, e in published.where)):
-        problems += _name_problems(expression, known, readable)
+        problems += _name_problems(expression, meanings, readable)
         for part in nodes(expression):
             if isinstance(part, Power) and (names(part.exponent) or NUMBERS.value(part.exponent) is None):
                 message = "an exponent in a printed formula is a rational number"
                 problems.append(Diagnostic("SF225", message, part.exponent.span or part.span))
-    _, circle = lines_in_order(roots, known) if not problems else ([], [])
+    _, circle = lines_in_order(roots, meanings) if not problems else ([], [])
     if circle:
         message = f"lines of a printed formula refer to each other in a circle: {' -> '.join(circle)}"
-        problems.append(Diagnostic("SF215", message, known[circle[-1]].span))
+        problems.append(Diagnostic("SF215", message, meanings[circle[-1]].span))
     return problems
 
 

@@ -73,10 +73,10 @@ class DeclaredParameter:
         """Return the parameter in SI units, in cycles or in radians as it was read."""
         unit, measured = implied_unit, self.measured
         is_converted = reading is CycleReading.CONVERTED
-        known = [self.quantity] if self.quantity is not None else []
+        nominal = [self.quantity] if self.quantity is not None else []
         read = Quantity.angular if is_converted else Quantity.cyclic
-        exact = [ExactValue(*read(q)) for q in (*known, *(self.limits or ()))]
-        value = exact[0] if known else None
+        exact = [ExactValue(*read(q)) for q in (*nominal, *(self.limits or ()))]
+        value = exact[0] if nominal else None
         limits = (exact[-2], exact[-1]) if self.limits else None
         if measured is not None and (
             self.quantity is None or reading is CycleReading.TURNED or not implied_unit

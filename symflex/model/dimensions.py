@@ -346,12 +346,12 @@ class DimensionSystem:
             if other is not None:
                 self._note_contradiction(name, uses[0], name, other)
         for among, span in self._ratios:
-            known = [(name, angular[name]) for name in among if name in angular]
-            for name, use in known:
-                if use.angular != known[0][1].angular:
-                    self._note_contradiction(known[0][0], known[0][1], name, replace(use, span=span))
-            if known:
-                use = replace(known[0][1], inferred=False)
+            used = [(name, angular[name]) for name in among if name in angular]
+            for name, use in used:
+                if use.angular != used[0][1].angular:
+                    self._note_contradiction(used[0][0], used[0][1], name, replace(use, span=span))
+            if used:
+                use = replace(used[0][1], inferred=False)
                 angular = {**dict.fromkeys(among, use), **angular}
         counted = {name: q for name, q in self._quantities.items() if q is not None and q.cycles}
         return {name: self._reading(name, q, angular.get(name)) for name, q in counted.items()}
@@ -534,8 +534,8 @@ class DimensionSystem:
 
     def variable(self, variable: Variable) -> Measure:
         """Return what a variable is measured in."""
-        known = self._known.get(variable)
-        return Measure(known or DIMENSIONLESS, () if known else ((variable, Fraction(1)),), weight=1)
+        dimension = self._known.get(variable)
+        return Measure(dimension or DIMENSIONLESS, () if dimension else ((variable, Fraction(1)),), weight=1)
 
     def _call(self, name: str, argument: Expression) -> Measure:
         inner = self.measure(argument)
@@ -637,8 +637,8 @@ class DimensionSystem:
             return True
         (variable, exponent), *rest = measure.unknowns
         others = tuple((v, -e / exponent) for v, e in rest)
-        known = measure.dimension ** (-1 / exponent)
-        self._solved[variable] = (others, known)
+        dimension = measure.dimension ** (-1 / exponent)
+        self._solved[variable] = (others, dimension)
         return True
 
     def _solution(self, variable: Variable) -> Solution:

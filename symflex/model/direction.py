@@ -79,8 +79,8 @@ def _part(angle: Expression) -> Fraction | None:
             return None if inner is None else inner / value
         case Sum(terms):
             parts = [_part(term) for term in terms]
-            known = [p for p in parts if p is not None]
-            return sum(known, Fraction(0)) if len(known) == len(parts) else None
+            shares = [p for p in parts if p is not None]
+            return sum(shares, Fraction(0)) if len(shares) == len(parts) else None
     return None
 
 

@@ -90,13 +90,13 @@ class ModelParameter:
         >>> E.as_written()
         (ExactValue(rational=Fraction(70, 1), pi_power=0, is_imaginary=False), 'GPa')
         """
-        known = self.value if value is None else value
+        exact = self.value if value is None else value
         if not self.written_unit:
-            return known, self.unit
-        if known is None:
+            return exact, self.unit
+        if exact is None:
             return None, self.written_unit
-        of_pi = known.pi_power - self.scale.pi_power if known.rational else 0
-        return ExactValue(known.rational / self.scale.rational, of_pi), self.written_unit
+        of_pi = exact.pi_power - self.scale.pi_power if exact.rational else 0
+        return ExactValue(exact.rational / self.scale.rational, of_pi), self.written_unit
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,18 +112,18 @@ class Reader:
 
         An example shows what the keys are for.
         """
-        known = tuple(allowed)
-        absent = [k for k in known if table.get(k) is None]
+        offered = tuple(allowed)
+        absent = [k for k in offered if table.get(k) is None]
         keys: set[str] = set()
         for entry in table.entries:
-            if entry.key not in known:
+            if entry.key not in offered:
                 meant = key_meant(entry.key, absent)
                 keys |= {meant} if meant else set()
-                hint = f"write {meant}" if meant else nearest(entry.key, known)
-                hint = hint or "; ".join(filter(None, ("known keys: " + ", ".join(known), example)))
-                if entry.key in LOSS_WORDS and "eta_s" in known:
+                hint = f"write {meant}" if meant else nearest(entry.key, offered)
+                hint = hint or "; ".join(filter(None, ("known keys: " + ", ".join(offered), example)))
+                if entry.key in LOSS_WORDS and "eta_s" in offered:
                     hint = "a loss factor is 'eta_s'"
-                elif formulas := [FORMULAS[entry.key, k] for k in known if (entry.key, k) in FORMULAS]:
+                elif formulas := [FORMULAS[entry.key, k] for k in offered if (entry.key, k) in FORMULAS]:
                     hint = f"write {formulas[0]}"
                 elif entry.key == "matrices":
                     hint = "Python's symflex.from_matrices(M=..., D=..., K=...) makes a model of matrices"

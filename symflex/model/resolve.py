@@ -294,17 +294,19 @@ def _inherited_parameters(
     bringing: dict[str, str] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
-            known = own.get(parameter.name) or inherited.get(parameter.name)
-            if known is None:
+            earlier = own.get(parameter.name) or inherited.get(parameter.name)
+            if earlier is None:
                 inherited[parameter.name] = parameter
                 bringing[parameter.name] = block.name
-            elif known.value is not None and parameter.value is not None and known.value != parameter.value:
+            elif (
+                earlier.value is not None and parameter.value is not None and earlier.value != parameter.value
+            ):
                 other = bringing.get(parameter.name)
-                than = f" than in block '{other}' ({known.span})" if other else ""
+                than = f" than in block '{other}' ({earlier.span})" if other else ""
                 here = f"in block '{block.name}' ({parameter.span})"
                 message = f"parameter '{parameter.name}' has another value {here}{than}"
                 hint = "rename one of the two: parameters of a model block are shared by name"
-                reader.note("SF226", message, known.span if known.name in own else block.span, hint)
+                reader.note("SF226", message, earlier.span if earlier.name in own else block.span, hint)
     return tuple(inherited.values())
 
 

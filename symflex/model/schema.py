@@ -254,20 +254,20 @@ def _count(most: int, description: str) -> Schema:
 
 
 def _analysis() -> Schema:
-    known: dict[str, Schema] = {
+    own_keys: dict[str, Schema] = {
         "band": _said(RANGE, "frequencies of interest [Hz]"),
         "data_end": _said(VALUE, "frequency at which the data end that the model was fitted to [Hz]"),
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
         "print": _said({"type": "object", "additionalProperties": VALUE}, "names formulas are printed in"),
     }
-    keys = {key: known.get(key, {}) for key in ANALYSIS_KEYS}
+    keys = {key: own_keys.get(key, {}) for key in ANALYSIS_KEYS}
     return {**_closed(keys), "description": "defaults of the commands"}
 
 
 def _figure() -> Schema:
     texts = {"anyOf": [TEXT, {"type": "array", "items": TEXT}]}
-    known: dict[str, Schema] = {
+    keys: dict[str, Schema] = {
         "kind": {"enum": list(FIGURE_KINDS), "description": "what is drawn"},
         "of": _said(texts, "transfer functions, OUT/IN"),
         "gain": _said(TEXT, "parameter that is the loop's gain"),
@@ -278,7 +278,7 @@ def _figure() -> Schema:
         "title": TEXT,
         "doc": TEXT,
     }
-    return _closed({key: known.get(key, {}) for key in FIGURE_KEYS}, ["kind"])
+    return _closed({key: keys.get(key, {}) for key in FIGURE_KEYS}, ["kind"])
 
 
 def _drawing() -> Schema:

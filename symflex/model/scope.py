@@ -163,12 +163,12 @@ class ModelScope:
             kinds = {m.kind for a in self.owners[name] for m in self.attributes[name, a]}
             what = "an element" if "through" in kinds else "a node of the plane"
             return f"{what} has no value of its own; it offers {names}"
-        known = [
+        usable = [
             n
             for n, ms in self.meanings.items()
             if n not in RESERVED and (not constant or any(m.kind in CONSTANT_KINDS for m in ms))
         ]
-        return nearest_name(name, [*known, *self.inside])
+        return nearest_name(name, [*usable, *self.inside])
 
     def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
         text = f"{expression.owner}.{expression.name}"

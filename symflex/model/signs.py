@@ -176,10 +176,10 @@ class Line:
         for monomial, coefficient in polynomial.items():
             product = coefficient
             for name, exponent in monomial:
-                known = PI_NEARLY if name == "pi" else self.values.get(name)
-                if known is None or (known == 0 and exponent < 0):
+                exact = PI_NEARLY if name == "pi" else self.values.get(name)
+                if exact is None or (exact == 0 and exponent < 0):
                     return None
-                product *= known**exponent
+                product *= exact**exponent
             total += product
         return total
 
@@ -200,8 +200,8 @@ class Line:
             return None
 
     def _name(self, name: str) -> Polynomial:
-        known = self._opened.get(name, {((name, 1),): Fraction(1)})
-        return _unread() if known is None or "." in name else known
+        opened = self._opened.get(name, {((name, 1),): Fraction(1)})
+        return _unread() if opened is None or "." in name else opened
 
 
 class _UnreadError(Exception):
@@ -363,13 +363,13 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
     All other parameters keep their declared values, but for those ``varied``, which do not count. Raises
     UsageError: SF209 a length, stiffness or dead time of a sign it cannot have.
     """
-    known = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
+    exact = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
     line = Line(
         {d.name: d.expression for d in model.definitions},
         frozenset(p.name for p in model.parameters if p.assume == "positive"),
         # The value itself tells the sign of what it stands for alone.
         frozenset(p.name for p in model.parameters if p.assume == "nonnegative" and p.name != name),
-        {each: v.nearly for each, v in known.items()},
+        {each: v.nearly for each, v in exact.items()},
     )
     for ranged in ranged_values(model):
         if message := ranged.complaint(line):
@@ -389,11 +389,11 @@ def _ball(number: Fraction) -> arb:
 
 def value_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return what varies along x on a ball of x, None if a parameter has no value."""
-    known = {**line.enclosures, COORDINATE: x}
+    enclosures = {**line.enclosures, COORDINATE: x}
     for name, expression in line.definitions.items():
-        if name not in known and (number := _enclosed(expression, known)) is not None:
-            known[name] = number
-    return _enclosed(value, known)
+        if name not in enclosures and (number := _enclosed(expression, enclosures)) is not None:
+            enclosures[name] = number
+    return _enclosed(value, enclosures)
 
 
 def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
@@ -563,9 +563,9 @@ def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> b
     It may follow derivatives of them, as inertia does a support's acceleration, but no filter, which has
     poles of its own.
     """
-    known = {"pi", LAPLACE, *inputs, *line.values}
+    allowed = {"pi", LAPLACE, *inputs, *line.values}
     return all(
-        (used := line.opened_names(value)) <= known
+        (used := line.opened_names(value)) <= allowed
         and (LAPLACE not in used or line.is_polynomial_in(value, LAPLACE))
         for _, value in use.values
     )

@@ -50,10 +50,10 @@ def check_units(
     ``infers`` them, parameters without unit fit any.
     """
     quantities = declared_quantities(draft.declared, draft.inherited)
-    known = _known_dimensions(draft, placed)
+    dimensions = _known_dimensions(draft, placed)
     blocks = {b.name: _block_gain(b) for b in draft.blocks}
     definitions = {d.name: d.expression for d in draft.definitions}
-    system = DimensionSystem(scope, quantities, definitions, known, blocks, laplace, infers=infers)
+    system = DimensionSystem(scope, quantities, definitions, dimensions, blocks, laplace, infers=infers)
 
     def require(expression: Expression, unit: str, what: str, doc: str, *, varies: bool = False) -> None:
         if expression.span in unsound:
@@ -90,7 +90,7 @@ def check_units(
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
         system.read(output.expression)
-    has_units = any((placed, known, *quantities.values()))
+    has_units = any((placed, dimensions, *quantities.values()))
     system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
     if system.problems and infers and not system.lacks_an_s:
         # What has no unit may have been meant to have several.
@@ -184,29 +184,29 @@ def _in_si(parameter: ModelParameter) -> Quantity | None:
 
 
 def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Variable, Dimension]:
-    known: dict[Variable, Dimension] = {}
+    dimensions: dict[Variable, Dimension] = {}
     for node in draft.nodes:
         for component in node.components:
             domain = COMPONENT_DOMAIN.get(component, node.domain)
-            known[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension
+            dimensions[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension
     for use in placed:
         domains = dict(use.domains)
         for quantity in use.element.quantities(domains):
             unit = use.element.unit_of(quantity, domains)
-            known[Variable("through", use.name, quantity)] = unit_of(unit).dimension
+            dimensions[Variable("through", use.name, quantity)] = unit_of(unit).dimension
         if isinstance(use.element, LineElement):
             units = {"u": "m", "v": "m", "x": "m", "y": "m", "theta": "rad"}
             for name in (name for quantity in use.element.along for name in quantity):
                 unit = units.get(name) or use.element.unit_of(name, domains)
-                known[Variable("field", f"{use.name}.{name}")] = unit_of(unit).dimension
+                dimensions[Variable("field", f"{use.name}.{name}")] = unit_of(unit).dimension
     for source in draft.inputs:
         unit = source.input.unit or source.unit_text
         if unit:
-            known[Variable("input", source.input.name)] = unit_of(unit).dimension
+            dimensions[Variable("input", source.input.name)] = unit_of(unit).dimension
         kind = INPUT_KINDS.get(source.input.kind)
         if kind is not None and kind.is_imposed:
-            known[kind.delivered(source.input.name)] = unit_of(THROUGH_UNIT[kind.domain]).dimension
-    return known
+            dimensions[kind.delivered(source.input.name)] = unit_of(THROUGH_UNIT[kind.domain]).dimension
+    return dimensions
 
 
 def _block_gain(block: PlacedBlock) -> Measure | Expression:

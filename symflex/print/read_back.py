@@ -178,10 +178,10 @@ class _Reader:
         """What names stand for, each after those it needs."""
         if not (self.form.where or self.form.laws or self.form.closed):
             return {}
-        known = dict(self.form.where)
-        known |= {left.name: e for left, e in self.form.closed if isinstance(left, Name)}
+        lines = dict(self.form.where)
+        lines |= {left.name: e for left, e in self.form.closed if isinstance(left, Name)}
         laws = {name: law for name, law in self.form.laws if not isinstance(law.left, Derivative | Call)}
-        joined = {name: self._with_laws(e, laws) for name, e in known.items()}
+        joined = {name: self._with_laws(e, laws) for name, e in lines.items()}
         form = self.form
         roots = [form.num, form.den, form.argument, *laws.values(), *(law for _, law in form.laws)]
         roots += [e for _, e in form.closed]
@@ -189,7 +189,7 @@ class _Reader:
         if circle:
             message = f"names are defined in a circle: {' -> '.join(circle)}"
             raise _DiffersError(message)
-        return {name: known[name] for name in order}
+        return {name: lines[name] for name in order}
 
     @staticmethod
     def _with_laws(expression: Expression, laws: Mapping[str, Equation]) -> Expression:
@@ -251,13 +251,13 @@ class _Points:
 
     def value(self, expression: Expression, more: Mapping[str, list[acb]] | None = None) -> list[acb]:
         """Return the values of an expression, in which more names may be known."""
-        known = self.known if more is None else {**self.known, **more}
+        values = self.known if more is None else {**self.known, **more}
 
         def named(name: str) -> list[acb]:
-            if name not in known:
+            if name not in values:
                 message = f"nothing says what {name} is"
                 raise _DiffersError(message)
-            return known[name]
+            return values[name]
 
         return principal_values(expression, len(self._chosen), named, self._call, self._number)
 

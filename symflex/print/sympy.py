@@ -42,7 +42,7 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     >>> to_sympy(Sum((Name("a"), Name("b"))), {})
     a + b
     """
-    known = {**symbols, "pi": sympy.pi}
+    table = {**symbols, "pi": sympy.pi}
 
     def called(call: Call, argument: sympy.Expr) -> sympy.Expr:
         if isinstance(call, Bessel):
@@ -56,7 +56,7 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     return fold(
         expression,
         number=lambda value: sympy.Rational(value.numerator, value.denominator),
-        name=lambda name: known[name] if name in known else sympy.Symbol(name),
+        name=lambda name: table[name] if name in table else sympy.Symbol(name),
         power=lambda base, exponent: base ** to_sympy(exponent, symbols),
         call=called,
         total=lambda terms: sympy.Add(*terms),

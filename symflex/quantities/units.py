@@ -352,18 +352,18 @@ def unit_hint(symbol: str) -> str | None:
     small = "k" + symbol[1:]
     if symbol[0] == "K" and (unit_named(small) or run_together(small)):
         return f"did you mean '{small}'?"
-    known = _usual_symbols()
+    symbols = _usual_symbols()
     # Of mPa and MPa, 'MPA' is nearer to the one with more letters as written.
-    same = [name for name in known if name.lower() == symbol.lower()]
+    same = [name for name in symbols if name.lower() == symbol.lower()]
     if same:
         best = max(same, key=lambda name: sum(a == b for a, b in zip(name, symbol, strict=False)))
         return f"did you mean '{best}'?"
-    if symbol.endswith("s") and symbol[:-1] in known and symbol[:-1].endswith(_WORDS):
+    if symbol.endswith("s") and symbol[:-1] in symbols and symbol[:-1].endswith(_WORDS):
         return f"did you mean '{symbol[:-1]}'?"
     product_of_units = _product_hint(symbol)
     if product_of_units is None and "_" in symbol:
         return "between a number and a parameter write '*'"
-    return product_of_units or nearest(symbol, known)
+    return product_of_units or nearest(symbol, symbols)
 
 
 def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
@@ -437,10 +437,10 @@ def _product_hint(symbol: str) -> str | None:
         return None
     places = range(1, len(letters))
     cuts = [(), *((i,) for i in places), *((i, j) for i in places for j in range(i + 1, len(letters)))]
-    known = _usual_symbols()
+    symbols = _usual_symbols()
     for cut in cuts:
         factors = [letters[i:j] for i, j in pairwise((0, *cut, len(letters)))]
-        units = [unit_named(factor) for factor in factors if factor in known]
+        units = [unit_named(factor) for factor in factors if factor in symbols]
         # Two factors of one dimension are a slip of the finger: kgg is kg, not kg*g.
         if len({unit.dimension for unit in units if unit}) == len(factors):
             return f"did you mean '{'*'.join(factors)}{'^' + digits if digits else ''}'?"

@@ -183,10 +183,10 @@ def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) 
 
 def rounding_of(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Rounding:
     """Return what rounds the entries of a realisation."""
-    known = values or {}
-    given = {name: enclosure(value) for name, value in known.items()}
+    given_values = values or {}
+    given = {name: enclosure(value) for name, value in given_values.items()}
     constants = {c.generator: later(c.expression, given) for c in system.constants}
-    exact = {name: v.rational for name, v in known.items() if not v.pi_power}
+    exact = {name: v.rational for name, v in given_values.items() if not v.pi_power}
     return Rounding(system.ring.names, {"pi": arb.pi, **given, **constants}, exact)
 
 
@@ -255,15 +255,15 @@ class Rounding:
         raise UncertifiedError(Diagnostic("SF401", message))
 
     def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:
-        known = self._balls.setdefault(bits, {})
+        balls = self._balls.setdefault(bits, {})
 
         def value(i: int) -> arb:
             name = self._names[i]
-            if name not in known:
+            if name not in balls:
                 if name not in self._constants:
                     raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
-                known[name] = self._constants[name]()
-            return known[name]
+                balls[name] = self._constants[name]()
+            return balls[name]
 
         return value_at(polynomial, value, arb)
 

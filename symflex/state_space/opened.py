@@ -43,22 +43,22 @@ def opened(model: Model) -> Model:
     """
     if not model.definitions:
         return model
-    known: dict[str, Expression] = {}
+    meanings: dict[str, Expression] = {}
     sizes: dict[str, int] = {}
     for definition in model.definitions:
-        known[definition.name] = _opened(definition.expression, known, sizes)
-        sizes[definition.name] = len(nodes(known[definition.name]))
+        meanings[definition.name] = _opened(definition.expression, meanings, sizes)
+        sizes[definition.name] = len(nodes(meanings[definition.name]))
 
     def put_in(given: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
-        return tuple((name, _opened(e, known, sizes)) for name, e in given)
+        return tuple((name, _opened(e, meanings, sizes)) for name, e in given)
 
     return replace(
         model,
         definitions=(),
         elements=tuple(replace(e, values=put_in(e.values)) for e in model.elements),
-        signals=tuple(replace(x, expression=_opened(x.expression, known, sizes)) for x in model.signals),
+        signals=tuple(replace(x, expression=_opened(x.expression, meanings, sizes)) for x in model.signals),
         blocks=tuple(replace(b, values=put_in(b.values)) for b in model.blocks),
-        outputs=tuple(replace(o, expression=_opened(o.expression, known, sizes)) for o in model.outputs),
+        outputs=tuple(replace(o, expression=_opened(o.expression, meanings, sizes)) for o in model.outputs),
     )
 
 
@@ -113,13 +113,13 @@ class _Splitter:
         """
         match expression:
             case Sum(terms):
-                known = [_denominators(t) for t in terms]
+                denominators = [_denominators(t) for t in terms]
                 parts: list[Expression] = []
                 for i, term in enumerate(terms):
                     part = self.apart(owner, term)
-                    others = {d for j, own in enumerate(known) if j != i for d in own}
+                    others = {d for j, own in enumerate(denominators) if j != i for d in own}
                     # Filters that share a denominator have its states together.
-                    if self._varies(term) and known[i] and not known[i] & others:
+                    if self._varies(term) and denominators[i] and not denominators[i] & others:
                         is_negative = isinstance(part, Negative)
                         inner = part.operand if isinstance(part, Negative) else part
                         name = Name(self._signal(f"{owner}_{i + 1}", inner))

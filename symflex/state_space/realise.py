@@ -395,7 +395,7 @@ class _Realisation:
         """
         one = FieldElement.number(self.ring, 1)
         count = len(self.rows.unknowns)
-        known: dict[int, list[tuple[Vector, dict[int, Vector]]]] = {}
+        realised: dict[int, list[tuple[Vector, dict[int, Vector]]]] = {}
         for row in self.rows.rows:
             states: Vector = {}
             flows: dict[int, Vector] = {}
@@ -403,15 +403,15 @@ class _Realisation:
                 if column >= count:
                     flows[power] = combined(flows.get(power, {}), {column - count: one}, value)
                     continue
-                if column not in known:
+                if column not in realised:
                     own, given = self._divided(self.solved.reduced({(column, 0): one}), place)
-                    known[column] = [(own, _followed(own, given, direct))]
-                while len(known[column]) <= power:
-                    own, given = known[column][-1]
+                    realised[column] = [(own, _followed(own, given, direct))]
+                while len(realised[column]) <= power:
+                    own, given = realised[column][-1]
                     raised = {i + 1: part for i, part in given.items()}
                     raised[0] = applied(own, b)
-                    known[column].append((applied(own, a), raised))
-                own, given = known[column][power]
+                    realised[column].append((applied(own, a), raised))
+                own, given = realised[column][power]
                 states = combined(states, own, value)
                 for i, part in given.items():
                     flows[i] = combined(flows.get(i, {}), part, value)

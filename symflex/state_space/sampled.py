@@ -228,10 +228,10 @@ def sampled(
     for bits in precisions(FIRST_BITS, LAST_BITS):
         with precision(bits):
             doubles = [_doubles(m) for m in stepped(balls(bits), sampling, delay, whole)]
-        known = [array for array in doubles if array is not None]
-        if len(known) == len(doubles):
+        held = [array for array in doubles if array is not None]
+        if len(held) == len(doubles):
             past = [f"{name}_{i}_before" for i in range(whole, 0, -1) for name in inputs]
-            arrays = Arrays(known[0], known[1], known[2], known[3])
+            arrays = Arrays(held[0], held[1], held[2], held[3])
             every = (*states, *past)
             return SampledStateSpace(arrays, sampling, delay, every, tuple(inputs), tuple(outputs))
     message = "an entry of the sampled state equations does not fit in double precision"

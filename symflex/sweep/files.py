@@ -224,8 +224,8 @@ def _from_netcdf(data: bytes) -> Sweep:
         Labelled(name, *_texts_joined(dims, values), about.get("units", ""), about.get("long_name", ""))
         for name, (dims, values, about) in variables.items()
     ]
-    known = {*attributes.get("parameters", "").split(), "mode", "frequency", "draw"}
-    return _sweep(attributes, arrays, known)
+    reserved = {*attributes.get("parameters", "").split(), "mode", "frequency", "draw"}
+    return _sweep(attributes, arrays, reserved)
 
 
 def _texts_joined(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
@@ -248,23 +248,29 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
         tuple(each for each in arrays if each.name in coordinates),
         tuple(each for each in arrays if each.name not in coordinates),
     )
-    known = {each.name: each for each in (*sweep.coordinates, *sweep.variables)}
-    is_known = sweep.of in ARRAYS and "point_status" in known
+    arrays_by_name = {each.name: each for each in (*sweep.coordinates, *sweep.variables)}
+    is_known = sweep.of in ARRAYS and "point_status" in arrays_by_name
     require(is_known, f"it holds no {sweep.of[:40] or 'results'} with their status")
     own, names = ARRAYS[sweep.of]
-    points = known["point_status"].dims
+    points = arrays_by_name["point_status"].dims
     swept = sweep.attribute("parameters").split()
     expected = {name: (points + own, "fiub") for name in names} | {dim: ((dim,), "fiu") for dim in own}
     expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
-    if any(name in known for name in STABILITY):  # files of earlier versions hold none of them
+    if any(name in arrays_by_name for name in STABILITY):  # files of earlier versions hold none of them
         expected |= dict.fromkeys(STABILITY, (points, "iu"))
-    expected |= {name: ((DRAW,) if (name,) != known[name].dims else (name,), "fiu") for name in swept}
+    expected |= {
+        name: ((DRAW,) if (name,) != arrays_by_name[name].dims else (name,), "fiu") for name in swept
+    }
     for name, (dims, kinds) in expected.items():
-        fits = name in known and known[name].dims == dims and known[name].values.dtype.kind in kinds
+        fits = (
+            name in arrays_by_name
+            and arrays_by_name[name].dims == dims
+            and arrays_by_name[name].values.dtype.kind in kinds
+        )
         require(fits, f"'{name[:40]}' is missing, or of another shape or kind")
-    words = known["verdict"].values if "verdict" in known else 0
+    words = arrays_by_name["verdict"].values if "verdict" in arrays_by_name else 0
     require(bool(np.all((words >= 0) & (words < len(VERDICTS)))), "a verdict on stability is not a known one")
-    are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
+    are_swept = set(points) <= {*swept, DRAW} and 0 not in arrays_by_name["point_status"].values.shape
     require(are_swept, "its axes are not parameters, or are empty")
     return sweep
 

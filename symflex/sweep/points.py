@@ -210,13 +210,13 @@ class RootSolver:
             if result.status is PointStatus.CERTIFIED:
                 return result
         # Asked for a second time: worth many digits.
-        known = self._models[similarity.key] or self._known(values, similarity, family)
-        self._models[similarity.key] = known
-        scaled = _scaled(known.roots, known.similarity, similarity)
-        if known.model is None or not all(root.place.is_nearest for root in scaled):
+        similar = self._models[similarity.key] or self._known(values, similarity, family)
+        self._models[similarity.key] = similar
+        scaled = _scaled(similar.roots, similar.similarity, similarity)
+        if similar.model is None or not all(root.place.is_nearest for root in scaled):
             return self._searched(self._bound(values), family)
         # A positive scale moves no pole over the axis.
-        return replace(known.model, roots=scaled, family=family)
+        return replace(similar.model, roots=scaled, family=family)
 
     def _known(self, values: dict[str, ExactValue], similarity: Similarity, family: int) -> _Known:
         """Return the roots at a point to many digits, none where not all is proved."""

@@ -218,9 +218,9 @@ class _Point:
 
     def _image(self, place: int) -> list[tuple[tuple[int, ...], fmpq]]:
         """Return a polynomial with numbers for its parameters."""
-        known = self._images.get(place)
-        if known is not None:
-            return known
+        with_numbers = self._images.get(place)
+        if with_numbers is not None:
+            return with_numbers
         collected: dict[tuple[int, ...], fmpq] = {}
         for term in self._polynomials[place]:
             number, turns = fmpq(term.coefficient), 0

@@ -175,12 +175,18 @@ def label(name: str) -> str:
 
 
 def _parameters(task: Task, design: Design) -> list[Labelled]:
-    known = {p.name: p for p in task.model.parameters}
+    parameters = {p.name: p for p in task.model.parameters}
     rows = [(axis.name, label(axis.name), axis.values) for axis in design.axes]
     for i, limits in enumerate(design.ranges, start=len(design.axes)):
         rows.append((limits.name, DRAW, tuple(point[i] for point in design.points[: design.draws])))
     return [
-        Labelled(label(name), (dim,), np.array(list(map(number, values))), known[name].unit, known[name].doc)
+        Labelled(
+            label(name),
+            (dim,),
+            np.array(list(map(number, values))),
+            parameters[name].unit,
+            parameters[name].doc,
+        )
         for name, dim, values in rows
     ]
 

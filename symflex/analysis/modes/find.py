@@ -154,12 +154,12 @@ class _ModeSearch:
         self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
         model = bound.source.model
         check_causal(model, "a mode shape")
-        known = bound.source.equations if isinstance(bound, BoundNested) else None
+        of_nested = bound.source.equations if isinstance(bound, BoundNested) else None
         given = dict(bound.values)
-        if known is None and is_tapered(model):
+        if of_nested is None and is_tapered(model):
             # Bounds on a coefficient in names are wide: a member is taken in ten times as many steps.
             model = with_numbers(model, (), given, in_kernels=True)
-        equations = known or assemble(model, nested_transfer, is_nameless=True)
+        equations = of_nested or assemble(model, nested_transfer, is_nameless=True)
         missing = tuple(p for p in model.parameters if p.name not in given)
         self.equations = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
         domains = {n.name: n.domain for n in model.nodes}
@@ -264,12 +264,12 @@ class _ModeSearch:
     def _shape(
         self, root: Root, system: SystemAt, values: Sequence[acb], is_proved: bool
     ) -> EnclosedModeShape:
-        known = dict(zip(system.unknowns, values, strict=True))
-        distributed = tuple(part.shape(known) for part in system.continua)
+        amplitudes = dict(zip(system.unknowns, values, strict=True))
+        distributed = tuple(part.shape(amplitudes) for part in system.continua)
         starts = {part.name: float(part.start.mid()) for part in distributed}
         motions = tuple(
             Motion(_name(variable, starts), variable, value, self._units[variable])
-            for variable, value in known.items()
+            for variable, value in amplitudes.items()
             if variable.kind != "value"
         )
         return EnclosedModeShape(root, motions, distributed, "", is_proved)

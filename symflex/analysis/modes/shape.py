@@ -240,22 +240,22 @@ class EnclosedModeShape:
 
     def motion(self, name: str) -> Motion:
         """Return what a node, element quantity or signal does; SF902 when there is none of that name."""
-        known = {m.name: m for m in reversed(self.motions)}
-        if name not in known and f"{name}.y" in known:
+        motions = {m.name: m for m in reversed(self.motions)}
+        if name not in motions and f"{name}.y" in motions:
             name = f"{name}.y"
-        if name not in known:
-            hint = nearest(name, known) or "available: " + ", ".join(list(reversed(known))[:8])
+        if name not in motions:
+            hint = nearest(name, motions) or "available: " + ", ".join(list(reversed(motions))[:8])
             raise UsageError(Diagnostic("SF902", f"nothing is called '{name[:64]}' in the mode", None, hint))
-        return known[name]
+        return motions[name]
 
     def along(self, name: str) -> DistributedShape:
         """Return the shape of a distributed element or field; SF902 when there is none of that name."""
-        known = {part.name: part for part in self.distributed}
-        if name not in known:
-            hint = nearest(name, known) or ("available: " + ", ".join(known) if known else None)
+        parts = {part.name: part for part in self.distributed}
+        if name not in parts:
+            hint = nearest(name, parts) or ("available: " + ", ".join(parts) if parts else None)
             message = f"'{name[:64]}' is not a distributed element or field"
             raise UsageError(Diagnostic("SF902", message, None, hint))
-        return known[name]
+        return parts[name]
 
 
 TURNING = ("shaft",)

@@ -90,8 +90,8 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     if not is_exact:
         zeros = _no_more_than(zeros, count_roots(poles))
     excess = max(count_roots(zeros) - count_roots(poles), 0) if is_exact else 0
-    known = replace(located, zeros=above)
-    return KeptRoots(len(modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
+    map_above = replace(located, zeros=above)
+    return KeptRoots(len(modes_of(poles)), poles, zeros, map_above, omitted, is_exact, excess)
 
 
 def _lowest(located: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
@@ -109,13 +109,13 @@ def _zeros_below(
     bound: AnyBoundFunction, located: PoleZeroMap, limit_hz: float | None, digits: int
 ) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
     """Return the zeros with natural frequencies below a limit, and all that are known."""
-    known = located.zeros
+    zeros = located.zeros
     if limit_hz is None:
-        return known, known
-    if bound.is_distributed and all(root.frequency_hz() < limit_hz for root in known):
+        return zeros, zeros
+    if bound.is_distributed and all(root.frequency_hz() < limit_hz for root in zeros):
         # There may be more of them below the limit than were asked for.
-        known = locate(bound, Band(Fraction(0), Fraction(limit_hz)), digits).zeros
-    return tuple(takewhile(lambda root: root.frequency_hz() < limit_hz, known)), known
+        zeros = locate(bound, Band(Fraction(0), Fraction(limit_hz)), digits).zeros
+    return tuple(takewhile(lambda root: root.frequency_hz() < limit_hz, zeros)), zeros
 
 
 def _no_more_than(zeros: Sequence[Root], poles: int) -> tuple[Root, ...]:

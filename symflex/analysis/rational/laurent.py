@@ -221,10 +221,10 @@ def expand_at_pole(
         with precision(bits):
             # Most roots are known well enough as they are found.
             for is_refined in (False, True):
-                known = _expanded(above, below, root, is_refined=is_refined)
-                if known is None:
+                expanded = _expanded(above, below, root, is_refined=is_refined)
+                if expanded is None:
                     continue
-                pole, principal, extra = known
+                pole, principal, extra = expanded
                 if root.is_real:
                     principal = [acb(c.real) for c in principal]
                 is_known = _is_accurate(principal, digits, bits)

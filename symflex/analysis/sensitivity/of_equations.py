@@ -133,7 +133,7 @@ def derivatives(
     wanted = bits_for_digits(digits)
     first = max(root.working_bits(), 2 * wanted)
     moving = MovingRoot(matrix, root.enclosure())
-    known: dict[str, acb | None] = dict.fromkeys(parameters)
+    slopes: dict[str, acb | None] = dict.fromkeys(parameters)
     missing = list(parameters)
     for bits in precisions(first, MOST_TIMES * first):
         with precision(bits):
@@ -142,11 +142,11 @@ def derivatives(
             pair, slope = enclosed
             for name in missing:
                 derivative = -pair.change(matrix.slope(moving.place, name)) / slope
-                known[name] = derivative if derivative.is_finite() else known[name]
-        missing = [n for n in missing if (x := known[n]) is None or not _is_enclosed(x, wanted)]
+                slopes[name] = derivative if derivative.is_finite() else slopes[name]
+        missing = [n for n in missing if (x := slopes[n]) is None or not _is_enclosed(x, wanted)]
         if not missing:
             break
-    return moving.place, known
+    return moving.place, slopes
 
 
 def is_fixed_at_zero(at: EquationsAt, pair: tuple[str, str], root: Root, *, is_pole: bool) -> bool:

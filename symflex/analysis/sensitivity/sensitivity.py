@@ -350,18 +350,18 @@ def sensitivities(
         pick_gain(model.parameters, name)
     given = dict(bound.values)
     values = {p.name: given.get(p.name, p.value) for p in model.parameters}
-    known = {name: value for name, value in values.items() if value is not None}
-    chosen = [p for p in model.parameters if p.name in known and (not names or p.name in names)]
+    real = {name: value for name, value in values.items() if value is not None}
+    chosen = [p for p in model.parameters if p.name in real and (not names or p.name in names)]
     pair = (bound.source.output.name, bound.source.input.name)
     if isinstance(bound, BoundNested) or (not model.is_distributed and len(model.elements) > NEVER_LARGE):
-        return _of_equations(model, pair, known, located, chosen, digits)
+        return _of_equations(model, pair, real, located, chosen, digits)
     if model.is_distributed:
-        return differentiate(bound.symbolic or bound.source, known, located, chosen, digits)
+        return differentiate(bound.symbolic or bound.source, real, located, chosen, digits)
     # One symbol at a time, among numbers, is far less than all at once.
     moved: list[RootDerivative] = []
     for parameter in chosen:
-        (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
-        moved += differentiate(tf, known, located, [parameter], digits)
+        (tf,) = derive_all(with_numbers(model, (parameter.name,), real), [pair])
+        moved += differentiate(tf, real, located, [parameter], digits)
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
 
 
@@ -384,19 +384,19 @@ def _of_equations(
         upper: tuple[acb, dict[str, acb | None]] | None = None
         for i, root in enumerate(roots):
             status: Status = "certified"
-            known: dict[str, acb | None]
+            slopes: dict[str, acb | None]
             if root.is_zero and is_fixed_at_zero(at, pair, root, is_pole=kind == "pole"):
-                place, known = acb(0), dict.fromkeys(names, acb(0))
+                place, slopes = acb(0), dict.fromkeys(names, acb(0))
             elif root.multiplicity > 1:
                 # Whether it parts is not read off the equations.
-                status, place, known = "undecided", root.enclosure(), {}
+                status, place, slopes = "undecided", root.enclosure(), {}
             elif root.im < 0 and upper is not None and upper[0].conjugate().overlaps(root.enclosure()):
                 place = _conjugate(upper[0])
-                known = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}
+                slopes = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}
             else:
-                place, known = upper = derivatives(matrix, root, names, digits)
+                place, slopes = upper = derivatives(matrix, root, names, digits)
             for parameter in parameters:
-                slope = known.get(parameter.name)
+                slope = slopes.get(parameter.name)
                 said: Status = "undecided" if status == "certified" and slope is None else status
                 moved.append(
                     RootDerivative(kind, i, root, parameter, values[parameter.name], said, place, slope)
@@ -441,12 +441,12 @@ class Tangents:
         zero, or two are equal, values are not finite.
         """
         real = {name: first_order(enclosure(v)(), int(name == direction)) for name, v in self.values.items()}
-        known = {"pi": first_order(arb.pi()), **real}
+        tangents = {"pi": first_order(arb.pi()), **real}
         for constant in self.tf.constants:
             if constant.generator in self._used and constant.generator not in self._functions:
-                known[constant.generator] = constant_tangent(constant.expression, real)
+                tangents[constant.generator] = constant_tangent(constant.expression, real)
         ring, table = self.tf.ratio.ring, self.tf.kernels
-        numbers: dict[str, Arithmetic] = {name: _series(acb(x[0]), acb(x[1])) for name, x in known.items()}
+        numbers: dict[str, Arithmetic] = {name: _series(acb(x[0]), acb(x[1])) for name, x in tangents.items()}
         kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), self._plans)
         point = TangentPoint(kernels, kernels.at(_series(s, acb(int(direction == LAPLACE)))))
         for law in table.dispersions:
@@ -469,9 +469,9 @@ class Tangents:
             return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
         n, entries = law.order, dict[str, Value]()
         own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
-        known: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
+        matrices: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
         for kernel in kernels:
-            if kernel.length not in known:
+            if kernel.length not in matrices:
                 end = start + self.product(kernel.length, point)
                 matrix = own.matrix_at(s[0], (start[0].real, end[0].real))
                 slopes = acb_mat([row[:n] for row in matrix[n:]])
@@ -480,8 +480,8 @@ class Tangents:
                 slopes += _coefficients(own, n, end[0], s[0]) * rate * whole
                 if law.singular is None:
                     slopes -= whole * _coefficients(own, n, start[0], s[0]) * start[1]
-                known[kernel.length] = matrix, slopes
-            matrix, slopes = known[kernel.length]
+                matrices[kernel.length] = matrix, slopes
+            matrix, slopes = matrices[kernel.length]
             row, column = divmod(kernel.order, n)
             entries[kernel.generator] = _series(matrix[row][column], slopes[row, column])
         return entries

@@ -160,12 +160,12 @@ class DelayReader:
                 if not decay.is_zero:
                     decays[number] = partial(decay_of, decay * argument.length)
             exact = square.unit if square.is_constant else None
-            known = next(((i, r) for i, q in enumerate(squares) if (r := _ratio(exact, q)) is not None), None)
-            if known is None:
-                known = (len(squares), Fraction(1))
+            found = next(((i, r) for i, q in enumerate(squares) if (r := _ratio(exact, q)) is not None), None)
+            if found is None:
+                found = (len(squares), Fraction(1))
                 squares.append(exact)
                 durations.append(partial(root_of, square))
-            delays.append((known[0], sign * known[1]))
+            delays.append((found[0], sign * found[1]))
         names = [name for name, _ in bound.constants]
         constants = [evaluate for _, evaluate in bound.constants]
         for name, value in slowness.items():

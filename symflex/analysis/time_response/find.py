@@ -186,8 +186,8 @@ def _shaped(
         with precision(shaper.bits):
             for i, value in zip(range(start, len(seconds)), part.enclosures, strict=False):
                 # At its own moment nobody knows on which side of it the time lies.
-                known = value if seconds[i] > moment else value.union(arb(0))
-                total[i] = total[i] + amplitude * known
+                here = value if seconds[i] > moment else value.union(arb(0))
+                total[i] = total[i] + amplitude * here
             if not begun.contains(0):
                 jumps.append(JumpAt(moment, amplitude * begun))
             impulses += [ImpulseAt(moment + i.time, i.order, amplitude * i.weight) for i in whole.impulses]

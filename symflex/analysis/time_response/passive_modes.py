@@ -91,10 +91,10 @@ class PassiveBound(BoundBySize):
             right = self.function.on_arc(reached, 0.0, pi / 2)
             left = right if self.function.is_even else self.function.on_arc(reached, pi / 2, pi)
             sizes = [each.at(acb(radius)) for each in self.colocated or (self.function,)]
-            known = [size for size in sizes if size is not None]
-            if right is None or left is None or len(known) < len(sizes):
+            finite = [size for size in sizes if size is not None]
+            if right is None or left is None or len(finite) < len(sizes):
                 return None
-            beyond = 4 * (known[0] * known[-1]).sqrt()
+            beyond = 4 * (finite[0] * finite[-1]).sqrt()
             beyond *= self.factor if self.colocated else radius**-self.order
             # Both arcs stand for their mirror images as well.
             step = beyond + (left + 3 * right) / arb.pi() / radius**self.order

@@ -220,8 +220,8 @@ def _right_of(
     for more in (0, EFFORT.line_modes) if count else ():
         located = locate(bound, Modes(count + more), digits)
         shared = [h for h in located.hidden if h.cause == "coincident"]
-        known = (*located.all_poles, *(h.root for h in shared if not h.is_exact))
-        parts = (known, [h.root for h in shared if h.is_exact])
+        roots = (*located.all_poles, *(h.root for h in shared if not h.is_exact))
+        parts = (roots, [h.root for h in shared if h.is_exact])
         poles, cancelled = (
             [p for p in part if p.enclosure().real + rate > 0 and not p.is_zero] for part in parts
         )
@@ -282,7 +282,7 @@ def pieces_of(
     loop = _Loop(quotient, digits)
     below = acb_poly(loop.leading)
     pieces: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
-    known: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
+    by_exponents: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
     before = arb(0)
     for echo in echoes(quotient, until):
         spend()
@@ -292,10 +292,10 @@ def pieces_of(
             return None
         if not pieces and start > 0:
             pieces.append((arb(0), ()))
-        known = {key: term.later(start - before) for key, term in known.items()}
+        by_exponents = {key: term.later(start - before) for key, term in by_exponents.items()}
         for term in terms:
             key = tuple(tuple(map(int, x.mid().man_exp())) for x in (term.rate.real, term.rate.imag))
-            known[key] = known[key] + term if key in known else term
-        pieces.append((start, tuple(known.values())))
+            by_exponents[key] = by_exponents[key] + term if key in by_exponents else term
+        pieces.append((start, tuple(by_exponents.values())))
         before = start
     return pieces

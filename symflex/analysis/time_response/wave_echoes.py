@@ -59,10 +59,10 @@ class WaveQuotient:
         with precision(EFFORT.wave_bits):
             seconds = times.enclosed()
             last = seconds[-1].upper()
-            known = self._bounded(last)
-            if known is None:
+            bounded = self._bounded(last)
+            if bounded is None:
                 raise TooManyEchoesError
-            radius, largest, echoes = known
+            radius, largest, echoes = bounded
             reach = radius * last
             bits = bits_for_digits(digits) + EFFORT.wave_guard_bits
             # With this power of 1/s the function may begin.

@@ -170,9 +170,9 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
         for row in reversed(range(len(self.rows))):
             for each in wanted[row]:
                 spend()
-                known = self._expand(self.rows[row], row + 1, each)
-                self._known[each] = known
-                self._note(known)
+                expanded = self._expand(self.rows[row], row + 1, each)
+                self._known[each] = expanded
+                self._note(expanded)
 
 
 @dataclass

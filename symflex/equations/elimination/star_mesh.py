@@ -471,12 +471,12 @@ class _StarMesh:
 
     def _enter(self, j: int, row: _NetworkRow, column: int, product: int) -> None:
         """Add a term to an entry."""
-        known = row.entries.get(column)
-        if known is None:
+        entry = row.entries.get(column)
+        if entry is None:
             row.entries[column] = [product]
             self.users[column][j] = None
         else:
-            known.append(product)
+            entry.append(product)
 
     def _row(self, j: int) -> _NetworkRow:
         """Return a row that is not eliminated yet."""

@@ -82,8 +82,8 @@ class LinearForm:
         merged: dict[Variable, Factored] = {}
         for form in forms:
             for variable, coefficient in form.terms:
-                known = merged.get(variable)
-                merged[variable] = coefficient if known is None else known + coefficient
+                before = merged.get(variable)
+                merged[variable] = coefficient if before is None else before + coefficient
         return LinearForm(tuple((v, c) for v, c in merged.items() if not c.is_zero))
 
     def __add__(self, other: LinearForm) -> LinearForm:

@@ -249,8 +249,8 @@ def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
         made = shaped(tf.model, made)
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
-    known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
-    lines = reachable(parts, known)
+    definitions = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
+    lines = reachable(parts, definitions)
     return replace(made, where=(*made.where, *lines), definitions=frozenset(name for name, _ in lines))
 
 

@@ -97,17 +97,17 @@ def _named(tf: TransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden
     used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     notation = notation_of(tf, used, _naming(tf, form))
     own = ((name, e) for name, e in form.where if name not in form.definitions)
-    known = {_key(e): Name(name) for name, e in _opened(own).items()}
+    by_value = {_key(e): Name(name) for name, e in _opened(own).items()}
     names: dict[str, Expression] = {
-        name: known[_key(e)] for name, e in _opened(notation.lines).items() if _key(e) in known
+        name: by_value[_key(e)] for name, e in _opened(notation.lines).items() if _key(e) in by_value
     }
     arguments = [name for name, _ in notation.lines][: len(angles_of(tf.kernels, used))]
     for ratio in MULTIPLES[1:]:
         # The same lines with other lengths: an argument that the form has as a multiple of its own.
         scaled = notation_of(tf, used, _naming(tf, form), _stretched(tf.kernels, ratio))
         for name, expression in _opened(scaled.lines).items():
-            if name in arguments and name not in names and _key(expression) in known:
-                part = product_of([number(ratio.denominator), known[_key(expression)]])
+            if name in arguments and name not in names and _key(expression) in by_value:
+                part = product_of([number(ratio.denominator), by_value[_key(expression)]])
                 names[name] = quotient(part, number(ratio.numerator))
     factors = tuple((substitute(e, names), m) for e, m in _factors(tf, notation))
     lines = tuple((name, substitute(e, names)) for name, e in notation.lines if name not in names)

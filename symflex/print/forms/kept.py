@@ -41,13 +41,13 @@ class KeptDefinitions:
     @staticmethod
     def of(tf: TransferFunction, source: Ring) -> KeptDefinitions | None:
         """Return the definitions of a transfer function that are over a form's ring; None without any."""
-        known = {*source.names}
+        generators = {*source.names}
         kept: list[tuple[str, Factored]] = []
         for name, value in tf.definitions:
             used = {n for n in value.ring.names if value.depends_on(n)}
-            if is_divisor(value) and used <= known:
+            if is_divisor(value) and used <= generators:
                 kept.append((name, value))
-                known.add(name)
+                generators.add(name)
         parameters = {p.name for p in tf.model.parameters}
         place = 1 + max((i for i, n in enumerate(source.names) if n in parameters), default=0)
         return KeptDefinitions(source, place, tuple(kept)) if kept else None

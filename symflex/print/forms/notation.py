@@ -291,14 +291,14 @@ def wavenumber_laws(tf: TransferFunction) -> dict[str, Factored]:
 
 def reachable(parts: Iterable[Expression], lines: Iterable[Line]) -> tuple[Line, ...]:
     """Return the lines whose names the parts use, or the lines they need, in the given order."""
-    known = dict(lines)
+    meanings = dict(lines)
     pending, used = list(parts), set()
     while pending:
         for node in names(pending.pop()):
-            if isinstance(node, Name) and node.name in known and node.name not in used:
+            if isinstance(node, Name) and node.name in meanings and node.name not in used:
                 used.add(node.name)
-                pending.append(known[node.name])
-    return tuple((name, e) for name, e in known.items() if name in used)
+                pending.append(meanings[node.name])
+    return tuple((name, e) for name, e in meanings.items() if name in used)
 
 
 def constant_symbols(tf: TransferFunction) -> dict[str, Expression]:

@@ -91,19 +91,19 @@ def _ways(
 def _products_of(tf: TransferFunction) -> Callable[[Expression], Expression | None]:
     """Return what finds a number times powers of names that has the values of an expression."""
     lines, random = tf.model.analysis.print, Random(1)
-    known = {"pi": [acb.pi()] * POINTS}
+    points = {"pi": [acb.pi()] * POINTS}
     for p in tf.model.parameters:
-        known[p.name] = [acb(random.randrange(SIMPLE)) / SIMPLE + 1 for _ in range(POINTS)]
+        points[p.name] = [acb(random.randrange(SIMPLE)) / SIMPLE + 1 for _ in range(POINTS)]
 
     def values(expression: Expression) -> list[acb] | None:
-        if {n.name for n in names(expression)} <= {*known, *FUNCTIONS}:
-            return principal_values(expression, POINTS, lambda name: known[name])
+        if {n.name for n in names(expression)} <= {*points, *FUNCTIONS}:
+            return principal_values(expression, POINTS, lambda name: points[name])
         return None
 
     for name, e in (*((d.name, d.expression) for d in tf.model.definitions), *lines * len(lines)):
         if (own := values(e)) is not None:  # each may use others
-            known[name] = own
-    bases = ["pi", *sorted((n for n, _ in lines if n in known), key=lambda n: not n.startswith("zeta"))]
+            points[name] = own
+    bases = ["pi", *sorted((n for n, _ in lines if n in points), key=lambda n: not n.startswith("zeta"))]
     chosen = (each for count in range(MOST + 1) for each in combinations(bases, count))
     raised = [dict(zip(c, e, strict=True)) for c in chosen for e in product(EXPONENTS, repeat=len(c))]
 
@@ -112,7 +112,7 @@ def _products_of(tf: TransferFunction) -> Callable[[Expression], Expression | No
         for exponents in raised if wanted else ():
             spend()
             first, *others = (
-                prod((known[b][i] ** -n for b, n in exponents.items()), start=value)
+                prod((points[b][i] ** -n for b, n in exponents.items()), start=value)
                 for i, value in enumerate(wanted or ())
             )
             scale = Fraction(float(first.real)).limit_denominator(SIMPLE)

@@ -160,25 +160,25 @@ class _Signs:
 
     @staticmethod
     def of(model: Model) -> _Signs:
-        known = {p.name: acb(enclosure(p.value)()) for p in model.parameters if p.value is not None}
-        known |= {LAPLACE: acb(FAR), "pi": acb.pi()}
+        values = {p.name: acb(enclosure(p.value)()) for p in model.parameters if p.value is not None}
+        values |= {LAPLACE: acb(FAR), "pi": acb.pi()}
         for d in model.definitions:
-            if {n.name for n in names(d.expression)} <= {*known, *FUNCTIONS}:
-                (known[d.name],) = principal_values(d.expression, 1, lambda name: [known[name]])
+            if {n.name for n in names(d.expression)} <= {*values, *FUNCTIONS}:
+                (values[d.name],) = principal_values(d.expression, 1, lambda name: [values[name]])
         parts = [n for _, e in model.expressions() for n in nodes(e)]
         sums = (n for n in parts if isinstance(n, Sum) and S not in names(n))
         fixed = (S, Name("pi"), Name(IMAGINARY))
         products = (map(_base, n.factors) for n in parts if isinstance(n, Product))
         typed = dict.fromkeys(tuple(b for b in bases if b not in fixed) for bases in products)
-        return _Signs(known, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
+        return _Signs(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
 
     def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
         """Return these with what where lines say decays, as ``exp(-gamma*l)``: it is zero far away."""
-        known = dict(self.known)
+        values = dict(self.known)
         for name, line in reversed(where):
-            if {n.name for n in names(line)} <= {*known, *FUNCTIONS}:
-                (known[name],) = principal_values(line, 1, lambda name: [known[name]])
-        decays = {name: acb(0) for name, _ in where if name in known and abs(known[name]) < 1 / FAR}
+            if {n.name for n in names(line)} <= {*values, *FUNCTIONS}:
+                (values[name],) = principal_values(line, 1, lambda name: [values[name]])
+        decays = {name: acb(0) for name, _ in where if name in values and abs(values[name]) < 1 / FAR}
         return replace(self, known={**self.known, **decays})
 
     def like(self, other: Expression) -> _Signs:

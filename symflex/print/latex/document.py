@@ -151,9 +151,9 @@ def _blocks(
     maps: Sequence[PoleZeroMap],
     width_mm: float,
 ) -> Iterator[_Block]:
-    known = [tf.name for tf in tfs]
+    names = [tf.name for tf in tfs]
     for located in maps:
-        if located.tf not in known:
+        if located.tf not in names:
             message = f"poles and zeros of '{located.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
     if model.settable:

@@ -171,8 +171,8 @@ def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
     own += [(left.name, "") for left, _ in form.closed if isinstance(left, Name)]
-    known = {*labels, *dict(own)}
-    own += [(name, latex) for name, latex in sorted(functions_in(form).items()) if name not in known]
+    labelled = {*labels, *dict(own)}
+    own += [(name, latex) for name, latex in sorted(functions_in(form).items()) if name not in labelled]
     return labels_of(own, labels)
 
 

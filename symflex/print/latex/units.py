@@ -49,18 +49,18 @@ def quantity_latex(number: str, unit: str) -> str:
     >>> print(quantity_latex("0.5", "m"), quantity_latex("3", "1"), quantity_latex("2", "furlong"))
     \qty{0.5}{\metre} \num{3} \num{2}~furlong
     """
-    known = siunitx_unit(unit)
-    if known is None:
+    written = siunitx_unit(unit)
+    if written is None:
         return rf"\num{{{number}}}~{escape_text(unit)}"
-    return rf"\qty{_option(known)}{{{number}}}{{{known}}}" if known else rf"\num{{{number}}}"
+    return rf"\qty{_option(written)}{{{number}}}{{{written}}}" if written else rf"\num{{{number}}}"
 
 
 def unit_latex(unit: str) -> str:
     """Return a unit alone, 1 for a pure number."""
-    known = siunitx_unit(unit)
-    if known is None:
+    written = siunitx_unit(unit)
+    if written is None:
         return escape_text(unit)
-    return rf"\unit{_option(known)}{{{known}}}" if known else "1"
+    return rf"\unit{_option(written)}{{{written}}}" if written else "1"
 
 
 def _option(known: str) -> str:

@@ -57,8 +57,8 @@ def drawing_section(study: Study) -> ChapterPart:
 
 def figure_section(study: Study) -> ChapterPart | None:
     """Return every figure, as SVG for the page and as PDF and SVG for papers."""
-    known = {(b.source.output.name, b.source.input.name): b for b in study.bounds}
-    drawable = {pair: b for pair, b in known.items() if not b.is_zero}
+    by_pair = {(b.source.output.name, b.source.input.name): b for b in study.bounds}
+    drawable = {pair: b for pair, b in by_pair.items() if not b.is_zero}
     blocks: list[Block] = []
     warnings: list[str] = []
     files: dict[str, bytes] = {}
