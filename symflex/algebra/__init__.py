@@ -6,9 +6,11 @@ from symflex.algebra.factored import (
     Factored,
     common_denominator,
     composed,
+    evaluated,
     least_common_multiple,
     random_point,
     residue,
+    summed,
 )
 from symflex.algebra.radicals import Radicals
 from symflex.algebra.ring import (

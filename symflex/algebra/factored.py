@@ -23,12 +23,15 @@ from symflex.algebra.ring import (
     highest_degree,
     terms_of,
 )
+from symflex.balls import Arithmetic, ball, raised
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
+
+    from symflex.algebra.sparse import Monomial
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -335,3 +338,23 @@ def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], point: Mapping[str
             product = product * pow(point[names[i]], exponent, prime) % prime
         total += product
     return total % prime
+
+
+def evaluated(value: Factored, number: Callable[[str], Arithmetic], one: Arithmetic) -> Arithmetic:
+    """Return a rational function with a number in place of every generator; ``one`` is 1 of their kind."""
+    total, names = one * ball(value.unit), value.ring.names
+    return prod((raised(summed(terms_of(f), names, number, one), e) for f, e in value.factors), start=total)
+
+
+def summed(
+    terms: Sequence[tuple[Monomial, int]],
+    names: Sequence[str],
+    number: Callable[[str], Arithmetic],
+    one: Arithmetic,
+) -> Arithmetic:
+    """Return the same of a polynomial, by its terms."""
+    total = one * 0
+    for monomial, coefficient in terms:
+        term = prod((raised(number(names[i]), e) for i, e in monomial), start=one * coefficient)
+        total = total + term
+    return total

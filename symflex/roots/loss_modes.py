@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import Factored, by_powers, degree_in, terms_of
+from symflex.algebra import Factored, by_powers, degree_in, summed, terms_of
 from symflex.balls import expansion, precision, stays_inside
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
@@ -40,7 +40,6 @@ from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
 from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, count_roots, overlap
 from symflex.transfer import bind
-from symflex.transfer.enclose import summed
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:

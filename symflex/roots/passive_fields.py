@@ -23,14 +23,13 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.algebra import LAPLACE, Factored, by_powers, composed, degree_in
+from symflex.algebra import LAPLACE, Factored, by_powers, composed, degree_in, evaluated
 from symflex.balls import precision
 from symflex.equations import assemble
 from symflex.expressions import Name
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.signs import Line, sign_between, sign_of, value_along
-from symflex.transfer.enclose import evaluated
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Radicals
     from symflex.algebra.modal_sum import ModalSums
+    from symflex.along.matrices import VaryingMatrices
     from symflex.expressions import Call
     from symflex.model import ExactValue
     from symflex.transfer.enclose_kernels import KernelValues
-    from symflex.transfer.enclose_varying import VaryingMatrices
     from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 
@@ -212,8 +212,8 @@ class BoundTransferFunction:
         """The fundamental matrices of laws that vary along x, expanded once for all precisions."""
         if not any(law.matrix for law in self.kernels.dispersions):
             return None
-        from symflex.algebra.minors import MinorSums  # few beams are tapered
-        from symflex.transfer.enclose_varying import VaryingMatrices
+        from symflex.along.matrices import VaryingMatrices
+        from symflex.along.minors import MinorSums  # few beams are tapered
 
         values = {name: enclosure(value) for name, value in self.values}
         minors = MinorSums(self.ratio.ring, self.kernels)

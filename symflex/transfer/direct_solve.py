@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb
 
-from symflex.algebra import FUNCTIONS, LAPLACE, terms_of
+from symflex.algebra import FUNCTIONS, LAPLACE, evaluated, summed, terms_of
 from symflex.balls import UndecidedError, ball, current_terms, eliminate, raised, series_terms
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.enclose import evaluated, later, summed
+from symflex.transfer.enclose import later
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

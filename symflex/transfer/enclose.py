@@ -12,17 +12,15 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_series
 
-from symflex.algebra import FUNCTIONS, terms_of
-from symflex.balls import Arithmetic, ball, raised
+from symflex.algebra import FUNCTIONS
+from symflex.balls import Arithmetic, ball
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Call, Expression, Number, fold, format_expression, names
 from symflex.quantities import IMAGINARY_UNIT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
-    from symflex.algebra import Factored
-    from symflex.algebra.sparse import Monomial
     from symflex.expressions import Call
     from symflex.model import ExactValue
 
@@ -213,23 +211,3 @@ def principal_values(
         product=lambda factors: [prod(xs, start=acb(1)) for xs in zip(*factors, strict=True)],
         quotient=lambda above, below: [x / y for x, y in zip(above, below, strict=True)],
     )
-
-
-def evaluated(value: Factored, number: Callable[[str], Arithmetic], one: Arithmetic) -> Arithmetic:
-    """Return a rational function with a number in place of every generator; ``one`` is 1 of their kind."""
-    total, names = one * ball(value.unit), value.ring.names
-    return prod((raised(summed(terms_of(f), names, number, one), e) for f, e in value.factors), start=total)
-
-
-def summed(
-    terms: Sequence[tuple[Monomial, int]],
-    names: Sequence[str],
-    number: Callable[[str], Arithmetic],
-    one: Arithmetic,
-) -> Arithmetic:
-    """Return the same of a polynomial, by its terms."""
-    total = one * 0
-    for monomial, coefficient in terms:
-        term = prod((raised(number(names[i]), e) for i, e in monomial), start=one * coefficient)
-        total = total + term
-    return total

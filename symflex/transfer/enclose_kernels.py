@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
-    from symflex.algebra.minors import Minor
+    from symflex.along.matrices import VaryingMatrices
+    from symflex.along.minors import Minor
     from symflex.balls import EvaluationPlan
-    from symflex.transfer.enclose_varying import VaryingMatrices
 
 
 SIGNS = (1, -1)

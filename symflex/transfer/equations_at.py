@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb
 
-from symflex.algebra import LAPLACE, Factored, composed
+from symflex.algebra import LAPLACE, Factored, composed, evaluated
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
+from symflex.along.law import BoundLaw
 from symflex.balls import Arithmetic, Value, at_centre
 from symflex.expressions import Name, names
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.enclose import constant_tangent, enclose, enclosure, evaluated, first_order
+from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order
 from symflex.transfer.enclose_kernels import fundamental_functions
-from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from flint import acb, arb
 
-from symflex.algebra import LAPLACE, Factored, PolynomialMemo
+from symflex.algebra import LAPLACE, Factored, PolynomialMemo, evaluated
 from symflex.balls import at_centre, ball, current_bits, plan, precision
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
 from symflex.transfer.bound import BoundTransferFunction
-from symflex.transfer.enclose import enclosure, evaluated, later, principal_values
+from symflex.transfer.enclose import enclosure, later, principal_values
 from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -324,8 +324,8 @@ def _arbitrary(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
 
 def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
     """Return the entries at one s: matrices that serve for many take far longer."""
-    from symflex.algebra.minors import MinorSums  # few beams are tapered
-    from symflex.transfer.enclose_varying import VaryingMatrices
+    from symflex.along.matrices import VaryingMatrices
+    from symflex.along.minors import MinorSums  # few beams are tapered
 
     values = {name: enclosure(value) for name, value in bound.values}
     minors = MinorSums(bound.ratio.ring, bound.kernels)

@@ -20,8 +20,8 @@ from symflex.roots import Root
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from symflex.along.law import BoundLaw
     from symflex.library.elements import Variable
-    from symflex.transfer.varying_law import BoundLaw
 
 
 SQUARINGS = 7

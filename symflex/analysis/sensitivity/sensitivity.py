@@ -25,9 +25,11 @@ from symflex.algebra import (
     Ring,
     square_free_factors,
 )
-from symflex.algebra.minors import MinorSums
 from symflex.algebra.modal_sum import ModalSums
 from symflex.algebra.vanishing import OriginSeries
+from symflex.along.law import BoundLaw
+from symflex.along.matrices import VaryingMatrices
+from symflex.along.minors import MinorSums
 from symflex.analysis.sensitivity.of_equations import SingularMatrix, derivatives, is_fixed_at_zero
 from symflex.balls import (
     Arithmetic,
@@ -50,10 +52,8 @@ from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
 from symflex.transfer import BoundNested
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
-from symflex.transfer.enclose_varying import VaryingMatrices
 from symflex.transfer.equations_at import EquationsAt
 from symflex.transfer.of_model import NEVER_LARGE, assemble_sparse, derive_all
-from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -17,7 +17,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from symflex.algebra.line_networks import network_value
-from symflex.algebra.varying_minors import fundamental_minors
+from symflex.along.doubles import fundamental_minors
 from symflex.balls import precision
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError

@@ -300,7 +300,7 @@ class Tip:
 class FundamentalMinors(CodeNode):
     """Minors of a fundamental matrix whose law varies along x, as a list.
 
-    See :func:`symflex.algebra.varying_minors.fundamental_minors`.
+    See :func:`symflex.along.doubles.fundamental_minors`.
     """
 
     start: CodeNode  # of x

@@ -14,7 +14,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
-from symflex.algebra.minors import MinorSums
+from symflex.along.law import PartedLaw
+from symflex.along.minors import MinorSums
 from symflex.codegen.program.build import Generators
 from symflex.codegen.program.forge import Forge, straight
 from symflex.codegen.program.nodes import CodePiece, FundamentalMinors, Piecewise, ScaledSum, Tip
@@ -22,7 +23,6 @@ from symflex.codegen.program.site import Site
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import varies_along_x
 from symflex.transfer.of_model import followed_along_x
-from symflex.transfer.varying_law import PartedLaw
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import SingularStart
-    from symflex.algebra.minors import Minor
+    from symflex.along.law import Summand
+    from symflex.along.minors import Minor
     from symflex.expressions import Call
     from symflex.transfer import TransferFunction
-    from symflex.transfer.varying_law import Summand
 
 
 def build_varying(tf: TransferFunction) -> Piecewise:

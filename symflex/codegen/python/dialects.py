@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
-from symflex.algebra import line_networks, varying_minors
+from symflex.algebra import line_networks
+from symflex.along import doubles
 from symflex.codegen.export import called_parts, parts_of
 from symflex.codegen.program import evaluate
 
@@ -23,16 +24,16 @@ if TYPE_CHECKING:
 COPIED = (
     evaluate.complex_exp,
     evaluate.series_solutions,
-    varying_minors.fundamental_minors,
-    varying_minors.minors_by_octaves,
-    varying_minors.polynomials_along,
-    varying_minors.begun_along,
-    varying_minors.edges_along,
-    varying_minors.parts_at,
-    varying_minors.minors_through,
-    varying_minors.lines_of,
-    varying_minors.compound,
-    varying_minors.chebyshev_points,
+    doubles.fundamental_minors,
+    doubles.minors_by_octaves,
+    doubles.polynomials_along,
+    doubles.begun_along,
+    doubles.edges_along,
+    doubles.parts_at,
+    doubles.minors_through,
+    doubles.lines_of,
+    doubles.compound,
+    doubles.chebyshev_points,
     line_networks.network_value,
     line_networks.solved_network,
     line_networks.size_of,

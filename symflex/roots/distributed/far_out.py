@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, terms_of
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, summed, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
 from symflex.balls import ball, precision
 from symflex.budget import spend
@@ -26,7 +26,6 @@ from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-from symflex.transfer.enclose import summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

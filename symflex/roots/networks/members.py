@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
-from symflex.algebra.varying_growth import balanced
+from symflex.along.growth import balanced
 from symflex.balls import UndecidedError
 from symflex.balls.inertia import pivots
 

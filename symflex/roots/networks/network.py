@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, NoReturn
 
 from flint import arb, arb_poly
 
-from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.algebra import LAPLACE, Factored, summed, terms_of
 from symflex.balls import ball, precision
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.signs import is_passive
-from symflex.transfer.enclose import later, summed
+from symflex.transfer.enclose import later
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

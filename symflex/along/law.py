@@ -19,25 +19,24 @@ from typing import TYPE_CHECKING, Any
 
 from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series
 
-from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
-from symflex.algebra.fundamental_matrix import expand
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in, evaluated, summed
 from symflex.algebra.ring import PolynomialMemo, terms_of
-from symflex.algebra.varying_growth import SingularCoefficientError, growth_along, legs_along
-from symflex.algebra.varying_system import RationalPart, SingularBeginning
+from symflex.along.fundamental_matrix import expand
+from symflex.along.growth import SingularCoefficientError, growth_along, legs_along
+from symflex.along.system import RationalPart, SingularBeginning
 from symflex.balls import at_centre, ball, current_bits, precision, raised, series_terms
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.enclose import evaluated, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symflex.algebra import Dispersion
-    from symflex.algebra.fundamental_matrix import PowerExpansion
     from symflex.algebra.sparse import Monomial
-    from symflex.algebra.varying_system import Coefficients, Number, Place
+    from symflex.along.fundamental_matrix import PowerExpansion
+    from symflex.along.system import Coefficients, Number, Place
     from symflex.balls import Value
     from symflex.expressions import Expression
 

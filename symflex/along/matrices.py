@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
+from symflex.along.law import LEAST, ROOM, BoundLaw
 from symflex.balls import Value, at_centre, current_bits, raised
-from symflex.transfer.varying_law import LEAST, ROOM, BoundLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from symflex.algebra import Dispersion, Factored
-    from symflex.algebra.fundamental_matrix import PowerExpansion
-    from symflex.algebra.minors import Minor, MinorSums
+    from symflex.along.fundamental_matrix import PowerExpansion
+    from symflex.along.minors import Minor, MinorSums
     from symflex.expressions import Call
 
 BUCKET = 64

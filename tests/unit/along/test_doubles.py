@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symflex.algebra.varying_minors import fundamental_minors
+from symflex.along.doubles import fundamental_minors
 
 BEAM = ((0, 1, 0), (1, 2, 0), (2, 3, 0), (3, 0, 1))
 SECOND = ((0, 1, 0), (1, 0, 1))

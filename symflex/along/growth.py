@@ -1,6 +1,6 @@
 """How far solutions of equations whose coefficients vary along x grow, and the steps they are followed in.
 
-Input: a :class:`~symflex.algebra.varying_system.VaryingSystem`, and a disc of u.
+Input: a :class:`~symflex.along.system.VaryingSystem`, and a disc of u.
 Output: the :class:`Leg`s that x is cut into, and the :class:`Growth` of all solutions along them, as bounds.
 
     y'' = u y on [0, 1] and abs(u) <= 100      states y and y'/10: each slope is at most 10 times the other
@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, acb_poly, arb
 
-from symflex.algebra.varying_system import sequence_of
+from symflex.along.system import sequence_of
 from symflex.balls import precision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.algebra.varying_system import MinorsAlong, Place, SingularBeginning, VaryingSystem
+    from symflex.along.system import MinorsAlong, Place, SingularBeginning, VaryingSystem
 
 Weights = tuple[arb, ...]
 """Powers of two by which states are scaled."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import pytest
 from flint import acb, arb, arb_poly, ctx
 
-from symflex.algebra.fundamental_matrix import expand
-from symflex.algebra.varying_growth import SingularCoefficientError
-from symflex.algebra.varying_system import RationalPart, SingularBeginning
+from symflex.along.fundamental_matrix import expand
+from symflex.along.growth import SingularCoefficientError
+from symflex.along.system import RationalPart, SingularBeginning
 
 
 @dataclass

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, arb, arb_poly
 
-from symflex.algebra.varying_growth import (
+from symflex.along.growth import (
     bits_of,
     growth_begun,
     growth_of,
@@ -40,7 +40,7 @@ from symflex.algebra.varying_growth import (
     least_growth,
     legs_along,
 )
-from symflex.algebra.varying_system import (
+from symflex.along.system import (
     MinorsAlong,
     Number,
     Polynomial,
@@ -55,8 +55,8 @@ from symflex.errors import BudgetError, Diagnostic
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from symflex.algebra.varying_growth import Growth, Leg
-    from symflex.algebra.varying_system import Coefficients, Lines, SingularBeginning, VaryingSystem
+    from symflex.along.growth import Growth, Leg
+    from symflex.along.system import Coefficients, Lines, SingularBeginning, VaryingSystem
 
 Derived = TypeVar("Derived", arb_poly, Polynomial)
 Matrix = list[list[Polynomial]]
