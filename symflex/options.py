@@ -151,8 +151,7 @@ class ExportOptions:
         None,
         "--sample",
         metavar="TIME",
-        help="state-space, c, numpy: sampling time, such as 1ms; writes difference equations with the "
-        "declared values.",
+        help="Sampling time, such as 1ms: write difference equations with the declared values.",
     )
     method: str | None = option(
         None,
@@ -168,7 +167,7 @@ class ExportOptions:
         help="--method tustin: frequency at which the response is exact, in Hz or with a unit.",
     )
     is_direct: bool = option(
-        False, "--direct", help="--sample, c and numpy: one section for all poles, not one for each pair."
+        False, "--direct", help="--sample: one section for all poles, not one for each pair."
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 if the verified accuracy falls short.")
 

@@ -22,7 +22,7 @@ from symflex.api.transfer_function import (
     Number,
     TransferFunction,
 )
-from symflex.errors import BudgetError, Source
+from symflex.errors import BudgetError, Diagnostic, Source, UsageError
 from symflex.expressions.format import number_text
 from symflex.files.write import write_atomically
 from symflex.model.spec import read
@@ -39,13 +39,14 @@ from symflex.options import (
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+    from fractions import Fraction
 
     from matplotlib.figure import Figure
 
     from symflex import model as model_room
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
-    from symflex.errors import Diagnostic
+    from symflex.codegen.export import Exporter
     from symflex.figures import AxesGiven
     from symflex.loops import DynamicColocation
     from symflex.model import Setting
@@ -721,13 +722,66 @@ class Model:
         """Return a standalone LaTeX document of the model."""
         return self._export("latex")
 
+    def export_sampled(
+        self,
+        target: str,
+        dt: float | Fraction | str,
+        method: str = "zoh",
+        prewarp: float | Fraction | str | None = None,
+        *,
+        direct: bool = False,
+        name: str = "",
+    ) -> str:
+        r"""Return code that takes one step per sample, as ``symflex export --sample`` writes it.
+
+        Parameters
+        ----------
+        target : str
+            A language, for instance ``c`` or ``numpy``.
+        dt : float, Fraction or str
+            The sampling time, [s] or with a unit.
+        method, prewarp
+            As for :meth:`symflex.TransferFunction.discretise`.
+        direct : bool
+            One section for all poles, not one for each pair.
+        name : str
+            The file's name without suffix.
+
+        Raises
+        ------
+        UsageError
+            SF902 for a language that has no such code, an impossible method, time or frequency.
+        ModelError
+            SF235 for beams, and delays in loops; SF236 for a function that grows with s.
+
+        Examples
+        --------
+        >>> lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"')
+        >>> print(lag.export_sampled("numpy", "100 ms", "tustin").split("u\n")[-1])
+            y = 0.045454545454545456 * x + w[0]
+            w[0] = 0.045454545454545456 * x + 0.8181818181818182 * y
+            x = y
+            return x
+        <BLANKLINE>
+        """
+        from symflex.codegen.exporters import SAMPLED  # imports numpy
+        from symflex.codegen.sampled import DifferenceExporter
+        from symflex.state_space.sampled import sampling_of
+
+        if target not in SAMPLED:
+            hint = f"targets: {', '.join(SAMPLED)}"
+            raise UsageError(Diagnostic("SF902", f"no sampled code for '{target[:64]}'", None, hint))
+        sampling = sampling_of(dt, method, prewarp, "a sampling time")
+        return self._exported(DifferenceExporter(SAMPLED[target], sampling, is_direct=direct), name)
+
     def _export(self, target: str, name: str = "") -> str:
         from symflex.codegen.exporters import EXPORTERS  # the numeric exporters import numpy
 
-        exporter, pairs = EXPORTERS[target], self.resolved.transfer_functions
-        derived, _ = pipeline.derive_as(
-            self.resolved, pairs, solves=exporter.solves, is_read=target == "latex"
-        )
+        return self._exported(EXPORTERS[target], name, is_read=target == "latex")
+
+    def _exported(self, exporter: Exporter, name: str, *, is_read: bool = False) -> str:
+        pairs = self.resolved.transfer_functions
+        derived, _ = pipeline.derive_as(self.resolved, pairs, solves=exporter.solves, is_read=is_read)
         return exporter.export(self.resolved, derived, name).text
 
 

@@ -56,9 +56,9 @@ def _forms(_: str) -> Sequence[str]:
 
 
 def _targets(_: str) -> Sequence[str]:
-    from symflex.codegen.exporters import EXPORTERS
+    from symflex.codegen.exporters import SUMMARIES
 
-    return tuple(EXPORTERS)
+    return tuple(SUMMARIES)
 
 
 _parameters = _of_model(lambda model: [p.name for p in model.parameters])

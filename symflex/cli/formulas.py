@@ -177,10 +177,12 @@ class ExportCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the targets and what they are."""
-        from symflex.codegen.exporters import EXPORTERS
+        from symflex.codegen.exporters import SAMPLED, SUMMARIES
 
         with formatter.section("Targets"):
-            formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
+            formatter.write_dl(list(SUMMARIES.items()))
+        with formatter.section("Targets of --sample"):
+            formatter.write_text(", ".join(("state-space", *SAMPLED)))
 
 
 @command_of("export", ExportOptions, cls=ExportCommand)
@@ -198,8 +200,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     currents and so on of the model. Exit code 3: there is no such realisation, because beams, rods and delays
     have infinitely many states, or a function has more zeros than poles.
 
-    --sample with --to c or numpy writes difference equations: code for a controller or filter that takes one
-    step for each sample. Rounding errors are measured. A dead time may be any fraction of a sample.
+    --sample writes difference equations: code for a controller or filter that takes one step for each
+    sample, or with --to state-space its matrices. Rounding errors are measured. A dead time may be any
+    fraction of a sample.
 
     --form band writes a product over the poles and zeros in a band, times a short polynomial's
     exponential: accurate up to the band's end, for the given parameter values only. C, MATLAB, Julia,
@@ -208,18 +211,18 @@ def export(spec: Specification, given: ExportOptions) -> int:
     """
     from symflex import pipeline
     from symflex.codegen.export import Language
-    from symflex.codegen.exporters import EXPORTERS
+    from symflex.codegen.exporters import SUMMARIES
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.module_text import identifiers
     from symflex.files.write import check_folder, check_writable, write_atomically
 
-    if given.target not in EXPORTERS:
+    if given.target not in SUMMARIES:
         meant = TARGETS_MEANT.get(given.target.lower(), given.target)
-        hint = nearest(meant, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
+        hint = nearest(meant, SUMMARIES) or "targets: " + ", ".join(SUMMARIES)
         wrong = f"there is no export target '{given.target[:64]}'"
         missing = "what to export to is missing: --to TARGET"
         raise UsageError(Diagnostic("SF902", wrong if given.target else missing, None, hint))
-    exporter = _chosen(EXPORTERS[given.target], given)
+    exporter = _chosen(given)
     is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
     if given.output:
         (check_folder if is_folder else check_writable)(Path(given.output))
@@ -244,7 +247,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
             message = f"'{given.output}' would overwrite a file that the export writes next to it"
-            hint = f"end its name with {EXPORTERS[given.target].suffix}"
+            hint = f"end its name with {exporter.suffix}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         for file, text in files.items():
             write_atomically(file, text.encode())
@@ -254,13 +257,15 @@ def export(spec: Specification, given: ExportOptions) -> int:
     return 4 if given.strict and made.warnings else 0
 
 
-def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
-    """Return an exporter with the options that are its own."""
+def _chosen(given: ExportOptions) -> Exporter:
+    """Return the exporter of a target, with the options that are its own."""
     from symflex.codegen.export import BAND, Language
+    from symflex.codegen.exporters import EXPORTERS, SAMPLED
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.state_space import StateSpaceExporter
     from symflex.print.latex import column_width
 
+    exporter = EXPORTERS.get(given.target)
     if isinstance(exporter, LatexExporter):
         column = column_width(given.width or "a4")
         exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
@@ -285,18 +290,21 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
         sampling = sampling_of(given.sample, given.method, given.prewarp)
     if isinstance(exporter, StateSpaceExporter):
         if given.is_direct:
-            raise UsageError(Diagnostic("SF902", "--direct is for --to c and numpy"))
+            raise UsageError(Diagnostic("SF902", f"--direct is for --to {', '.join(SAMPLED)}"))
         return replace(exporter, is_minimal=given.is_minimal, sampling=sampling)
     if given.is_minimal:
         raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
     if sampling is not None:
-        from symflex.codegen.difference import DifferenceExporter
+        from symflex.codegen.sampled import DifferenceExporter
 
-        if given.target not in ("c", "numpy"):
-            raise UsageError(Diagnostic("SF902", "--sample is for --to state-space, c and numpy"))
+        if given.target not in SAMPLED:
+            raise UsageError(Diagnostic("SF902", f"--sample is for --to state-space, {', '.join(SAMPLED)}"))
         if given.form or given.up_to is not None:
             raise UsageError(Diagnostic("SF902", "--form and --up-to are for code without --sample"))
-        return DifferenceExporter(given.target, sampling, is_direct=given.is_direct)
+        return DifferenceExporter(SAMPLED[given.target], sampling, is_direct=given.is_direct)
+    if exporter is None:
+        message = f"--to {given.target} needs a sampling time"
+        raise UsageError(Diagnostic("SF902", message, None, "for instance --sample 1ms"))
     return exporter
 
 

@@ -1,6 +1,7 @@
-"""Difference equations for a computer that takes one step at every sample, in C and in Python.
+"""Difference equations for a computer that takes one step at every sample, and what their rounding costs.
 
-Input: transfer functions, and how they are sampled. Output: an :class:`Export` of code that was measured.
+Input: a sampled transfer function.
+Output: a :class:`DifferenceEquation` in doubles; :mod:`symflex.codegen.sampled` writes it as code.
 
     (z + 0.5)/((z - 1) (z - 0.8))    is one section of second order; in every step
 
@@ -14,9 +15,7 @@ which coefficients of high degree lose. In direct form there is one section of a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import chain
+from dataclasses import dataclass
 from math import isfinite, pi
 from random import Random
 from sys import float_info
@@ -24,30 +23,12 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.sampling import SampledTransferFunction, monic, sampled_transfer_function
+from symflex.analysis.sampling import SampledTransferFunction, monic
 from symflex.balls import precision
-from symflex.budget import spend
-from symflex.codegen.c.body import KEYWORDS, RESERVED
-from symflex.codegen.c.module import comment, prefix_of, source_and_header
-from symflex.codegen.export import Export
-from symflex.codegen.module_text import (
-    default_value,
-    identifiers,
-    inert,
-    origin_lines,
-    value_as_written,
-    wrapped,
-)
-from symflex.codegen.python.dialects import NUMPY_DIALECT
-from symflex.codegen.python.module import docstring
-from symflex.codegen.python.pieces import WIDTH
-from symflex.errors import BudgetError, Diagnostic, ModelError
-from symflex.transfer import NestedTransferFunction, bind
+from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
-    from symflex.model import Model
-    from symflex.state_space.sampled import Sampling
-    from symflex.transfer import AnyTransferFunction
+    from collections.abc import Callable, Sequence
 
 SAMPLES = 1000
 """Samples of a run that measures rounding; the input is +1 or -1 at random, which excites all frequencies."""
@@ -59,8 +40,8 @@ LARGE = 1e-9
 """Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
 SMALLEST = float_info.min / float_info.epsilon
 """Share of the largest coefficient below which another one is less than its rounding."""
-SHOWN_POLES = 8
 PAIR = 2
+"""Poles of a section of second order, and zeros."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,17 +51,26 @@ class FilterSection:
     above: tuple[float, ...]
     below: tuple[float, ...]
 
-    def lines(self, first: int) -> list[str]:
-        """Return the statements of one step, of x and the states from ``w[first]`` on; C and Python alike."""
+    def assignments(self, first: int, state: str, number: Callable[[float], str]) -> list[tuple[str, str]]:
+        """Return targets and values of one step, of x and the states from number ``first`` on."""
         count = len(self.below)
-        states = [f"w[{first + i}]" for i in range(count)]
-        statements = [f"y = {_sum([(self.above[0], 'x')], states[:1])}"]
+        states = [state.format(first + i) for i in range(count)]
+
+        def total(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
+            signed = [
+                (c < 0, name if abs(c) == 1 else f"{number(abs(c))} * {name}") for c, name in products if c
+            ]
+            signed += [(False, name) for name in names]
+            text = "".join(f" {'-' if minus else '+'} {term}" for minus, term in signed) or " + 0.0"
+            return text[3:] if text[1] == "+" else f"-{text[3:]}"
+
+        steps = [("y", total([(self.above[0], "x")], states[:1]))]
         for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
-            statements.append(f"{states[i]} = {_sum([(b, 'x'), (-a, 'y')], states[i + 1 : i + 2])}")
-        return statements
+            steps.append((states[i], total([(b, "x"), (-a, "y")], states[i + 1 : i + 2])))
+        return steps
 
     def step(self, x: float, w: list[float], first: int) -> float:
-        """Do what :meth:`lines` say, in doubles."""
+        """Do what :meth:`assignments` say, in doubles."""
         count = len(self.below)
         y = self.above[0] * x + (w[first] if count else 0.0)
         for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
@@ -105,6 +95,19 @@ class DifferenceEquation:
     def order(self) -> int:
         """How many states the sections have."""
         return sum(len(section.below) for section in self.sections)
+
+    def assignments(
+        self, state: str = "w[{}]", number: Callable[[float], str] = repr
+    ) -> list[tuple[str, str]]:
+        """Return targets and values of one step, of the input x; x and y are the output after it.
+
+        ``state`` is a template of the number of a state.
+        """
+        first, steps = 0, []
+        for section in self.sections:
+            steps += [*section.assignments(first, state, number), ("x", "y")]
+            first += len(section.below)
+        return steps
 
     def run(self, u: Sequence[float]) -> list[float]:
         """Return the output in doubles, from rest, as generated code computes it."""
@@ -177,6 +180,7 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
     --------
     >>> from fractions import Fraction
     >>> from symflex import loads
+    >>> from symflex.analysis.sampling import sampled_transfer_function
     >>> from symflex.state_space.sampled import Sampling
     >>> tf = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u*(s + 1)/s"')
     >>> bound = tf.transfer_function("y", "u").bind().bound
@@ -188,8 +192,8 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
         order = len(sampled.poles)
         gain = next((c for c in sampled.numerator if c != 0), arb(0))
         roots = (*sampled.poles, *(sampled.zeros or ()))
-        is_told = sampled.zeros is not None and all(z.imag == 0 or not z.imag.contains(0) for z in roots)
-        if is_direct or not is_told or not order or gain == 0:
+        are_apart = sampled.zeros is not None and all(z.imag == 0 or not z.imag.contains(0) for z in roots)
+        if is_direct or not are_apart or not order or gain == 0:
             above, below = (_doubles(side, sampled.tf) for side in (sampled.numerator, sampled.denominator))
             return DifferenceEquation(sampled, (FilterSection(above, below[1:]),))
         sections = []
@@ -266,191 +270,3 @@ def _doubles(values: Sequence[arb], name: str) -> tuple[float, ...]:
         message = f"a coefficient of {name} from sample to sample is too {size} for double precision"
         raise ModelError(Diagnostic("SF233", message, None, "choose other units, or another sampling time"))
     return tuple(0.0 if abs(double) < float_info.min else double for double in doubles)
-
-
-def _sum(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
-    """Return a sum of numbers times names, and of names, without what is zero."""
-    signed = [(factor < 0, _product(abs(factor), name)) for factor, name in products if factor]
-    signed += [(False, name) for name in names]
-    if not signed:
-        return "0.0"
-    text = "".join(f" {'-' if minus else '+'} {term}" for minus, term in signed)
-    return text[3:] if not signed[0][0] else f"-{text[3:]}"
-
-
-def _product(factor: float, name: str) -> str:
-    return name if factor == 1 else f"{factor!r} * {name}"
-
-
-@dataclass(frozen=True, slots=True)
-class DifferenceExporter:
-    """Transfer functions as code that takes one step per sample, in C or in Python."""
-
-    language: str  # ``c`` or ``numpy``
-    sampling: Sampling
-    is_direct: bool = False  # one section for all poles
-
-    summary = "difference equations, one step per sample"
-    solves = False
-
-    @property
-    def suffix(self) -> str:
-        """Of the file's name."""
-        return ".c" if self.language == "c" else ".py"
-
-    def export(
-        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
-    ) -> Export:
-        """Return the file; accuracy that was not reached is a warning."""
-        made, warnings = [], []
-        for tf in tfs:
-            spend()
-            if isinstance(tf, NestedTransferFunction):
-                message = f"the closed form of {tf.name} is too large to be sampled"
-                raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
-            equation = difference_equation(
-                sampled_transfer_function(bind(tf), self.sampling), is_direct=self.is_direct
-            )
-            said, warning = equation.measured()
-            warnings += [warning] if warning else []
-            made.append((tf, equation, said))
-        text = _StepCode(model, made, self.sampling)
-        if self.language == "numpy":
-            return Export(text.python(), tuple(warnings))
-        return replace(text.c(None if is_alone else stem), warnings=tuple(warnings))
-
-
-@dataclass(frozen=True, eq=False)
-class _StepCode:
-    model: Model
-    made: Sequence[tuple[AnyTransferFunction, DifferenceEquation, str]]
-    sampling: Sampling
-
-    def names(self, reserved: Sequence[str]) -> list[str]:
-        wanted = {tf.name: f"{tf.output.name}_over_{tf.input.name}" for tf, _, _ in self.made}
-        by_wanted = identifiers(wanted, reserved)
-        return [by_wanted[tf.name] for tf, _, _ in self.made]
-
-    def introduction(self, width: int) -> list[str]:
-        sampling = self.sampling
-        how = {
-            "zoh": "the input held from one to the next, exactly",
-            "tustin": "by the bilinear transformation",
-            "matched": "with poles and zeros matched",
-        }[sampling.method]
-        if sampling.prewarp is not None:
-            how += f", exact at {float(sampling.prewarp.nearly) / (2 * pi):.6g} Hz"
-        lines = ["Difference equations, one step per sample.", "", *origin_lines(self.model, width)]
-        lines += wrapped(
-            f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width
-        )
-        valued = [
-            f"{p.name} = "
-            + (value_as_written(p) or f"{default_value(p).removesuffix('.0')} {p.unit}".rstrip())
-            for p in self.model.parameters
-            if p.value is not None
-        ]
-        return [*lines, "", *(wrapped(inert(f"Values: {', '.join(valued)}."), width) if valued else [])]
-
-    def described(self, index: int, width: int) -> list[str]:
-        tf, equation, said = self.made[index]
-        sampled = equation.sampled
-        poles = [_shown(p) for p in sampled.poles if not p.imag < 0]
-        more = f" and {len(poles) - SHOWN_POLES} more" if len(poles) > SHOWN_POLES else ""
-        unit = f" [{tf.unit}]" if tf.unit else ""
-        lines = [inert(f"{tf.name}{unit}: one step, from rest.")]
-        if poles:
-            lines += ["", *wrapped(f"Poles in z: {', '.join(poles[:SHOWN_POLES])}{more}.", width)]
-        if sampled.late:
-            lines += wrapped(f"In addition, a dead time of {sampled.late} times the sampling time.", width)
-        return [*lines, "", *wrapped(said, width)]
-
-    def python(self) -> str:
-        names = self.names(sorted(NUMPY_DIALECT.reserved | {"x", "y", "w", "u", "np"}))
-        lines = [*self.introduction(WIDTH), ""]
-        example = names[0]
-        lines += wrapped(
-            f"w = {example}_start() are the initial states, all zero, and y = {example}_step(w, u) takes the "
-            "input of this sample, returns the output and advances the states. u may be an array of inputs.",
-            WIDTH,
-        )
-        blocks = [f"SAMPLE_TIME = {float(self.sampling.sample)!r}  # [s]\n"]
-        for i, name in enumerate(names):
-            _, equation, _ = self.made[i]
-            late, order = equation.sampled.late, equation.order
-            body = ["x = u"]
-            if late:
-                body = [f"x = w[{order}]", f"w[{order}:-1] = w[{order + 1}:]", "w[-1] = u"]
-            body += _body(equation)
-            first, *others = self.described(i, WIDTH - 4)
-            described = docstring([first, *(f"    {x}" for x in others)], "    ").rstrip("\n")
-            blocks.append(
-                f"def {name}_start() -> list[Any]:\n"
-                f'    """Return the initial states: those of sections, then past inputs."""\n'
-                f"    return [0.0] * {order + late}\n"
-            )
-            blocks.append(
-                "\n".join(
-                    [
-                        f"def {name}_step(w: list[Any], u: Any) -> Any:",
-                        described,
-                        *(f"    {line}" for line in body),
-                        "    return x",
-                    ]
-                )
-                + "\n"
-            )
-        head = f"{docstring(lines, '')}\nfrom __future__ import annotations\n\nfrom typing import Any\n\n"
-        return head + "\n\n".join(blocks)
-
-    def c(self, stem: str | None) -> Export:
-        """Return source and header; all in the source where there is no name."""
-        prefix = prefix_of(stem)
-        names = [f"{prefix}_{name}" for name in self.names(sorted({*KEYWORDS, *RESERVED}))]
-        room = WIDTH - 3
-        lines = [*self.introduction(room), ""]
-        lines += wrapped(
-            f"Begin with a {names[0]}_state that is all zero; {names[0]}_step takes the input of this "
-            "sample, returns the output and advances the state. It allocates no memory and has no other "
-            "state. Fused operations (-ffp-contract) change the last digits.",
-            room,
-        )
-        declared, defined = [], []
-        for i, name in enumerate(names):
-            _, equation, _ = self.made[i]
-            late, order = equation.sampled.late, equation.order
-            members = [f"    double w[{max(order, 1)}];"]
-            members += [f"    double past[{late}];", "    int next;"] if late else []
-            declared += [
-                *comment(self.described(i, room)),
-                "typedef struct {",
-                *members,
-                f"}} {name}_state;",
-                "",
-            ]
-            declared += [f"double {name}_step({name}_state *state, double u);", ""]
-            body = ["double *const w = state->w;"] if order else []
-            body += ["double x = u, y;"]
-            if late:
-                body += ["x = state->past[state->next];", "state->past[state->next] = u;"]
-                body += [f"state->next = (state->next + 1) % {late};"]
-            if not order:
-                body += ["(void)state;"] if not late else []
-            body += [f"{line};" for line in _body(equation)]
-            defined += [f"double {name}_step({name}_state *state, double u)", "{"]
-            defined += [*(f"    {line}" for line in body), "    return x;", "}", ""]
-        source = "\n".join(defined).rstrip("\n") + "\n"
-        return source_and_header(stem, lines, (), declared, source)
-
-
-def _body(equation: DifferenceEquation) -> list[str]:
-    starts = [0]
-    for section in equation.sections:
-        starts.append(starts[-1] + len(section.below))
-    steps = [[*s.lines(i), "x = y"] for s, i in zip(equation.sections, starts, strict=False)]
-    return list(chain.from_iterable(steps))
-
-
-def _shown(pole: acb) -> str:
-    re, im = float(pole.real.mid()), float(pole.imag.mid())
-    return f"{re:.9g}" if im == 0 else f"{re:.9g} +- {im:.9g}j"

@@ -1,19 +1,24 @@
-"""Targets of ``symflex export``. A new target is one line in ``EXPORTERS`` and what prints it."""
+"""Targets of ``symflex export``. A new one is a file, and a line in ``EXPORTERS`` or ``SAMPLED``."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.module import C99
+from symflex.codegen.c.sampled import SAMPLED_C
 from symflex.codegen.javascript import JAVASCRIPT
 from symflex.codegen.julia import JULIA
 from symflex.codegen.latex import LatexExporter
 from symflex.codegen.matlab import MATLAB
 from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
+from symflex.codegen.python.sampled import SAMPLED_PYTHON
 from symflex.codegen.state_space import StateSpaceExporter
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from symflex.codegen.export import Exporter
+    from symflex.codegen.sampled import SampledLanguage
 
 EXPORTERS: dict[str, Exporter] = {
     "numpy": NUMPY,
@@ -27,3 +32,14 @@ EXPORTERS: dict[str, Exporter] = {
     "latex": LatexExporter(),
 }
 """``symflex export``."""
+
+SAMPLED: dict[str, SampledLanguage] = {
+    "c": SAMPLED_C,
+    "numpy": SAMPLED_PYTHON,
+}
+"""``symflex export --sample``, besides state-space; what is no key of ``EXPORTERS`` exists only sampled."""
+
+SUMMARIES: Mapping[str, str] = {name: x.summary for name, x in EXPORTERS.items()} | {
+    name: f"with --sample: {x.summary}" for name, x in SAMPLED.items() if name not in EXPORTERS
+}
+"""What each target makes, in a line."""

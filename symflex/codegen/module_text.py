@@ -6,6 +6,7 @@ What a user wrote becomes names that are identifiers, one to one, and text that 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from itertools import chain, count
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING
@@ -198,6 +199,39 @@ def inert(text: str) -> str:
     line = " ".join(text.split())
     shown = "".join(c if c.isprintable() else f"<U+{ord(c):04X}>" for c in line).replace('"', "'")
     return _DIRECTIVE.sub(". .", shown.replace(">>>", "> > >"))
+
+
+@dataclass(frozen=True, slots=True)
+class BlockComment:
+    r"""How a language spells a comment, and what must not stand in one.
+
+    Examples
+    --------
+    >>> BlockComment("/*", "*/", " * ", ("??",)).lines(["a */ b ??/", "c\\"])
+    ['/* a * / b ? ?/', ' * c\\.', ' */']
+    """
+
+    opening: str
+    closing: str
+    further: str  # begins every line but the first
+    marks: tuple[str, ...]  # of two characters each, as its ends may be; they are pulled apart
+
+    def lines(self, texts: Sequence[str]) -> list[str]:
+        """Return a comment that nothing in its texts can end; a single text stands on one line."""
+        first, *others = map(self.harmless, texts)
+        if not others:
+            return [f"{self.opening} {first} {self.closing}"]
+        further = (f"{self.further}{text}".rstrip() for text in others)
+        return [f"{self.opening} {first}", *further, f" {self.closing}"]
+
+    def harmless(self, text: str) -> str:
+        """Return a text without what would end the comment, or begin another one."""
+        text = text.rstrip()
+        for mark in (self.closing, self.opening, *self.marks):
+            while mark in text:
+                text = text.replace(mark, f"{mark[0]} {mark[1]}")
+        # A backslash at the end would join this line with the next one.
+        return f"{text}." if text.endswith("\\") else text
 
 
 def wrapped(text: str, width: int, indent: str = "", more: str | None = None) -> list[str]:

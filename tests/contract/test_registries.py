@@ -10,7 +10,7 @@ from flint import arb, ctx
 from symflex import pipeline
 from symflex.algebra import FUNCTIONS, Factored, Ring
 from symflex.cli import run
-from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.exporters import EXPORTERS, SAMPLED
 from symflex.errors import UsageError
 from symflex.expressions import PROGRAM_LIMITS, Name, format_expression, nodes
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK
@@ -169,7 +169,7 @@ def test_a_printed_form_stays_within_the_program_s_limits():
 
 
 def test_an_exporter_names_its_suffix_and_what_it_makes():
-    for name, exporter in EXPORTERS.items():
+    for name, exporter in (*EXPORTERS.items(), *SAMPLED.items()):
         assert exporter.suffix.startswith("."), name
         assert exporter.summary.strip(), name
 

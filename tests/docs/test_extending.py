@@ -2,6 +2,7 @@
 
 import cmath
 import json
+import re
 import runpy
 import shutil
 import subprocess
@@ -41,13 +42,25 @@ from symflex.roots.engines import GUESSES
 found = find_polynomial_roots(RootProblem.from_rationals([25, 6, 1]), 10, [GUESSES["eigenvalues"].propose])
 print([(root.decimal(3).re, root.decimal(3).im, root.certified) for root in found])
 """
-MODELS = {"model": MODEL, "rod": ROD}
+CONTROLLER = """
+symflex = 1
+title      = "(* not the end *) x := 1;"
+parameters = { k_p = "40", T_d = "0.1 s", T_f = "20 ms", T = "25 ms" }
+inputs     = { e = {} }
+outputs    = { u = "k_p*(1 + T_d*s/(1 + T_f*s))*e", U = "D*e/(1e7*s + 1)" }
+blocks     = { D = { type = "delay", T = "T" } }
+"""
+HOSTILE = "tests/unit/codegen/test_difference.py"
+MODELS = {"model": MODEL, "rod": ROD, "pid": CONTROLLER}
 COMMANDS = (
     "derive model.toml --json --form polynomial",
     "derive model.toml --json --form factored",
     "derive model.toml --json --form horner",
     "derive rod.toml --json --form hyperbolic",
     "export model.toml --to sympy -o exported.py",
+    "export pid.toml --to st --sample 5ms -o exported.st",
+    "export pid.toml --to numpy --sample 5ms -o stepped.py",
+    "export --help",
 )
 RUN = """
 import contextlib, io, json, sys
@@ -127,6 +140,46 @@ def test_the_new_target_writes_a_module_that_runs(said, extended):
     names = runpy.run_path(str(extended / "exported.py"))
     _, denominator = names["TRANSFER_FUNCTIONS"]["X/F"]
     assert names["degree"](denominator, names["Symbol"]("s")) == 2
+
+
+def block_step(text, name):
+    """Return a function of one sample after the other that does what a block in Structured Text says."""
+    code = re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL)
+    block = rf"FUNCTION_BLOCK {name}\n((?:VAR.*?END_VAR\n)+)(.*?)END_FUNCTION_BLOCK"
+    declared, body = re.search(block, code, re.DOTALL).groups()
+    kept = {n: 0 if kind == "DINT" else 0.0 for n, kind in re.findall(r"(\w+) : (LREAL|DINT);", declared)}
+    kept |= {n: [0.0] * (int(last) + 1) for n, last in re.findall(r"(\w+) : ARRAY\[0\.\.(\d+)\]", declared)}
+    statements = compile(body.replace(":=", "=").replace("MOD", "%").replace(";", ""), name, "exec")
+
+    def step(u):
+        kept["u"] = u
+        exec(statements, {}, kept)  # noqa: S102 (what the test has written)
+        return kept["y"]
+
+    return step
+
+
+@pytest.mark.slow
+def test_the_new_sampled_language_takes_the_steps_that_python_takes(said, extended):
+    text = (extended / "exported.st").read_text()
+    names = runpy.run_path(str(extended / "stepped.py"))
+    u = [1.0, -2.0, 0.5, 3.0, 0.25, -1.0, 4.0, 7.0, -3.0]
+    for block, function in (("u_over_e_step", "u_over_e"), ("u_over_e__step", "U_over_e")):
+        step, state = block_step(text, block), names[f"{function}_start"]()
+        assert [step(x) for x in u] == [names[f"{function}_step"](state, x) for x in u]
+    assert re.search(r"\d\.\d+e-\d+ \* ", text), "no number with an exponent was tried"
+    assert "st with --sample: Structured Text" in " ".join(said["export --help"].split())
+
+
+@pytest.mark.slow
+def test_a_language_that_is_only_sampled_says_so_and_is_in_the_api_and_the_tests_of_hostile_names(extended):
+    refused = "from symflex.cli import run; import sys; sys.exit(run(sys.argv[1:]) != 2)"
+    python(extended, "-c", refused, "export", "pid.toml", "--to", "st")
+    shown = "import symflex; print(symflex.load('pid.toml').export_sampled('st', '5 ms')[:2])"
+    assert python(extended, "-c", shown) == "(*\n"
+    options = ["-v", "-p", "no:cacheprovider", "-p", "no:xdist", "--import-mode=importlib"]
+    tested = python(extended, "-m", "pytest", *options, "-k", "sampled_language", HOSTILE)
+    assert tested.count("[st] PASSED") == 2
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WI
 from symflex.codegen.c.functions import Functions, fits_lanes
 from symflex.codegen.export import Export, Language, called_parts
 from symflex.codegen.module_text import (
+    BlockComment,
     default_value,
     formula_lines,
     identifiers,
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Contents
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
+
+COMMENT = BlockComment("/*", "*/", " * ", ("??",))
+"""A comment of C; trigraphs begin with two question marks."""
 
 
 def c_files(contents: Contents) -> Export:
@@ -67,41 +71,18 @@ def _function_names(wanted: Mapping[str, str]) -> dict[str, str]:
     return names
 
 
-def comment(lines: Sequence[str]) -> list[str]:
-    r"""Return lines as a block comment that nothing in them can end.
-
-    Examples
-    --------
-    >>> comment(["a */ b ??/", "c\\"])
-    ['/* a * / b ? ?/', ' * c\\.', ' */']
-    """
-    texts = [_harmless(line) for line in lines]
-    if len(texts) == 1:
-        return [f"/* {texts[0]} */"]
-    return [f"/* {texts[0]}", *(f" * {text}".rstrip() for text in texts[1:]), " */"]
-
-
-def _harmless(line: str) -> str:
-    text = line.rstrip()
-    for mark in ("*/", "/*", "??"):
-        while mark in text:
-            text = text.replace(mark, f"{mark[0]} {mark[1]}")
-    # A backslash at the end would join this line with the next one.
-    return f"{text}." if text.endswith("\\") else text
-
-
 def source_and_header(
     name: str | None, introduction: Sequence[str], included: Sequence[str], inside: Sequence[str], source: str
 ) -> Export:
     """Return the source file and its header, which declares what is ``inside``; without a name, one file."""
     guard = f"{prefix_of(name).upper()}_H"
-    opening = [*comment(introduction), f"#ifndef {guard}", f"#define {guard}", "", *included]
+    opening = [*COMMENT.lines(introduction), f"#ifndef {guard}", f"#define {guard}", "", *included]
     opening += ["#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
     closing = ["#ifdef __cplusplus", "}", "#endif", "", "#endif"]
     header = "\n".join([*opening, *inside, *closing]) + "\n"
     if name is None:
         return Export(f"{header}\n{source}")
-    (first,) = comment([f"{name}.c: the functions that {name}.h declares."])
+    (first,) = COMMENT.lines([f"{name}.c: the functions that {name}.h declares."])
     return Export(f'{first}\n\n#include "{name}.h"\n\n{source}', companions={".h": header})
 
 
@@ -134,10 +115,10 @@ class _Files:
     def made(self) -> Export:
         declared = []
         for key, functions in self.functions.items():
-            declared += [*comment(self._described(key)), f"{functions.freq_prototype};", ""]
+            declared += [*COMMENT.lines(self._described(key)), f"{functions.freq_prototype};", ""]
         with_complex = [
             "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
-            *comment(["Values at any complex s [rad/s]."]),
+            *COMMENT.lines(["Values at any complex s [rad/s]."]),
             *(f"{functions.value_prototype};" for functions in self.functions.values()),
             "#endif",
             "",
@@ -171,7 +152,7 @@ class _Files:
         return lines[:-1]
 
     def _parameters(self) -> list[str]:
-        lines = [*comment(["Parameters, in SI units."]), f"typedef struct {self.structure} {{"]
+        lines = [*COMMENT.lines(["Parameters, in SI units."]), f"typedef struct {self.structure} {{"]
         for parameter in self.model.parameters:
             member = self.members[parameter.name]
             words = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
@@ -182,10 +163,10 @@ class _Files:
             declaration = f"    double {member};"
             if not text:
                 lines.append(declaration)
-            elif len(one := f"{declaration:<24}/* {_harmless(text)} */") <= WIDTH:
+            elif len(one := f"{declaration:<24}/* {COMMENT.harmless(text)} */") <= WIDTH:
                 lines.append(one)
             else:
-                lines += [f"    {line}" for line in comment(wrapped(text, WIDTH - 7))]
+                lines += [f"    {line}" for line in COMMENT.lines(wrapped(text, WIDTH - 7))]
                 lines.append(declaration)
         if not self.model.parameters:
             lines.append("    char none;    /* C has no empty structures */")
@@ -195,7 +176,7 @@ class _Files:
             *lines,
             f"}} {self.structure};",
             "",
-            *comment([what]),
+            *COMMENT.lines([what]),
             f"extern const {self.structure} {self.prefix}_defaults;",
             "",
         ]
@@ -221,7 +202,7 @@ class _Files:
         # Comments tell nothing about which functions are called.
         order = max((f.order for f in self.functions.values()), default=1)
         below = helpers("\n".join(printed.values()), self.structure, order)
-        code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, text in printed.items())
+        code = "\n".join("\n".join([*COMMENT.lines([inert(key)]), "", text]) for key, text in printed.items())
         signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
         parts = [includes, self._defaults(), below, code]
@@ -232,7 +213,7 @@ class _Files:
         for parameter in self.model.parameters:
             entry = f"    .{self.members[parameter.name]} = {default_value(parameter) or 'NAN'},"
             written = value_as_written(parameter)
-            lines.append(f"{entry} /* {_harmless(inert(written))} */" if written else entry)
+            lines.append(f"{entry} /* {COMMENT.harmless(inert(written))} */" if written else entry)
         if not self.model.parameters:
             lines.append("    0")
         return "\n".join([*lines, "};"]) + "\n"

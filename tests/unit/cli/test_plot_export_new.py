@@ -4,7 +4,7 @@ from importlib.resources import files
 import pytest
 
 from symflex.cli.library import TEMPLATES
-from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.exporters import EXPORTERS, SUMMARIES
 from tests.unit.cli.commands import WORKED
 
 
@@ -142,7 +142,7 @@ def test_a_target_of_two_files_writes_both(shell):
 def test_an_unknown_target_or_an_option_of_another_one_is_a_usage_error(shell):
     for options, said in (
         (("--to", "numpy", "--minimal"), "--minimal is for --to state-space"),
-        (("--to", "fortran"), f"targets: {', '.join(EXPORTERS)}"),
+        (("--to", "fortran"), f"targets: {', '.join(SUMMARIES)}"),
         (("--to", "c", "-o", "plant.h"), "end its name with .c"),
     ):
         done = shell("export", "x.toml", *options)
@@ -164,7 +164,7 @@ def test_what_has_no_state_equations_ends_with_code_3_and_a_hint(shell):
 
 def test_the_help_of_export_lists_the_targets(shell):
     shown = " ".join(shell("export", "--help").out.split())
-    assert all(f"{name} {exporter.summary}" in shown for name, exporter in EXPORTERS.items())
+    assert all(f"{name} {summary}" in shown for name, summary in SUMMARIES.items())
 
 
 def test_a_main_function_or_module_is_called_as_its_file(shell):

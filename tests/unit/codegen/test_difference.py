@@ -1,8 +1,10 @@
 """Difference equations: generated code runs a controller, in C and in Python."""
 
 import ctypes
+import re
 import runpy
 import subprocess
+from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -16,10 +18,13 @@ from scipy.signal import lfilter
 
 from symflex import loads
 from symflex.analysis.sampling import sampled_transfer_function
-from symflex.codegen.difference import DifferenceExporter, difference_equation
+from symflex.codegen.difference import DifferenceEquation, difference_equation
+from symflex.codegen.exporters import SAMPLED
+from symflex.codegen.sampled import DifferenceExporter
 from symflex.state_space.sampled import Sampling
 from symflex.transfer.of_model import derive_all
 from tests.unit.analysis.systems import rational
+from tests.unit.codegen import hostile_names as hostile
 
 CONTROLLER = """
 symflex = 1
@@ -44,7 +49,7 @@ def plant(late):
 def exported(language, text=CONTROLLER, stem="pid", **options):
     model = loads(text).resolved
     sampling = options.pop("sampling", Sampling(Fraction(1, 100), "tustin"))
-    exporter = DifferenceExporter(language, sampling, **options)
+    exporter = DifferenceExporter(SAMPLED[language], sampling, **options)
     return exporter.export(model, derive_all(model), stem, is_alone=False)
 
 
@@ -215,7 +220,44 @@ def test_the_errors_measured_are_those_of_another_run():
     assert float(np.max(np.abs(found - exact)) / np.max(np.abs(exact))) == pytest.approx(stated, rel=0.05)
 
 
-def test_hostile_names_stay_text():
-    text = CONTROLLER.replace("symflex = 1", 'symflex = 1\ntitle = "*/ int x; /* \\\\ \\"\\"\\" ??/"')
-    assert "*/ int x" not in exported("c", text).companions[".h"]
-    compile(exported("numpy", text).text, "pid.py", "exec")
+# ------------------------------------------------------------------------- names and texts that are hostile
+
+
+def written(target, tfs, model):
+    made = DifferenceExporter(SAMPLED[target], Sampling(Fraction(1, 100), "tustin")).export(
+        model, tfs, "plant", is_alone=False
+    )
+    text = "\n".join([*made.companions.values(), made.text])
+    ends = (re.escape(end) for end in (SAMPLED[target].comment.opening, SAMPLED[target].comment.closing))
+    return text, re.sub(r"(?:\br)?" + ".*?".join(ends), "", text, flags=re.DOTALL)
+
+
+@pytest.fixture
+def springs(monkeypatch):
+    monkeypatch.setattr(DifferenceEquation, "measured", lambda _: ("Rounding costs nothing.", None))
+    model = hostile.mass_on_springs(("k_1",))
+    return model, derive_all(model)
+
+
+@pytest.mark.parametrize("target", SAMPLED)
+def test_prose_changes_no_statement_of_a_sampled_language(target, springs):
+    model, tfs = springs
+    statements = set()
+    for text in ("tame", *hostile.TEXTS):
+        prose = hostile.with_prose(model, text)
+        whole, code = written(target, [replace(tf, model=prose) for tf in tfs], prose)
+        assert all(line.isprintable() for line in whole.split("\n")), text
+        statements.add(code)
+        assert len(statements) == 1, text
+
+
+@pytest.mark.parametrize("target", SAMPLED)
+def test_names_of_a_sampled_language_are_identifiers_of_their_own(target, springs):
+    model, (tf,) = springs
+    names = [*hostile.ODD, *hostile.NAMES[::20], *(n.upper() for n in hostile.NAMES[::20])]
+    _, code = written(target, hostile.with_names(tf, names, names[::-1]), model)
+    found = re.findall(r"\w+_step\b", code)
+    steps = Counter(name.lower() for name in found) if SAMPLED[target].is_caseless else Counter(found)
+    assert len(steps) == len(names)
+    assert len(set(steps.values())) == 1
+    assert all(re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) for name in steps)
