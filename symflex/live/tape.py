@@ -43,11 +43,10 @@ from symflex.codegen.program.distributed import Pieces
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.program.forge import straight
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
-from symflex.model.signs import is_passive
 from symflex.roots import Everything, Modes
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
-from symflex.roots.passive import observed
+from symflex.roots.passivity import energy_proof
 from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:
@@ -91,7 +90,7 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
     }
     # Energy decides on stability whatever the values are, if they are positive.
     free = tuple(replace(p, value=None, assume="positive") for p in tf.model.parameters)
-    passive = is_passive(replace(observed(tf.model, tf.output), parameters=free))
+    passive = energy_proof(replace(tf.model, parameters=free), output=tf.output).is_passive
     named = {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "passive": passive}
     return named | {"start": start, **sides}
 

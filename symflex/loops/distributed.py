@@ -32,7 +32,7 @@ from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, ri
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
-from symflex.roots.passive import PassiveLoop, observed, passive_loop
+from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import count_roots, exact_fraction
 from symflex.roots.sheets import on_sheet
@@ -165,12 +165,12 @@ class DistributedFactors:
             return self._without_end, False
         if not self.is_endless:
             return max(tail for tail in self._tails if not isinstance(tail, str)), True
-        if self.passive is not None and self.passive.rests:
+        if self.energy.rests:
             self.method = "passive loop"
             return self._without_end, True
         reason = next(tail for tail in self._tails if isinstance(tail, str))
         passive = "; as the loop is passive, none lies right of it"
-        self.reasons.append(reason + passive if self.passive is not None else reason)
+        self.reasons.append(reason + passive if self.energy.is_passive else reason)
         return self._without_end, False
 
     @property
@@ -179,13 +179,13 @@ class DistributedFactors:
         return any(isinstance(tail, str) for tail in self._tails)
 
     @cached_property
-    def passive(self) -> PassiveLoop | None:
-        """How the loop is closed, where it is proved to be passive for every gain in the range."""
+    def energy(self) -> EnergyProof:
+        """What energy says of the poles for every gain in the range."""
         source = self.bound.source
         is_straight = all(factor.degree <= 1 for factor in self.factors)
         if self.limits[0] < 0 or self.bound.sheets > 1 or not is_straight or not self.gain:
-            return None
-        return passive_loop(observed(source.model, source.output), self.gain, self.bound.all_values)
+            return EnergyProof()
+        return energy_proof(source.model, self.bound.all_values, source.output, self.gain)
 
     @property
     def axis_end(self) -> float:
@@ -277,7 +277,7 @@ class DistributedFactors:
                 message = "it could not be decided on which side of the imaginary axis a pole lies"
                 raise UncertifiedError(Diagnostic("SF802", message))
             return PoleCount(count_right(roots), zeros)
-        if self.passive is not None and self.passive.rests:
+        if self.energy.rests:
             return PoleCount(0, zeros)
         for circle in [self._circle] if self._circle else self._circles:
             try:

@@ -129,7 +129,7 @@ def find_stable_gains(
         method="polynomials" if along is None else along.method,
         apart=apart,
         tf=loop.bound.name,
-        is_passive=along is not None and along.passive is not None,
+        is_passive=along is not None and along.energy.is_passive,
         is_narrowed=along is not None and along.is_narrowed,
         data_end=end,
         beyond=() if end is None or nominal is None else _beyond(lumped, nominal, end),
@@ -149,8 +149,8 @@ def find_stable_gains(
             phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
         if loop_gain.value is None:
             bandwidth = allowed_bandwidth(intervals, high, loop_gain)
-        if is_complete and along is not None and along.is_endless and along.passive:
-            beyond = along.passive.least_phase_margin(along.radius[0])
+        if is_complete and along is not None and along.is_endless and along.energy.is_passive:
+            beyond = along.energy.least_phase_margin(along.radius[0])
             if not _holds_smallest(phase_margins, bandwidth, beyond):
                 reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
     return replace(

@@ -27,13 +27,12 @@ from symflex.expressions import (
     Power,
     Product,
     Quotient,
-    Sum,
     fold,
     names,
     substitute,
 )
 from symflex.library.blocks import ROOT
-from symflex.library.elements import CIRCUITS, LineElement
+from symflex.library.elements import LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
 from symflex.model.reading import literal_value
@@ -495,66 +494,12 @@ def sign_of(number: arb | None) -> int | None:
     return None if number is None else 1 if number > 0 else -1 if number < 0 else None
 
 
-def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = None) -> bool:
-    """Tell whether it is proved that nothing in a model supplies energy but its inputs.
-
-    ``values`` are the model's own by default.
-
-    Then no pole lies in the right half plane: of ``x^H A(s) x/s`` mass, loss and stiffness are each
-    nonnegative, and at Re(s) > 0 their sum vanishes only where nothing moves (Anderson & Vongpanitlerd 1973,
-    Network Analysis and Synthesis, chapter 2). Nothing is known with signals, blocks, fields, parameters that
-    depend on s, elements that are not of this program, or a value of the wrong sign.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> text = '''
-    ... symflex = 1
-    ... parameters = { k = "2 N/m", m = "1 kg" }
-    ... elements.body = { type = "mass", at = "x", m = "m" }
-    ... elements.spring = { type = "spring", between = ["x", "ground"], k = "SIGNk" }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... '''
-    >>> for sign in ("", "-"):
-    ...     print(is_passive(pipeline.loads(text.replace("SIGN", sign))))
-    True
-    False
-    """
-    if model.signals or model.blocks or model.fields:
-        return False
-    line = line_of(model, values or ())
-    inputs = {each.name for each in model.inputs}
-    return all(_is_passive(use, line, inputs) for use in model.elements)
-
-
 def line_of(model: Model, values: Iterable[tuple[str, ExactValue]]) -> Line:
     """Return the line of a model's numbers: the values given, its own for what cancelled from a function."""
     numbers = {**{p.name: p.value for p in model.parameters}, **dict(values)}
     # What cancels in a function may have no value, but has the sign that is assumed of it.
     free = frozenset(p.name for p in model.parameters if numbers[p.name] is None and p.assume == "positive")
     return Line.of_numbers(model.definitions, numbers.items(), free)
-
-
-def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
-    element, given = use.element, dict(use.values)
-    if element.is_source:
-        return follows_inputs(use, line, inputs)
-    law = element.passive
-    if law is None or any(
-        given[name] != given[law.equal[0]]
-        and line.sign(Sum((given[name], Negative(given[law.equal[0]])))) != 0
-        for name in law.equal
-    ):
-        return False
-    if law.is_alike and len({domain in CIRCUITS for _, domain in use.domains}) > 1:
-        return False
-    if law.definite:
-        one, other, mutual = (given[name] for name in law.definite)
-        if line.sign(Sum((Product((one, other)), Negative(Product((mutual, mutual)))))) not in (0, 1):
-            return False
-    signs = parameter_signs(use, line)
-    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
 
 
 def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> bool:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.algebra import LAPLACE, Ring, by_powers, degree_in, irreducible_factors
 from symflex.library.elements import CIRCUITS
-from symflex.model.signs import is_passive
 from symflex.print.forms import Arranger
+from symflex.roots.passivity import energy_proof
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -138,7 +138,7 @@ def _is_passive(model: Model) -> bool:
     return (
         all(p.assume != "real" for p in model.parameters)
         and all(e.passive is not None and all(p.domain not in CIRCUITS for p in e.ports) for e in elements)
-        and is_passive(replace(model, parameters=free))
+        and energy_proof(replace(model, parameters=free)).is_passive
     )
 
 

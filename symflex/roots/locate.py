@@ -17,14 +17,10 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedErr
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.model.model import IMAGINARY
-from symflex.model.signs import is_passive
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.distributed.proof import TOUCHING, limits
 from symflex.roots.distributed.right_half_plane import (
-    COMPRESSED,
     DEGENERATE,
-    PASSIVE,
-    PASSIVE_LOOP,
     RightHalfPlane,
     gaps_text,
     last_on_axis,
@@ -35,8 +31,7 @@ from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.exact_zeros import is_shared_exactly
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.loss_modes import locate_lossy
-from symflex.roots.passive import fastest_growth, observed, passive_loop
-from symflex.roots.passive_fields import are_passive
+from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
     NONE_ON_AXIS,
@@ -64,7 +59,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.equations import Equations
-    from symflex.model import ExactValue, Model
+    from symflex.model import Model
     from symflex.roots.counting.winding import Cell
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
@@ -127,10 +122,10 @@ def locate(
     )
     verdict = replace(located.verdict, moving=_moving_unseen(bound))
     if bound.source.hides_waves and verdict.word != "unstable":
-        proof, _ = _passivity_of(bound)
+        energy = _energy(bound)
         verdict = (
-            replace(verdict, reason=f"{proof}; {UNSEEN_ON_AXIS}")
-            if proof
+            replace(verdict, reason=f"{energy.reason}; {UNSEEN_ON_AXIS}")
+            if energy.is_passive
             else StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
         )
     return replace(located, verdict=verdict)
@@ -178,9 +173,9 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     if not model.is_distributed:
         return locate(of_numbers(bound), region, digits)
     where, is_default = _region_of(bound, region)
-    proof, rests = _passivity(bound, bound.values)
+    energy = energy_proof(source.model, bound.values, source.output)
     located = locate_in_network(
-        equations_of(bound), bound.name, pair, where, digits, is_default=is_default, proof=proof, rests=rests
+        equations_of(bound), bound.name, pair, where, digits, is_default=is_default, energy=energy
     )
     is_open = not located.certificate.certified and located.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
@@ -427,15 +422,14 @@ class _Searched:
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = self._points.coincident_elsewhere(self.hidden)
-        proof, rests = _passivity_of(bound)
+        energy = _energy(bound)
+        proof, rests = (energy.reason, energy.rests) if energy.is_passive else ("", False)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
         degenerate = self._points.hidden(
             p for p in self._points.distinct if not (rests or p.re < 0 or (proof and p.re > 0))
         )
-        model = observed(bound.source.model, bound.source.output)
-        growth = fastest_growth(model, bound.all_values) if bound.is_of_model else None
-        limit = growth[0] if growth else None
+        limit = energy.limit or None
         sides: list[tuple[Root, ...]] = []
         gaps = [RightHalfPlane((), self._points.unproved)]
         has_more = bool(self._points.unproved)  # poles than those that are known
@@ -477,8 +471,7 @@ class _Searched:
             gaps.append(whole)
         unsure = gaps_text(gaps)
         if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*sides)):
-            proof = COMPRESSED
-            rests = growth is not None and growth[1]
+            proof, rests = energy.reason, energy.rests
         if proof:
             unsure = "" if rests or not has_more else NONE_ON_AXIS
         seen = [*chain(*sides[:-1]), *(h.root for h in degenerate if not h.is_proved)]
@@ -571,21 +564,10 @@ def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
     return list(in_order(roots) if isinstance(region, Mode) else chosen(roots, region))
 
 
-def _passivity_of(bound: BoundTransferFunction) -> tuple[str, bool]:
-    return _passivity(bound, bound.all_values) if bound.is_of_model else ("", False)
-
-
-def _passivity(bound: AnyBoundFunction, values: Sequence[tuple[str, ExactValue]]) -> tuple[str, bool]:
-    """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
-    model = observed(bound.source.model, bound.source.output)
-    if are_passive(model, values):
-        return PASSIVE, are_passive(model, values, are_lossy=True)
-    loop = passive_loop(model, "", values)
-    if is_passive(model, values):
-        return PASSIVE, loop is not None and loop.rests
-    if loop is None:
-        return "", False
-    return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
+def _energy(bound: BoundTransferFunction) -> EnergyProof:
+    """Return what energy says of a function's poles; nothing where they are not its model's."""
+    source = bound.source
+    return energy_proof(source.model, bound.all_values, source.output) if bound.is_of_model else EnergyProof()
 
 
 def _exclusion(hole: Cell) -> Exclusion:

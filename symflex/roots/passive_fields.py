@@ -55,18 +55,20 @@ Pair = tuple[int, int, int]
 """The number of a displacement, that of its force, and the sign of the work they do."""
 
 
-def are_passive(model: Model, values: Iterable[tuple[str, ExactValue]], *, are_lossy: bool = False) -> bool:
-    """Tell whether it is proved that nothing in a model of fields alone supplies energy but its inputs.
+def fields_supply_nothing(model: Model, values: Mapping[str, ExactValue]) -> tuple[bool, bool]:
+    """Tell whether it is proved that nothing in a model of fields supplies energy but its inputs.
 
-    ``values`` are those of the parameters. Where fields shall be lossy, whatever moves loses energy: no pole
-    lies on the imaginary axis but at 0. Nothing is known with elements, signals or blocks, or where the
+    The second tells whether whatever moves loses energy: no pole lies on the imaginary axis but at 0.
+    ``values`` are those of the parameters. Nothing is known with elements, signals or blocks, or where the
     equations of a field are of no such form as those above.
     """
-    if not model.fields or model.elements or model.signals or model.blocks:
-        return False
+    if model.elements or model.signals or model.blocks:
+        return False, False
     with precision(BITS):
         plain = replace(model, outputs=(), figures=(), published=())
-        return _Fields(assemble(plain, is_cut=True), dict(values), are_lossy).are_passive()
+        fields = _Fields(assemble(plain, is_cut=True), values)
+        is_passive = fields.are_passive()
+        return is_passive, is_passive and replace(fields, are_lossy=True).are_passive()
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +182,7 @@ class _Fields:
         states: list[list[Terms]] = []
         for each, _, place, given in ends:
             rows = [[_at(x, place) for x in row] for row in each.states]
-            states.append([_reduced(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows])
+            states.append([free_terms(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows])
         shifts = [free[q] for (each, *_), free in zip(ends, states, strict=True) for q, _, _ in each.pairs]
         # What moves with a velocity v is q = v/s: it is v/s that is free.
         slow = {v: _laplace(c) for form in shifts for v, c in form.items() if _is_over_s(c)}
@@ -210,7 +212,7 @@ class _Fields:
         """
         known: dict[Variable, Terms] = {}
         for row in self.equations.rows:
-            parts = _reduced(row.form, known)
+            parts = free_terms(row.form, known)
             chosen = min(parts, key=lambda v: v not in forces, default=None)
             if chosen is not None:
                 own = parts.pop(chosen)
@@ -473,10 +475,10 @@ def _begins_without_force(field: Continuum, pairs: Iterable[Pair]) -> bool:
     return all(x.is_zero for _, p, _ in pairs for x in values[p])
 
 
-def _reduced(form: LinearForm, known: Mapping[Variable, Terms]) -> Terms:
-    """Return a form of what is free; inputs rest."""
+def free_terms(form: LinearForm, known: Mapping[Variable, Terms] | None = None) -> Terms:
+    """Return the terms of a form where inputs rest, with ``known`` forms put in."""
     terms = {v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}
-    return put_in(terms, known)
+    return put_in(terms, known or {})
 
 
 def _at(value: Factored, place: Factored) -> Factored:

@@ -49,8 +49,8 @@ from symflex.balls import ball, precision
 from symflex.expressions import Attribute, Expression, Name, Negative, Number, Sum, substitute
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
-from symflex.model.signs import is_passive, line_of, value_along
-from symflex.roots.passive import observed
+from symflex.model.signs import line_of, value_along
+from symflex.roots.passivity import energy_proof
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
 
@@ -114,7 +114,8 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
     model = bound.source.model
     if model.fields:
         return Refused("stored energy is known for elements, not for fields")
-    if not bound.is_of_model or not is_passive(observed(model, bound.source.output), bound.all_values):
+    energy = energy_proof(model, bound.all_values, bound.source.output)
+    if not (bound.is_of_model and energy.is_passive) or energy.has_loop:
         return Refused("something in the model may supply energy")
     model = in_one_way(model)
     here = acting(model, bound.source.input)

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from symflex.roots.root import Root
     from symflex.transfer import BoundTransferFunction
 
-PASSIVE = "passive, nothing supplies energy"
-COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"
-PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 ACCUMULATING = "poles accumulate in the right half plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"
 NOT_COUNTED = "the poles right of the imaginary axis could not be counted"

@@ -20,7 +20,6 @@ from flint import arb, arb_poly
 from symflex.algebra import LAPLACE, Factored, summed, terms_of
 from symflex.balls import ball, precision
 from symflex.library.elements import LinearForm, put_in
-from symflex.model.signs import is_passive
 from symflex.transfer.enclose import later
 
 if TYPE_CHECKING:
@@ -127,12 +126,13 @@ class PlacedNumbers:
         return polynomial[0], -polynomial[2]
 
 
-def network_of(equations: Equations, output: str, source: str) -> Network:
+def network_of(equations: Equations, output: str, source: str, *, is_passive: bool = False) -> Network:
     """Return the network between an input and an output; equations have numbers in place of parameters.
 
+    Where it ``is_passive``, its inertia is not negative.
     OtherNetworkError where losses, motors, loops, delays or fields make it none, with what did.
     """
-    return _NetworkReading(equations).network(output, source)
+    return _NetworkReading(equations).network(output, source, is_passive=is_passive)
 
 
 class _NetworkReading:
@@ -152,7 +152,7 @@ class _NetworkReading:
                         _refuse(f"an end of '{continuum.name}' is not joined")
                     self.delivered[force] = motion
 
-    def network(self, output: str, source: str) -> Network:
+    def network(self, output: str, source: str, *, is_passive: bool) -> Network:
         equations = self.equations
         rows: dict[Variable, Terms] = {
             each.about: dict(LinearForm.total([each.form]).terms)
@@ -189,7 +189,7 @@ class _NetworkReading:
             for v, c in row.items()
             if i <= position[v]
         }
-        self._check(entries, members, is_passive=is_passive(equations.model))
+        self._check(entries, members, is_passive=is_passive)
         symmetric = (
             self._is_symmetric([read.divisor]),
             self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
     from symflex.equations import Equations
     from symflex.roots.networks.network import Network
+    from symflex.roots.passivity import EnergyProof
 
 WITTRICK_WILLIAMS = "wittrick-williams"
 """What stands in a certificate: the count of Wittrick and Williams."""
@@ -68,22 +69,23 @@ def locate_in_network(
     digits: int,
     *,
     is_default: bool,
-    proof: str,
-    rests: bool = False,
+    energy: EnergyProof,
 ) -> PoleZeroMap:
     """Find poles and zeros of a transfer function, by counts where nothing loses energy, else in discs.
 
-    ``equations`` have numbers in place of all parameters, and ``proof`` says why they have no pole right of
-    the imaginary axis, or is empty; where all ``rests`` on the axis, none lies there but at 0. Of a function
+    ``equations`` have numbers in place of all parameters, and ``energy`` says of which poles it is proved
+    where they lie. Of a function
     that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
         return _Sought(name, region, digits, is_default).nothing(ZERO)
     network: Network | None = None
     with suppress(OtherNetworkError):
-        network = network_of(equations, *pair)
+        network = network_of(equations, *pair, is_passive=energy.is_passive)
     symmetric = (False, False) if network is None else network.symmetric
-    sought = _Sought(name, region, digits, is_default, proof, symmetric, "" if rests else NONE_ON_AXIS)
+    proof = energy.reason if energy.is_passive else ""
+    unsure = "" if proof and energy.rests else NONE_ON_AXIS
+    sought = _Sought(name, region, digits, is_default, proof, symmetric, unsure)
     cramer = CramerEquations.of(equations, *pair)
     if network is None or not (network.driven and network.read):
         return sought.in_disc(cramer)

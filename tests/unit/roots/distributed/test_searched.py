@@ -12,8 +12,9 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots import Band, Modes
 from symflex.roots import locate as room
 from symflex.roots.distributed.proof import Proof
-from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
+from symflex.roots.distributed.right_half_plane import DEGENERATE, RightHalfPlane
 from symflex.roots.locate import degenerate_points, locate_distributed
+from symflex.roots.passivity import PASSIVE
 from symflex.roots.pole_zero_map import NONE_ON_AXIS
 from tests.unit.roots.distributed_models import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
 from tests.unit.roots.stand_ins import OVER, places, root

@@ -2,11 +2,10 @@
 
 from symflex import pipeline
 from symflex.model import with_numbers
-from symflex.model.signs import is_passive
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.network import network_of
 from symflex.roots.networks.poles_zeros import locate_in_network
-from symflex.roots.passive import passive_loop
+from symflex.roots.passivity import energy_proof
 from symflex.roots.region import Modes
 
 BEAM = 'type = "beam", E = "70 GPa", I = "1e-8 m^4", rho = "2700 kg/m^3", A = "1e-4 m^2"'
@@ -25,7 +24,9 @@ def equations_of(text):
 
 def network(text, output="X", source="F"):
     """Return the network between an input and an output."""
-    return network_of(equations_of(text), output, source)
+    return network_of(
+        equations := equations_of(text), output, source, is_passive=energy_proof(equations.model).is_passive
+    )
 
 
 def counter(text, output="X", source="F"):
@@ -39,7 +40,6 @@ def located(text, region=None, digits=12, output="X", source="F"):
     pair = (output, source)
     where = region or Modes(4)
     equations = equations_of(text)
-    loop = passive_loop(equations.model, "", ())
     return locate_in_network(
         equations,
         "/".join(pair),
@@ -47,8 +47,7 @@ def located(text, region=None, digits=12, output="X", source="F"):
         where,
         digits,
         is_default=False,
-        proof="passive" if is_passive(equations.model) else "",
-        rests=loop is not None and loop.rests,
+        energy=energy_proof(equations.model),
     )
 
 

@@ -6,10 +6,10 @@ from math import pi
 import pytest
 
 from symflex import pipeline
-from symflex.model.signs import is_passive
 from symflex.roots.networks.blocks import most_zeros
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.network import OtherNetworkError
+from symflex.roots.passivity import energy_proof
 from symflex.roots.region import Band, Modes
 from tests.unit.roots.networks.network_models import (
     BEAM,
@@ -48,7 +48,7 @@ def test_springs_levers_and_links_are_taken_and_masses_beside_a_point_are_no_neg
     """
     found = network(specification(TWO + parts))
     assert found.is_colocated
-    assert not is_passive(pipeline.loads(specification(TWO + parts)))
+    assert not energy_proof(pipeline.loads(specification(TWO + parts))).is_passive
     body = 'body = { type = "rigid_body", at = "b", m = "1 kg", J = "0 kg*m^2", cg = "0.3 m" }'
     assert network(specification(TWO + body)).is_colocated
 

@@ -1,16 +1,27 @@
-"""Loops that are closed as by a spring and a damper: no gain makes them unstable, whatever has no end.
+"""May a pole of a model lie right of the imaginary axis, may one lie on it, and if not, why: by energy.
+
+Input: a model with values, an output whose own poles count, the name of a gain of which any positive value is
+meant. Output: an :class:`EnergyProof`.
+
+Of ``x^H A(s) x/s`` mass, loss and stiffness are each nonnegative where no element supplies energy, and at
+Re(s) > 0 their sum vanishes only where nothing moves: no pole lies there (Anderson & Vongpanitlerd 1973,
+Network Analysis and Synthesis, chapter 2). Fields are treated in :mod:`symflex.roots.passive_fields`.
 
 A force or torque that follows the motion it acts on, ``u = -K (alpha + beta s) q`` with alpha and beta not
-negative, is a spring and a damper. Added to a structure that nothing supplies with energy it makes another
-one: for every K > 0 no pole lies right of the imaginary axis (Anderson & Vongpanitlerd 1973, Network Analysis
-and Synthesis, chapter 2). One lies on the axis only where nothing that dissipates moves, and what rests
-with that is followed through the equations. The same holds of every law whose force over velocity is positive
-real, as of filtered PD control, whose lead is a spring in series with a damper.
+negative, is a spring and a damper: added to such a structure it makes another one. The same holds of every
+law whose force over velocity is positive real, as of filtered PD control, whose lead is a spring in series
+with a damper. A pole lies on the axis only where nothing that dissipates moves, and what rests with that is
+followed through the equations.
 
 Example: PD control of the joint of a flexible arm. At a pole on the axis the joint rests, and no moment is
 left on it: three of four states of the link vanish at its base. Then ``(EI y'')'' = rho A omega^2 y`` makes
 deflection, slope, moment and shear grow from there with one sign, and a mass at the tip would have to pull
 where it pushes. So the link rests too: no pole is on the axis, at any frequency.
+
+Uniform members that are compressed supply energy to slow motion only. Over s their energy is
+``rho A |w|^2 s + (EI |w''|^2 - P |w'|^2)/s``, and on a length l the integral of ``|w'|^2`` is at most that of
+``e |w''|^2 + (1/e + 12/l^2) |w|^2`` for every e (Redheffer 1963): with ``e = EI/P`` the real part is positive
+from ``abs(s)^2 = P/(rho A) (P/(EI) + 12/l^2)`` on.
 """
 
 from __future__ import annotations
@@ -32,7 +43,9 @@ from symflex.expressions import (
     Negative,
     Number,
     Power,
+    Product,
     Quotient,
+    Sum,
     names_among,
     nodes,
     substitute,
@@ -43,7 +56,8 @@ from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
 from symflex.model.along import COORDINATE
 from symflex.model.network import variable_of
-from symflex.model.signs import Line, follows_inputs, is_passive, line_of, parameter_signs, value_along
+from symflex.model.signs import Line, follows_inputs, line_of, parameter_signs, value_along
+from symflex.roots.passive_fields import BITS, INERTIA, fields_supply_nothing, free_terms
 from symflex.roots.root import ROUNDING
 from symflex.transfer.of_model import assemble
 
@@ -51,14 +65,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
     from symflex.equations import Equations
+    from symflex.library.elements import Terms
     from symflex.model import ExactValue, Model, Output, PlacedElement
 
-BITS = 128
+PASSIVE = "passive, nothing supplies energy"
+COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"
+PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 OBSERVED = "(output)"
 """No name of a specification reads so."""
-INERTIA = 2
-"""The power of s of a mass."""
-Form = dict[Variable, Factored]
 Powers = dict[tuple[int, int], arb]
 """Coefficients of a polynomial, by the powers of s and of the gain."""
 Ends = tuple[Variable | None, ...]
@@ -72,15 +86,21 @@ FALLING = ((1, -1, 1, 1), (1, -1, -1, -1))
 
 
 @dataclass(frozen=True, slots=True)
-class PassiveLoop:
-    """A loop whose gain K is a spring and a damper, ``stiffness + damping s``, up to a positive factor.
+class EnergyProof:
+    """What energy says of the poles of a model; without a ``reason`` nothing is proved."""
 
-    ``rests`` tells that all of it rests where no energy is lost, so that for no K > 0 a pole is on the axis.
-    """
+    reason: str = ""  # why no pole lies right of the imaginary axis
+    rests: bool = False  # all rests where no energy is lost: none lies on the axis but at 0
+    limit: float = 0.0  # abs(s) [rad/s] beyond which the above is so; with 0 it is everywhere
+    has_loop: bool = False  # signals or blocks act on the structure
+    # A loop whose gain is a spring and a damper, ``stiffness + damping s``, up to a positive factor.
+    stiffness: float = 0.0
+    damping: float = 0.0
 
-    stiffness: float
-    damping: float
-    rests: bool
+    @property
+    def is_passive(self) -> bool:
+        """Whether it is proved that nothing supplies energy."""
+        return bool(self.reason) and not self.limit
 
     def least_phase_margin(self, omega: float) -> float:
         """Return an angle [rad] that no phase margin at a frequency above omega [rad/s] is below.
@@ -90,42 +110,114 @@ class PassiveLoop:
         return min(atan2(self.damping * omega, self.stiffness), pi / 2)
 
 
-def passive_loop(
-    model: Model, gain: str, values: Iterable[tuple[str, ExactValue]], pressed: Container[str] = ()
-) -> PassiveLoop | None:
-    """Return how a loop is closed, ``None`` where it is not proved to be passive for all K > 0.
+def energy_proof(
+    model: Model,
+    values: Iterable[tuple[str, ExactValue]] = (),
+    output: Output | None = None,
+    gain: str = "",
+) -> EnergyProof:
+    """Return what energy says of the poles of a model.
 
-    ``values`` are those of the parameters, with any value of the gain. Without the name of one, which is
-    empty then, the loop is as they say. The beams ``pressed`` are in the model as if pulled.
+    ``values`` are put in place of those the parameters have. An ``output`` may have poles of its own, as
+    ``x/(T*s + 1)`` has. The parameter ``gain`` may have any positive value. Nothing is known with parameters
+    that depend on s, elements that are not of this program, fields beside elements or signals, or a value of
+    the wrong sign.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> text = '''
+    ... symflex = 1
+    ... parameters = { k = "2 N/m", m = "1 kg" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.spring = { type = "spring", between = ["x", "ground"], k = "SIGNk" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... '''
+    >>> for sign in ("", "-"):
+    ...     print(energy_proof(pipeline.loads(text.replace("SIGN", sign))))
+    EnergyProof(reason='passive, nothing supplies energy', rests=False, limit=0.0, has_loop=False, \
+stiffness=0.0, damping=0.0)
+    EnergyProof(reason='', rests=False, limit=0.0, has_loop=False, stiffness=0.0, damping=0.0)
     """
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
-    known.pop(gain, None)  # elements, too, shall be passive whatever positive value it has
+    known.pop(gain, None)
     free = (replace(p, value=None, assume="positive") if p.name == gain else p for p in model.parameters)
-    model = replace(model, parameters=tuple(free))
-    line = line_of(model, known.items())
-    inputs = {each.name for each in model.inputs}
+    model = replace(_observed(model, output), parameters=tuple(free))
+    if model.fields:
+        is_passive, rests = fields_supply_nothing(model, known)
+        return EnergyProof(PASSIVE, rests) if is_passive else EnergyProof()
+    line, inputs = line_of(model, known.items()), {each.name for each in model.inputs}
     sources = [e for e in model.elements if e.element.is_source and not follows_inputs(e, line, inputs)]
-    if any(not isinstance(e.element, ThroughSource) for e in sources):
-        return None
-    rest = tuple(e for e in model.elements if e not in sources)
-    if not is_passive(replace(model, elements=rest, signals=(), blocks=()), known.items()):
-        return None
-    named, signals = list(rest), list(model.signals)
+    rest = [e for e in model.elements if e not in sources]
+    signs = {e.name: parameter_signs(e, line) for e in rest}
+    pressed = [e for e in rest if isinstance(e.element, Beam) and signs[e.name].get("N") == -1]
+    for use in pressed:  # as if pulled: the same rests on the axis, as far as its proof needs no sign
+        signs[use.name]["N"] = 1
+    has_loop = bool(sources or model.signals or model.blocks)
+    if (
+        not all(isinstance(e.element, ThroughSource) for e in sources)
+        or not all(e.element.is_source or _supplies_nothing(e, line, signs[e.name]) for e in rest)
+        or (pressed and (has_loop or gain))
+        or (limit := _fastest_growth(pressed, line)) is None
+    ):
+        return EnergyProof()
+    pulled = tuple(
+        replace(e, values=tuple((name, Negative(x) if name == "N" else x) for name, x in e.values))
+        if e in pressed
+        else e
+        for e in rest
+    )
+    equations, places = _with_signals_for(replace(model, elements=pulled), sources)
+    structure = _Structure(equations, pulled, signs, gain, line, known, {use.name for use in pressed})
+    closed = structure.closed_at(places)
+    if closed is None:
+        return EnergyProof()
+    reason = COMPRESSED if pressed else PASSIVE_LOOP if closed.stiffness or closed.damping else PASSIVE
+    return replace(closed, reason=reason, limit=limit, has_loop=has_loop)
+
+
+def _supplies_nothing(use: PlacedElement, line: Line, signs: Mapping[str, int | None]) -> bool:
+    """Tell whether it is proved that an element that is no source supplies no energy."""
+    law, given = use.element.passive, dict(use.values)
+    if law is None or any(
+        given[name] != given[law.equal[0]]
+        and line.sign(Sum((given[name], Negative(given[law.equal[0]])))) != 0
+        for name in law.equal
+    ):
+        return False
+    if law.is_alike and len({domain in CIRCUITS for _, domain in use.domains}) > 1:
+        return False
+    if law.definite:
+        one, other, mutual = (given[name] for name in law.definite)
+        if line.sign(Sum((Product((one, other)), Negative(Product((mutual, mutual)))))) not in (0, 1):
+            return False
+    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
+
+
+def _with_signals_for(model: Model, sources: Sequence[PlacedElement]) -> tuple[Equations, list[_Acting]]:
+    """Return the equations of a model and of what sources supply, as signals, and where these act."""
+    named, signals = list(model.elements), list(model.signals)
     for number, source in enumerate(sources):
         ((quantity, supplied),) = source.values
-        name = str(number)  # what a source supplies, as a signal; no name of a specification begins so
+        name = str(number)  # no name of a specification begins so
         named.append(replace(source, values=((quantity, Name(name)),)))
         signals.append(Signal(name, supplied))
     dynamic = _dynamic(model)
-    signals = [replace(each, expression=substitute(each.expression, dynamic)) for each in signals]
     equations = assemble(
-        replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
+        replace(
+            model,
+            elements=tuple(named),
+            signals=tuple(replace(each, expression=substitute(each.expression, dynamic)) for each in signals),
+            outputs=(),
+            figures=(),
+            published=(),
+        )
     )
-    places = [
+    return equations, [
         _Acting(_ends(source, equations.model), int(any(d in CIRCUITS for _, d in source.domains)))
         for source in sources
     ]
-    return _Structure(equations, rest, gain, line, known, pressed).closed_at(places)
 
 
 def _dynamic(model: Model) -> dict[str, Expression]:
@@ -138,11 +230,13 @@ def _dynamic(model: Model) -> dict[str, Expression]:
     return definitions
 
 
-def observed(model: Model, output: Output) -> Model:
-    """Return a model with an output as a signal where it may have poles of its own, as ``x/(T*s + 1)`` has.
+def _observed(model: Model, output: Output | None) -> Model:
+    """Return a model with an output as a signal where it may have poles of its own.
 
     What is passive says nothing of these.
     """
+    if output is None:
+        return model
     behind = {LAPLACE, *(b.name for b in model.blocks), *_dynamic(model)}
 
     def may_vanish(e: Expression) -> bool:
@@ -156,23 +250,8 @@ def observed(model: Model, output: Output) -> Model:
     return replace(model, signals=(*model.signals, Signal(OBSERVED, output.expression)))
 
 
-def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> tuple[float, bool] | None:
-    """Return an abs(s) [rad/s] beyond which no pole lies right of the imaginary axis, and if all rests on it.
-
-    None where that is not known: it is where nothing supplies energy but uniform members that are compressed.
-    Over s their energy is ``rho A |w|^2 s + (EI |w''|^2 - P |w'|^2)/s``, and on a length l the integral of
-    ``|w'|^2`` is at most that of ``e |w''|^2 + (1/e + 12/l^2) |w|^2`` for every e (Redheffer 1963): with
-    ``e = EI/P`` the real part is positive from ``abs(s)^2 = P/(rho A) (P/(EI) + 12/l^2)`` on.
-    """
-    known = list(values)
-    line = line_of(model, known)
-    beams = [use for use in model.elements if isinstance(use.element, Beam)]
-    pressed = [use for use in beams if parameter_signs(use, line).get("N") == -1]
-    # Where beams are pulled, the same rests on the axis, as far as no proof of that depends on the sign.
-    pulled = replace(model, elements=tuple(_pulled(u) if u in pressed else u for u in model.elements))
-    loop = passive_loop(pulled, "", known, {use.name for use in pressed}) if pressed else None
-    if loop is None or not is_passive(pulled, known):
-        return None
+def _fastest_growth(pressed: Sequence[PlacedElement], line: Line) -> float | None:
+    """Return an abs(s) [rad/s] beyond which compressed beams supply no energy; ``None`` if unknown."""
     squares = []
     with precision(BITS):
         for use in pressed:
@@ -184,12 +263,7 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> tu
             if force is None or length is None or not bending > 0 or not mass > 0:
                 return None
             squares.append(float((-force / mass * (12 / length**2 - force / bending)).upper()))
-    return float(max(squares) ** 0.5) * (1 + ROUNDING), loop.rests
-
-
-def _pulled(use: PlacedElement) -> PlacedElement:
-    kept = tuple((name, Negative(value) if name == "N" else value) for name, value in use.values)
-    return replace(use, values=kept)
+    return float(max(squares, default=0.0) ** 0.5) * (1 + ROUNDING)
 
 
 def _product(given: Mapping[str, arb | None], whole: str, *parts: str) -> arb:
@@ -230,13 +304,17 @@ class _Structure:
 
     equations: Equations
     rest: Sequence[PlacedElement]  # all elements but the loop's source
+    signs: Mapping[str, Mapping[str, int | None]]  # of their parameters
     gain: str
     line: Line
     values: Mapping[str, ExactValue]
     pressed: Container[str]  # names of beams that are in the equations as if pulled
 
-    def closed_at(self, places: Sequence[_Acting]) -> PassiveLoop | None:
-        """Return how loops are closed by what acts at one end each, or between two."""
+    def closed_at(self, places: Sequence[_Acting]) -> EnergyProof | None:
+        """Return how loops are closed by what acts at one end each, or between two, and if all rests then.
+
+        None where that is not proved to be passive for all K > 0.
+        """
         laws = [law for number, at in enumerate(places) if (law := self._law(number, at)) is not None]
         if len(laws) < len(places):
             return None
@@ -251,12 +329,13 @@ class _Structure:
         size = [float(sum(c.mid() for law in known for (i, _), c in law.items() if i == n)) for n in range(3)]
         # The phase of a mass, of a filter, or of a loop in several places, is not known.
         is_bounded = len(moved) == len(known) == 1 and not size[INERTIA]
-        return PassiveLoop(size[0], size[1] if is_bounded else 0.0, self._rests(damped))
+        damping = size[1] if is_bounded else 0.0
+        return EnergyProof(stiffness=size[0], damping=damping, rests=self._rests(damped))
 
     @cached_property
-    def _forms(self) -> list[tuple[str, Form]]:
+    def _forms(self) -> list[tuple[str, Terms]]:
         """What vanishes where inputs rest, each row with its role."""
-        return [(row.role, _form(row.form)) for row in self.equations.rows]
+        return [(row.role, free_terms(row.form)) for row in self.equations.rows]
 
     def _law(self, number: int, at: _Acting) -> _Feedback | None:
         """Return with what minus the motion is multiplied, where that is proved to be passive."""
@@ -294,13 +373,12 @@ class _Structure:
     def _rests(self, damped: Sequence[Ends]) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""
         one = Factored.number(self.equations.ring, 1)
-        signs = {use.name: parameter_signs(use, self.line) for use in self.rest}
         damped = list(damped)
         resting: set[Variable] = set()
         members: list[tuple[tuple[Ends, Ends], int]] = []  # and how much of an end, at rest, stops them
         beams: list[tuple[Ends, Ends]] = []
         for use in self.rest:
-            given, law = signs[use.name], use.element.damping
+            given, law = self.signs[use.name], use.element.damping
             if law and given[law] == 1:
                 damped.append(_ends(use, self.equations.model))
             if given.get("R") == 1:  # what flows through a resistance, of motors too
@@ -315,7 +393,7 @@ class _Structure:
                 if _loses(use, given, self.line):
                     resting.update(v for state in states for v in state if v is not None)
         own = forms = [form for _, form in self._forms]
-        together = [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
+        together = [free_terms(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
         for pair in together:
             forms = _without(next(reversed(pair)), [pair, *forms]) if len(pair) > 1 else forms
         forms = [*own, *forms, *together]
@@ -341,7 +419,7 @@ class _Structure:
         return ends[0], ends[1]
 
     def _unable_to_grow(
-        self, beams: Sequence[tuple[Ends, Ends]], resting: set[Variable], forms: Sequence[Form]
+        self, beams: Sequence[tuple[Ends, Ends]], resting: set[Variable], forms: Sequence[Terms]
     ) -> set[Variable]:
         """Return quantities at ends of beams that rest: nothing else there moves, and they cannot grow."""
         bounded: set[Variable] = set()
@@ -357,7 +435,7 @@ class _Structure:
         signs: dict[Variable, int],
         beams: Sequence[tuple[Ends, Ends]],
         resting: set[Variable],
-        forms: Sequence[Form],
+        forms: Sequence[Terms],
     ) -> bool:
         """Tell whether quantities cannot have these signs, and others none but those that follow from them.
 
@@ -515,12 +593,7 @@ def _loses(use: PlacedElement, signs: Mapping[str, int | None], line: Line) -> b
     return signs.get("eta") == 1 and is_free and heavy
 
 
-def _form(form: LinearForm) -> Form:
-    """Return a row's terms where inputs rest."""
-    return {v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}
-
-
-def _without(variable: Variable, rows: Sequence[Form]) -> list[Form]:
+def _without(variable: Variable, rows: Sequence[Terms]) -> list[Terms]:
     """Return what linear rows say without one of their variables."""
     pivot = next((row for row in rows if variable in row), None)
     if pivot is None:
@@ -541,7 +614,7 @@ def _without(variable: Variable, rows: Sequence[Form]) -> list[Form]:
 
 
 def _followed(
-    resting: set[Variable], forms: Sequence[Form], is_nonzero: Callable[[Factored], object]
+    resting: set[Variable], forms: Sequence[Terms], is_nonzero: Callable[[Factored], object]
 ) -> set[Variable]:
     """Return what rests with what does: in a row, what is multiplied by something and left alone."""
     resting_too, known = set(resting), -1
