@@ -74,6 +74,23 @@ def test_other_loops_are_not_taken_for_passive():
         assert not closed(arm(tau)).reason
 
 
+def test_a_gain_that_elements_hold_is_passive_only_if_they_are_for_all_its_values():
+    support = 'support = { type = "torsion_spring", between = ["hub", "ground"], k = "VALUE" }'
+    for value, expected in (("K", True), ("4*K_0 - K", False)):  # with K = 3 K_0
+        text = ARM.substitute(
+            tau=PD, section=UNIFORM, between='"hub", "tip"', more=support.replace("VALUE", value)
+        )
+        model = pipeline.loads(text.replace("parameters = {", 'parameters = { K_0 = "1 N*m/rad",'))
+        assert energy_proof(model).is_passive, value
+        assert closed(model).is_passive is expected, value
+
+
+def test_nothing_is_said_of_a_loop_on_a_compressed_arm():
+    pressed = arm(section=UNIFORM + ', N = "-1 N"')
+    assert not energy_proof(pressed).reason
+    assert not closed(pressed).reason
+
+
 def test_a_law_with_a_filter_is_passive_where_force_over_velocity_is_positive_real():
     """Judged by the poles of that and by its real part at many frequencies."""
     omega = 1j * np.geomspace(1e-3, 1e4, 2000)
