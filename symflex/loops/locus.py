@@ -25,8 +25,8 @@ from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
-from symflex.roots.networks.cramer import EssentialSingularityError
 from symflex.roots.pole_zero_map import is_right
+from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -1,35 +1,39 @@
-"""The equations of a model with numbers, ``A(s) x + B u = 0``: in balls, and to first order.
+"""The equations of a model with numbers, ``A(s) x + B u = 0``, whatever is asked of them.
 
 Input: :class:`symflex.equations.Equations`, assembled without names for wavenumbers, so that fundamental
-functions are entire in s also where wavenumbers vanish; and exact values of the parameters.
-Output: the entries of A on a ball of s, with their derivatives in s or in any parameter where asked.
+functions are entire in s also where wavenumbers vanish; and exact values of the parameters in them.
+Output: :class:`NamedValues`, which take entries of A to their values, on a ball of s, to first order in s or
+in any parameter, or as polynomials in s; :class:`Majorants` bound them where abs(s) is at most a radius.
 
-Example: a mass m = 2 kg on a spring k = 8 N/m at s = 1 rad/s. ``m s^2 + k`` is 10; its derivative is
-4 in s, 1 in m, 1 in k.
+Example: a mass m = 2 kg on a spring k = 8 N/m. ``m s^2 + k`` is 10 at s = 1 rad/s; its derivative is 4 in s,
+1 in m, 1 in k. For abs(s) up to 3 rad/s it is at most 2*9 + 8 = 26.
 
 Derivatives are carried forward from s or a parameter, through functions of constants and definitions, to the
-fundamental functions (Griewank and Walther 2008, chapter 3).
+fundamental functions (Griewank and Walther 2008, chapter 3). Bounds of sums and products are sums and
+products of bounds; where abs(A) is at most B, entry by entry, abs(exp(A)) is at most exp(B), by its series.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from math import prod
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_series, arb
+from flint import acb, acb_mat, acb_series, arb, fmpq
 
-from symflex.algebra import LAPLACE, Factored, composed, evaluated
-from symflex.algebra.propagators import EXPONENTIAL, Propagation
+from symflex.algebra import LAPLACE, Factored, composed, evaluated, terms_of
+from symflex.algebra.propagators import EXPONENTIAL
 from symflex.along.law import BoundLaw
-from symflex.balls import Arithmetic, Value, at_centre
-from symflex.expressions import Name, names
+from symflex.balls import Arithmetic, Value, at_centre, current_bits, raised
+from symflex.expressions import names_among
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping
 
     from symflex.algebra import Dispersion
     from symflex.equations import Equations
@@ -37,176 +41,292 @@ if TYPE_CHECKING:
     from symflex.library.elements import LinearForm, Variable
     from symflex.model import ExactValue
 
-Laws = dict["Dispersion", BoundLaw]
-Generators = dict[str, Value]
+Powers = Sequence[tuple[str, int]]
+Plan = tuple[acb, Powers, Sequence[tuple[int, Sequence[tuple[acb, Powers]], int]]]
+"""A constant, powers of generators that are none, and sums of such terms with exponents."""
+ZERO, ONE = acb(0), acb(1)
+
+
+class EssentialSingularityError(Exception):
+    """A denominator vanishes in the disc: roots accumulate there."""
+
+
+@dataclass(frozen=True, eq=False)
+class MemberWaves:
+    """The fundamental functions and exponentials of a law of waves at a length."""
+
+    law: Dispersion
+    length: Factored
+    orders: dict[str, int]  # by their names
+
+    def at(self, value: Callable[[Factored], Value], sign: int = 1) -> dict[str, Value]:
+        """Return them from the values of length and coefficients, these times a sign."""
+        length, orders = value(self.length), self.orders
+        plain: tuple[Value, ...] = ()
+        if any(order != EXPONENTIAL for order in orders.values()):
+            plain = fundamental_functions([value(c) * sign for c in self.law.characteristic], length)
+        return {
+            name: (value(self.law.shift) * -sign * length).exp() if n == EXPONENTIAL else plain[n]
+            for name, n in orders.items()
+        }
 
 
 @dataclass(frozen=True, eq=False)
 class EquationsAt:
-    """Equations with numbers, ready to be evaluated."""
+    """Equations with numbers, ready to be evaluated at the current precision."""
 
     equations: Equations
-    values: tuple[tuple[str, ExactValue], ...]  # of every parameter that occurs
+    values: tuple[tuple[str, ExactValue], ...] = ()  # of every parameter that occurs
+    _constants: dict[int, dict[str, acb]] = field(default_factory=dict)  # by bits
+    _moving: dict[str, frozenset[str]] = field(default_factory=dict)
+    # By bits, parameter and id of a value, which is kept so that no other has its id.
+    _plans: dict[tuple[int, str], dict[int, tuple[Factored, Plan]]] = field(default_factory=dict)
 
-    def generators(self, s: acb, along: str = "") -> tuple[Generators, Laws]:
-        """Return the values of all names on a ball of s [rad/s], and the laws that vary along x.
+    def on(self, s: Arithmetic, along: str = "") -> NamedValues:
+        """Return the values on a ball of s [rad/s]; to first order ``along`` ``"s"`` or a parameter.
 
-        ``along`` is ``"s"`` or a parameter: values are series to first order in it then. Members that taper
-        have none.
+        Members that taper have no derivatives.
         """
-        equations = self.equations
-        values: Generators = (
-            {LAPLACE: s} if not along else {LAPLACE: acb_series([s, int(along == LAPLACE)], 2)}
-        )
-        values |= self._constants(along)
-        one: Arithmetic = acb_series([1], 2) if along else acb(1)
-        waiting = [(n, v) for n, v in equations.definitions if not _define(n, v, values, one)]
-        laws = self._laws(values)
-        if equations.propagation is not None:
-            values |= _propagators(equations.propagation, values, laws, one)
-        for name, value in waiting:
-            _define(name, value, values, one)
-        return values, laws
-
-    def row(self, form: LinearForm, values: Generators, columns: Mapping[Variable, int]) -> dict[int, Value]:
-        """Return the coefficients of a linear form by column; what belongs to no column is left out."""
-        one: Arithmetic = acb_series([1], 2) if isinstance(values[LAPLACE], acb_series) else acb(1)
-        entries: dict[int, Value] = {}
-        for variable, coefficient in form.terms:
-            if variable in columns:
-                j, entry = columns[variable], number(coefficient, values, one)
-                entries[j] = entries[j] + entry if j in entries else entry
-        return entries
-
-    def matrix(self, forms: Sequence[LinearForm], values: Generators, columns: Sequence[Variable]) -> acb_mat:
-        """Return the values of linear forms as rows."""
-        places = {variable: j for j, variable in enumerate(columns)}
-        matrix = acb_mat(len(forms), len(columns))
-        for i, form in enumerate(forms):
-            for j, entry in self.row(form, values, places).items():
-                matrix[i, j] = at_centre(entry)
-        return matrix
+        return NamedValues(self, acb_series([s, 1], 2) if along == LAPLACE else s, along)
 
     def moving(self, along: str) -> frozenset[str]:
         """Return the names whose values depend on s or a parameter, that itself among them."""
-        equations, moving = self.equations, {along}
-        for constant in equations.constants:
-            if any(isinstance(n, Name) and n.name in moving for n in names(constant.expression)):
-                moving.add(constant.generator)
-        known = 0
+        if along not in self._moving:
+            self._moving[along] = self._dependent(along)
+        return self._moving[along]
+
+    def _dependent(self, along: str) -> frozenset[str]:
+        moving, known = {along, *(n for n, call in self.functions.items() if names_among(call, {along}))}, 0
         while len(moving) > known:  # definitions may hold delays, and delays definitions
             known = len(moving)
-            for name, value in equations.definitions:  # each in terms of earlier ones
-                if holds(value, moving):
-                    moving.add(name)
-            if (propagation := equations.propagation) is not None:
-                laws, lengths = propagation.table.dispersions, propagation.lengths
-                for p in propagation.propagators:
-                    law = laws[p.dispersion]
-                    parts = (lengths[p.dispersion][p.length], law.shift, *law.characteristic)
-                    if any(holds(part, moving) for part in parts):
-                        moving.add(p.generator)
+            moving |= {name for name, value in self.definitions.items() if holds(value, moving)}
+            for waves in self.waves:
+                parts = (waves.length, waves.law.shift, *waves.law.characteristic)
+                if along == LAPLACE or any(holds(part, moving) for part in parts):
+                    moving |= set(waves.orders)
         return frozenset(moving)
 
-    def _constants(self, along: str) -> Generators:
-        equations = self.equations
-        used = [c for c in equations.constants if c.generator not in self.functions_along_x]
-        if not along:
-            later: dict[str, Callable[[], arb]] = {name: enclosure(v) for name, v in self.values}
-            plain = {name: evaluate() for name, evaluate in later.items()}
-            plain["pi"] = arb.pi()
-            plain |= {c.generator: enclose(c.expression, later) for c in used}
-            return {name: acb(value) for name, value in plain.items()}
-        real = {name: first_order(enclosure(v)(), int(name == along)) for name, v in self.values}
-        known = {"pi": first_order(arb.pi()), **real}
-        known |= {c.generator: constant_tangent(c.expression, real) for c in used}
-        return {name: acb_series([acb(x[0]), acb(x[1])], 2) for name, x in known.items()}
+    @cached_property
+    def definitions(self) -> Mapping[str, Factored]:
+        """The names that are defined in terms of others."""
+        return dict(self.equations.definitions)
+
+    @cached_property
+    def waves(self) -> tuple[MemberWaves, ...]:
+        """What members are made of, by dispersion and length."""
+        groups, propagation = dict[tuple[int, int], MemberWaves](), self.equations.propagation
+        if propagation is not None:
+            for p in propagation.propagators:
+                law, lengths = propagation.table.dispersions[p.dispersion], propagation.lengths[p.dispersion]
+                waves = MemberWaves(law, lengths[p.length], {})
+                groups.setdefault((p.dispersion, p.length), waves).orders[p.generator] = p.order
+        return tuple(groups.values())
+
+    @cached_property
+    def waves_of(self) -> Mapping[str, MemberWaves]:
+        """To which of these a name belongs."""
+        return {name: waves for waves in self.waves for name in waves.orders}
+
+    @cached_property
+    def functions(self) -> Mapping[str, Call]:
+        """The names that are functions of constants."""
+        return {c.generator: c.expression for c in self.equations.constants}
+
+    @cached_property
+    def _parameters(self) -> Mapping[str, Callable[[], arb]]:
+        return {"pi": arb.pi} | {name: enclosure(value) for name, value in self.values}
+
+    def constant(self, name: str) -> acb:
+        """Return the value of a name free of s at the current precision."""
+        known = self._constants.setdefault(current_bits(), {})
+        if name not in known:
+            if name in self.functions:
+                known[name] = acb(enclose(self.functions[name], self._parameters))
+            elif name in self.definitions:
+                known[name] = evaluated(self.definitions[name], self.constant, ONE)
+            else:
+                known[name] = acb(self._parameters[name]())
+        return known[name]
+
+    def plan(self, value: Factored, along: str = "") -> Plan:
+        """Return how to evaluate a value, with the products of constants, made once for each precision."""
+        plans = self._plans.setdefault((current_bits(), along), {})
+        if id(value) not in plans:
+            plans[id(value)] = value, self._planned(value, self.moving(LAPLACE) | self.moving(along))
+        return plans[id(value)][1]
+
+    def _planned(self, value: Factored, names: Collection[str]) -> Plan:
+        constant, powers, sums = acb(fmpq(value.unit.numerator, value.unit.denominator)), [], []
+        for factor, exponent in value.factors:
+            by_moving: dict[tuple[tuple[str, int], ...], acb] = {}
+            for monomial, coefficient in terms_of(factor):
+                term, moving = acb(coefficient), []
+                for name, power in ((value.ring.names[i], e) for i, e in monomial):
+                    if name in names:
+                        moving.append((name, power))
+                    else:
+                        term *= self.constant(name) ** power
+                by_moving[tuple(moving)] = by_moving.get(tuple(moving), ZERO) + term
+            if len(by_moving) == 1:
+                ((alone, term),) = by_moving.items()
+                constant *= term**exponent
+                powers += [(name, power * exponent) for name, power in alone]
+            else:
+                sums.append((id(factor), [(term, of) for of, term in by_moving.items()], exponent))
+        return constant, powers, sums
+
+    # ---------------------------------------------------------------------------- laws that vary along x
 
     @cached_property
     def functions_along_x(self) -> Mapping[str, Call]:
         """The functions of the coordinate along x among the generators."""
         if not is_tapered(self.equations.model):
             return {}
-        return {c.generator: c.expression for c in self.equations.constants if varies_along_x(c.expression)}
+        return {name: call for name, call in self.functions.items() if varies_along_x(call)}
 
-    def _laws(self, values: Generators) -> Laws:
-        """Return the laws that vary along x with numbers, given those of all that does not."""
+    @cached_property
+    def laws(self) -> Mapping[Dispersion, BoundLaw]:
+        """The laws that vary along x, with numbers."""
         propagation = self.equations.propagation
         if propagation is None:
             return {}
-        constants = {name: _constant(at_centre(v).real) for name, v in values.items() if name != LAPLACE}
-        parameters = {name: enclosure(value) for name, value in self.values}
+        known = {name: partial(self._real, name) for name in propagation.ring.names if name != LAPLACE}
         return {
             law: BoundLaw(
                 law.replaced(lambda x: self._opened(propagation.embed(x))),
                 self.functions_along_x,
                 law.start[0],
-                constants,
-                parameters,
+                known,
+                self._parameters,
             )
             for law in propagation.table.dispersions
             if law.kind == "varying"
         }
 
+    def _real(self, name: str) -> arb:
+        return self.constant(name).real
+
     def _opened(self, value: Factored) -> Factored:
         """Return a coefficient without definitions that depend on s."""
-        moving = {LAPLACE}
-        for name, meant in self.equations.definitions:
-            if any(meant.depends_on(each) for each in moving):
-                moving.add(name)
         for name, meant in reversed(self.equations.definitions):
-            if name in moving and value.depends_on(name):
+            if name in self.moving(LAPLACE) and value.depends_on(name):
                 value = composed(value, {name: meant})
         return value
 
 
-def number(value: Factored, values: Mapping[str, Value], one: Arithmetic) -> Value:
-    """Return a rational function with a value for every generator; KeyError where one has none."""
-    result: Value = evaluated(value, values.__getitem__, one)
-    return result
+class NamedValues(dict[str, Arithmetic]):
+    """The names in equations with their values at one s, each made when it is first asked for.
+
+    Called with a rational function of these, they return its value: a series where it depends on what they
+    move along.
+    """
+
+    def __init__(self, equations: EquationsAt, s: Arithmetic, along: str = "") -> None:
+        self.equations, self.along = equations, "" if along == LAPLACE else along
+        self[LAPLACE] = s
+        self._factors: dict[int, Arithmetic] = {}  # by their ids
+
+    def __missing__(self, name: str) -> Arithmetic:
+        at = self.equations
+        if name in at.waves_of:
+            self.update(self._waves(at.waves_of[name]))
+        elif name in at.definitions:
+            self[name] = self(at.definitions[name])
+        elif name in at.moving(self.along):
+            self[name] = self._tangent(name)
+        else:
+            self[name] = at.constant(name)
+        return self[name]
+
+    def __call__(self, value: Factored) -> Arithmetic:
+        """Return the value of a rational function; KeyError where a name has none."""
+        result: Arithmetic
+        result, powers, sums = self.equations.plan(value, self.along)
+        for name, power in powers:
+            result = result * (self[name] if power == 1 else raised(self[name], power))
+        for number, terms, exponent in sums:
+            known = self._factors.get(number)
+            if known is None:
+                known = ZERO
+                for constant, of in terms:
+                    term = constant
+                    for name, power in of:
+                        term = term * (self[name] if power == 1 else raised(self[name], power))
+                    known = known + term
+                self._factors[number] = known
+            result = result * (known if exponent == 1 else raised(known, exponent))
+        return result
+
+    def row(self, form: LinearForm, columns: Mapping[Variable, int]) -> dict[int, Value]:
+        """Return the coefficients of a linear form by column; what belongs to no column is left out."""
+        entries: dict[int, Value] = {}
+        for variable, coefficient in form.terms:
+            if variable in columns:
+                j, entry = columns[variable], self(coefficient)
+                entries[j] = entries[j] + entry if j in entries else entry
+        return entries
+
+    def matrix(self, forms: Sequence[LinearForm], columns: Sequence[Variable]) -> acb_mat:
+        """Return the values of linear forms as rows."""
+        places = {variable: j for j, variable in enumerate(columns)}
+        matrix = acb_mat(len(forms), len(columns))
+        for i, form in enumerate(forms):
+            for j, entry in self.row(form, places).items():
+                matrix[i, j] = at_centre(entry)
+        return matrix
+
+    def _tangent(self, name: str) -> acb_series:
+        """Return a parameter, or a function of constants, to first order in the one they move along."""
+        known = {n: first_order(enclosure(v)(), int(n == self.along)) for n, v in self.equations.values}
+        call = self.equations.functions.get(name)
+        value = known[name] if call is None else constant_tangent(call, known)
+        return acb_series([acb(value[0]), acb(value[1])], 2)
+
+    def _waves(self, waves: MemberWaves) -> dict[str, Arithmetic]:
+        law = self.equations.laws.get(waves.law)
+        if law is None:
+            return waves.at(self)
+        start, _ = law.ends()
+        matrix = law.matrix_at(at_centre(self[LAPLACE]), (start, start + at_centre(self(waves.length)).real))
+        return {name: matrix[n // waves.law.order][n % waves.law.order] for name, n in waves.orders.items()}
 
 
-def holds(value: Factored, names: Iterable[str]) -> bool:
+class Majorants(dict[str, arb]):
+    """Bounds on the names in equations for abs(s) up to a radius [rad/s]; called, on rational functions."""
+
+    def __init__(self, equations: EquationsAt, radius: arb) -> None:
+        self.equations = equations
+        self[LAPLACE] = radius
+
+    def __missing__(self, name: str) -> arb:
+        at = self.equations
+        if name in at.definitions:
+            self[name] = self(at.definitions[name])
+        else:
+            # With all coefficients turned to grow, what solves the equation is larger term by term.
+            grown = at.waves_of[name].at(lambda x: acb(self(x)), -1)
+            self.update({each: at_centre(x).real.abs_upper() for each, x in grown.items()})
+        return self[name]
+
+    def __call__(self, value: Factored) -> arb:
+        """Return a bound on a rational function; EssentialSingularityError where it may have a pole."""
+        constant, powers, sums = self.equations.plan(value)
+        result = abs(constant) * self._product(powers)
+        for _, terms, exponent in sums:
+            fixed = abs(sum((c for c, of in terms if not of), ZERO))
+            moving = sum((abs(c) * self._product(of) for c, of in terms if of), arb(0))
+            if exponent < 0 and not fixed > moving:
+                raise EssentialSingularityError
+            result *= (fixed + moving if exponent > 0 else fixed - moving) ** exponent
+        return arb(result.abs_upper())
+
+    def _product(self, powers: Powers) -> arb:
+        if any(power < 0 for _, power in powers):
+            raise EssentialSingularityError
+        return prod((self[name] ** power for name, power in powers), start=arb(1))
+
+
+def holds(value: Factored, names: Collection[str]) -> bool:
     """Tell whether a value depends on any of these names."""
-    return any(name in value.ring.index and value.depends_on(name) for name in names)
-
-
-def _define(name: str, value: Factored, values: Generators, one: Arithmetic) -> bool:
-    """Add a definition's value; False when it holds what has none yet."""
-    try:
-        values[name] = number(value, values, one)
-    except KeyError:
-        return False
-    return True
-
-
-def _constant(value: arb) -> Callable[[], arb]:
-    return lambda: value
-
-
-def _propagators(propagation: Propagation, values: Generators, laws: Laws, one: Arithmetic) -> Generators:
-    """Return the fundamental functions and exponentials at s."""
-    propagators: Generators = {}
-    matrices: dict[tuple[int, int], list[list[acb]]] = {}
-    columns: dict[tuple[int, int], tuple[Value, ...]] = {}
-    for p in propagation.propagators:
-        law = propagation.table.dispersions[p.dispersion]
-        length = number(propagation.lengths[p.dispersion][p.length], values, one)
-        if p.order == EXPONENTIAL:
-            propagators[p.generator] = (-number(law.shift, values, one) * length).exp()
-            continue
-        key = (p.dispersion, p.length)
-        if law in laws:
-            if key not in matrices:
-                start, _ = laws[law].ends()
-                reach = (start, start + at_centre(length).real)
-                matrices[key] = laws[law].matrix_at(at_centre(values[LAPLACE]), reach)
-            row, column = divmod(p.order, law.order)
-            propagators[p.generator] = matrices[key][row][column]
-            continue
-        if key not in columns:
-            coefficients = [number(c, values, one) for c in law.characteristic]
-            columns[key] = fundamental_functions(coefficients, length)
-        entry = columns[key][p.order]
-        propagators[p.generator] = entry if isinstance(one, acb_series) else at_centre(entry)
-    return propagators
+    known = value.ring.names
+    return any(known[i] in names for f, _ in value.factors for m, _ in terms_of(f) for i, _ in m)

@@ -14,16 +14,14 @@ from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.algebra import LAPLACE
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
-from symflex.balls import at_centre, balancing, binary_exponent, current_bits
-from symflex.transfer.equations_at import number
+from symflex.balls import balancing, binary_exponent, current_bits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.algebra import Factored
     from symflex.equations import Continuum
     from symflex.library.elements import Variable
-    from symflex.transfer.equations_at import EquationsAt, Laws
+    from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 
 SEED = 7
@@ -164,11 +162,9 @@ def _scales(rows: Sequence[Sequence[acb]]) -> tuple[list[arb], list[arb]]:
 
 def system_at(equations: EquationsAt, s: acb) -> SystemAt:
     """Return equations at a ball of s [rad/s], at the current precision."""
-    symbolic = equations.equations
-    values, laws = equations.generators(s)
-    matrix = equations.matrix([row.form for row in symbolic.rows], values, symbolic.unknowns)
-    numbers = {name: at_centre(value) for name, value in values.items()}
-    continua = tuple(_continuum(c, numbers, laws) for c in symbolic.continua)
+    symbolic, number = equations.equations, equations.on(s)
+    matrix = number.matrix([row.form for row in symbolic.rows], symbolic.unknowns)
+    continua = tuple(_continuum(c, number) for c in symbolic.continua)
     return SystemAt(tuple(symbolic.unknowns), matrix, continua)
 
 
@@ -203,18 +199,15 @@ class SystemAt:
     continua: tuple[ContinuumAt, ...]
 
 
-def _continuum(continuum: Continuum, values: Mapping[str, acb], laws: Laws) -> ContinuumAt:
-    def value(of: Factored) -> acb:
-        return at_centre(number(of, values, acb(1)))
-
+def _continuum(continuum: Continuum, number: NamedValues) -> ContinuumAt:
     system = continuum.system
     axes = system.axes
     varying: VaryingCarrier | None = None
     if continuum.parts:
-        parts = tuple((states, laws[law]) for states, law in continuum.parts)
-        varying = VaryingCarrier(parts, values[LAPLACE], len(system.states))
+        parts = tuple((states, number.equations.laws[law]) for states, law in continuum.parts)
+        varying = VaryingCarrier(parts, number[LAPLACE], len(system.states))
     matrix, loads = (
-        tuple(tuple(value(x) for x in row) for row in (() if varying else rows))
+        tuple(tuple(number(x) for x in row) for row in (() if varying else rows))
         for rows in (system.matrix, system.loads)
     )
     at_rest = DistributedShape(
@@ -224,10 +217,10 @@ def _continuum(continuum: Continuum, values: Mapping[str, acb], laws: Laws) -> C
         matrix,
         (acb(0),) * len(system.states),
         (),
-        value(continuum.start).real,
-        value(continuum.length).real,
+        number(continuum.start).real,
+        number(continuum.length).real,
         current_bits(),
-        () if axes is None else tuple(value(x).real for x in (axes.cos, axes.sin)),
+        () if axes is None else tuple(number(x).real for x in (axes.cos, axes.sin)),
         varying,
     )
     return ContinuumAt(at_rest, loads, continuum.initial, continuum.loads)

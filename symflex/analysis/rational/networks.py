@@ -19,9 +19,10 @@ from flint import acb
 from symflex.balls import UndecidedError, bits_for_digits, current_bits, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.locate import equations_of
-from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
+from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import SERIES_BITS, DiscSearch, DiscSide
 from symflex.roots.networks.disc_series import DiscSeries, ball_about_zero
+from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
     from symflex.transfer import BoundNested

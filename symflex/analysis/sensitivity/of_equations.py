@@ -63,8 +63,7 @@ class SingularMatrix:
 
     def value(self, s: acb) -> acb_mat:
         """Return the matrix on a ball of s."""
-        values, _ = self.at.generators(s)
-        return self.at.matrix(self.rows, values, self.columns)
+        return self.at.on(s).matrix(self.rows, self.columns)
 
     def slope(self, s: acb, along: str) -> Entries:
         """Return the derivatives of the entries in s or a parameter on a ball of s; zeros are left out."""
@@ -73,11 +72,11 @@ class SingularMatrix:
             self._moving[along] = [
                 (i, form) for i, form in enumerate(self.rows) if any(holds(c, names) for _, c in form.terms)
             ]
-        values, _ = self.at.generators(s, along)
+        number = self.at.on(s, along)
         places = {v: j for j, v in enumerate(self.columns)}
         slopes: Entries = {}
         for i, form in self._moving[along]:
-            for j, entry in self.at.row(form, values, places).items():
+            for j, entry in number.row(form, places).items():
                 if isinstance(entry, acb_series) and entry[1] != 0:
                     slopes[i, j] = entry[1]
         return slopes

@@ -84,21 +84,17 @@ def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly]
         if residue is None:
             return None
         values[name] = residue
-    propagation = equations.propagation
-    if propagation is None:
-        return values
-    for (number, place), group in cramer.waves.items():
-        law = propagation.table.dispersions[number]
-        parts = [*law.characteristic, law.shift, propagation.lengths[number][place]]
+    for waves in cramer.numeric.waves:
+        parts = [*waves.law.characteristic, waves.law.shift, waves.length]
         series = [field.rational(c, c.ring.names, values) for c in parts]
         *coefficients, shift, length = [x for x in series if x is not None]
-        if len(coefficients) != len(law.characteristic) or int(shift[0]):
+        if len(coefficients) != len(waves.law.characteristic) or int(shift[0]):
             return None
         functions = _fundamental(coefficients, length, field)
         if functions is None:
             return None
         decay = field.even_odd(field.times(shift, length) * (field.prime - 1), 1, circular=False)
-        for name, order in group:
+        for name, order in waves.orders.items():
             values[name] = sum(decay, field.constant(0)) if order == EXPONENTIAL else functions[order]
     return values
 

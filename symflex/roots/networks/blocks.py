@@ -89,13 +89,13 @@ def _degree(cramer: CramerEquations, value: Factored, *, is_alone: bool) -> int 
     Delays alone in a block are left out, as they vanish nowhere.
     """
     names = value.ring.names
-    delays = {name for group in cramer.waves.values() for name, order in group if order == EXPONENTIAL}
+    delays = {n for n, waves in cramer.numeric.waves_of.items() if waves.orders[n] == EXPONENTIAL}
     total = 0
     for factor, exponent in value.factors:
         terms = [{names[i]: power for i, power in monomial} for monomial, _ in terms_of(factor)]
         left_out = {LAPLACE, *delays} if is_alone and len(terms) == 1 else {LAPLACE}
         degree = max(term.get(LAPLACE, 0) for term in terms)
-        waves = cramer.moving_names - left_out
+        waves = cramer.numeric.moving(LAPLACE) - left_out
         if any(name in waves for term in terms for name in term) or (exponent < 0 and degree):
             return None
         total += exponent * degree

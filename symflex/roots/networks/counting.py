@@ -17,6 +17,7 @@ from symflex.balls import current_bits, precision, settled
 from symflex.balls.inertia import elimination_order, pivots
 from symflex.budget import spend
 from symflex.roots.networks.members import MemberBalls, Stiffness
+from symflex.roots.networks.network import PolynomialValues
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -84,25 +85,20 @@ class Level:
         """Return the numbers of what is counted."""
         network = counter.network
         with precision(bits):
-            numbers = network.numbers
-            known = numbers.known()
-            entries = [(i, j, *numbers.even(v, known)) for (i, j), v in network.entries.items()]
-            borders = [
-                [(i, numbers.polynomial(v, known)[0]) for i, v in border.items()]
-                for border in counter.borders
-            ]
+            number = PolynomialValues(network.numeric)
+            entries = [(i, j, *number.even(v)) for (i, j), v in network.entries.items()]
+            borders = [[(i, number.constant(v)) for i, v in border.items()] for border in counter.borders]
             balls: dict[str, MemberBalls] = {}
             for member in network.members:
                 if member.key not in balls:
-                    pairs = [[numbers.even(x, known) for x in row] for row in member.system]
+                    pairs = [[number.even(x) for x in row] for row in member.system]
                     balls[member.key] = MemberBalls(
                         [[a for a, _ in row] for row in pairs],
                         [[b for _, b in row] for row in pairs],
-                        numbers.polynomial(member.length, known)[0],
+                        number.constant(member.length),
                     )
             members = [
-                (m, balls[m.key], _turn([numbers.polynomial(x, known)[0] for x in m.direction]))
-                for m in network.members
+                (m, balls[m.key], _turn([number.constant(x) for x in m.direction])) for m in network.members
             ]
         return Level(bits, counter, entries, borders, members)
 

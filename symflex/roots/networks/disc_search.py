@@ -17,9 +17,10 @@ from flint import acb, arb
 from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
 from symflex.budget import spend
 from symflex.roots.networks.at_rest import order_at_zero
-from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue, EssentialSingularityError
+from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue
 from symflex.roots.networks.disc_series import GUARD_BITS, DiscSeries, RootNearCircleError, points_needed
 from symflex.roots.root import Root, mirror_images
+from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

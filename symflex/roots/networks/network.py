@@ -15,16 +15,17 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, NoReturn
 
-from flint import arb, arb_poly
+from flint import acb_poly, arb
 
-from symflex.algebra import LAPLACE, Factored, summed, terms_of
-from symflex.balls import ball, precision
+from symflex.algebra import LAPLACE, Factored
+from symflex.balls import precision
 from symflex.library.elements import LinearForm, put_in
-from symflex.transfer.enclose import later
+from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
+    from symflex.balls import Arithmetic
     from symflex.equations import Equations
     from symflex.library.elements import Terms, Variable
 
@@ -60,7 +61,7 @@ class NetworkMember:
 class Network:
     """``(M(lambda) + members) x + b u = 0``, ``y = c x``, with numbers in place."""
 
-    numbers: PlacedNumbers
+    numeric: EquationsAt
     size: int  # unknowns
     entries: Mapping[tuple[int, int], Factored]  # of M, symmetric, i <= j; even in s
     members: tuple[NetworkMember, ...]
@@ -82,48 +83,34 @@ class Network:
         return len({str(self.read[i] / self.driven[i]) for i in self.driven}) == 1
 
 
-@dataclass(frozen=True, eq=False)
-class PlacedNumbers:
-    """Values of what equations with numbers are made of."""
+class PolynomialValues(NamedValues):
+    """Values that are polynomials in s; OtherNetworkError for those that are none."""
 
-    equations: Equations
+    def __init__(self, equations: EquationsAt) -> None:
+        super().__init__(equations, acb_poly([0, 1]))
 
-    def polynomial(self, value: Factored, known: Mapping[str, arb_poly]) -> arb_poly:
-        """Return a value as a polynomial in s at the current precision; OtherNetworkError if it is none."""
+    def __missing__(self, name: str) -> Arithmetic:
+        if name in self.equations.waves_of:
+            _refuse(f"{name} is not a polynomial in s")
+        return super().__missing__(name)
 
-        def number(name: str) -> arb_poly:
-            if name not in known:
-                _refuse(f"{name} is not a polynomial in s")
-            return known[name]
+    def __call__(self, value: Factored) -> acb_poly:
+        """Return the value of a rational function."""
+        _, powers, sums = self.equations.plan(value)
+        if any(e < 0 for _, e in powers) or any(e < 0 for *_, e in sums):
+            _refuse("a law is not a polynomial in s")
+        return acb_poly(super().__call__(value))
 
-        result = arb_poly([ball(value.unit)])
-        for factor, exponent in value.factors:
-            total = summed(terms_of(factor), value.ring.names, number, arb_poly([1]))
-            if exponent > 0:
-                result = result * total**exponent
-            elif total.degree() > 0:
-                _refuse("a law is not a polynomial in s")
-            else:
-                result = result * arb_poly([total[0] ** exponent])
-        return result
+    def constant(self, value: Factored) -> arb:
+        """Return a value's constant term."""
+        return self(value)[0].real
 
-    def known(self) -> dict[str, arb_poly]:
-        """Return the values of the ring's generators at the current precision."""
-        equations = self.equations
-        polynomials = {LAPLACE: arb_poly([0, 1]), "pi": arb_poly([arb.pi()])}
-        values: dict[str, Callable[[], arb]] = {"pi": arb.pi}
-        for constant in equations.constants:
-            polynomials[constant.generator] = arb_poly([later(constant.expression, values)()])
-        for name, value in equations.definitions:
-            polynomials[name] = self.polynomial(value, polynomials)
-        return polynomials
-
-    def even(self, value: Factored, known: Mapping[str, arb_poly]) -> tuple[arb, arb]:
+    def even(self, value: Factored) -> tuple[arb, arb]:
         """Return a and b of a value ``a + b*lambda``; OtherNetworkError if it is none."""
-        polynomial = self.polynomial(value, known)
+        polynomial = self(value)
         if polynomial.degree() > 2 or not polynomial[1].is_zero():  # noqa: PLR2004
             raise OtherNetworkError(LOSES)
-        return polynomial[0], -polynomial[2]
+        return polynomial[0].real, -polynomial[2].real
 
 
 def network_of(equations: Equations, output: str, source: str, *, is_passive: bool = False) -> Network:
@@ -140,7 +127,7 @@ class _NetworkReading:
 
     def __init__(self, equations: Equations) -> None:
         self.equations = equations
-        self.numbers = PlacedNumbers(equations)
+        self.numeric = EquationsAt(equations)
         self.delivered: dict[Variable, Variable | None] = {}  # motions by forces and torques of members
         for continuum in equations.continua:
             if not continuum.final:
@@ -194,7 +181,7 @@ class _NetworkReading:
             self._is_symmetric([read.divisor]),
             self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
         )
-        network = Network(self.numbers, len(order), entries, members, {}, {}, below, below, symmetric)
+        network = Network(self.numeric, len(order), entries, members, {}, {}, below, below, symmetric)
         try:
             if any(v in inputs or v in self.delivered for v in form):
                 _refuse("the output reads something that is not the motion of a node")
@@ -204,7 +191,7 @@ class _NetworkReading:
             driven_power, driven_row = self._without_s(driven)
             read_power, read_row = self._without_s(form)
             divisor = self._power(read.divisor)
-            if self.numbers.polynomial(read.divisor, self._known).degree() > divisor:
+            if PolynomialValues(self.numeric)(read.divisor).degree() > divisor:
                 _refuse("the output is filtered")
         except OtherNetworkError:
             return network
@@ -270,28 +257,22 @@ class _NetworkReading:
         power = powers.pop() if powers else 0
         shift = Factored.generator(self.equations.ring, LAPLACE) ** -power
         rest = {v: c * shift if power else c for v, c in terms.items()}
-        known = self._known
-        if any(self.numbers.polynomial(c, known).degree() > 0 for c in rest.values()):
+        number = PolynomialValues(self.numeric)
+        if any(number(c).degree() > 0 for c in rest.values()):
             _refuse("the output mixes motions and their rates")
         return power, rest
 
     def _is_symmetric(self, values: Iterable[Factored]) -> bool:
         """Tell whether all values are even in s, or all odd; what members do is even."""
-        propagation = self.equations.propagation
-        waves = () if propagation is None else propagation.propagators
-        known = {**self._known, **{p.generator: arb_poly([1]) for p in waves}}
-        parities = set()
+        number, parities = PolynomialValues(self.numeric), set()
+        number.update(dict.fromkeys(self.numeric.waves_of, acb_poly([1])))
         try:
             for value in values:
-                coefficients = self.numbers.polynomial(value, known).coeffs()
+                coefficients = number(value).coeffs()
                 parities |= {k % 2 for k, c in enumerate(coefficients) if not c.is_zero()}
         except OtherNetworkError:
             return False
         return len(parities) <= 1
-
-    @property
-    def _known(self) -> dict[str, arb_poly]:
-        return self.numbers.known()
 
     def _scale(
         self,
@@ -339,23 +320,23 @@ class _NetworkReading:
     ) -> None:
         """Prove that the equations are real in lambda, and their inertia not negative."""
         with precision(MASS_BITS):
-            known = self._known
+            number = PolynomialValues(self.numeric)
             mass: dict[int, dict[int, arb]] = {}
             for (i, j), value in entries.items():
-                _, slope = self.numbers.even(value, known)
+                _, slope = number.even(value)
                 if not slope.is_zero():
                     mass.setdefault(i, {})[j] = -slope
                     mass.setdefault(j, {})[i] = -slope
             if not is_passive and not _is_positive(mass):
                 _refuse("an inertia is negative")
             for member in {m.key: m for m in members}.values():
-                self._check_member(member, known)
+                self._check_member(member, number)
 
-    def _check_member(self, member: NetworkMember, known: Mapping[str, arb_poly]) -> None:
+    def _check_member(self, member: NetworkMember, number: PolynomialValues) -> None:
         system = member.system
         half = len(system) // 2
         pairs = list(product(range(half), repeat=2))
-        values = [[self.numbers.even(x, known) for x in row] for row in system]
+        values = [[number.even(x) for x in row] for row in system]
         if not all(
             (system[i][j] + system[half + j][half + i]).is_zero
             and (i == j or (system[i][half + j].is_zero and system[half + i][j].is_zero))
@@ -369,7 +350,7 @@ class _NetworkReading:
                 _refuse(f"a compliance of member '{member.name}' is negative")
             if not values[half + i][i][1] <= 0:
                 _refuse(f"an inertia of member '{member.name}' is negative")
-        if not self.numbers.polynomial(member.length, known)[0] > 0:
+        if not number.constant(member.length) > 0:
             _refuse(f"the length of member '{member.name}' is not positive")
 
 

@@ -21,7 +21,7 @@ from symflex.errors import BudgetError
 from symflex.roots.networks.anywhere import CRAMER, roots_in_disc, wanted_modes
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
-from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError, is_zero
+from symflex.roots.networks.cramer import CramerEquations, is_zero
 from symflex.roots.networks.network import OtherNetworkError, network_of
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
@@ -37,6 +37,7 @@ from symflex.roots.pole_zero_map import (
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import Root, count_modes, count_roots, root_at_zero
+from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

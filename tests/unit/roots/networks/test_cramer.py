@@ -7,7 +7,8 @@ import pytest
 from flint import acb, arb, ctx
 
 from symflex.balls import eliminate, sign_of
-from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
+from symflex.roots.networks.cramer import CramerEquations
+from symflex.transfer.equations_at import EssentialSingularityError
 from tests.unit.roots.networks.network_models import equations_of, specification
 
 ROD = 'type = "rod", E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m"'
