@@ -20,7 +20,7 @@ from symflex.algebra import LAPLACE, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
     from symflex.roots.networks.cramer import CramerEquations
@@ -31,10 +31,22 @@ NONE = -1e6
 
 def most_zeros(cramer: CramerEquations) -> int | None:
     """Return how many zeros the numerator has at most; ``None`` where there may be infinitely many."""
+    blocks = blocks_of(cramer.entries)
+    degrees = [None] if blocks is None else [_degree_of_block(cramer, *block) for block in blocks]
+    return None if None in degrees else sum(degree or 0 for degree in degrees)
+
+
+def blocks_of(entries: Sequence[Mapping[int, object]]) -> list[tuple[list[int], list[int]]] | None:
+    """Return rows and columns of each block of a square matrix; ``None`` where its determinant is zero.
+
+    Examples
+    --------
+    >>> blocks_of([{0: "k", 1: "b"}, {1: "m"}])
+    [([1], [1]), ([0], [0])]
+    """
     from scipy.sparse import csr_array  # takes 0.2 s, and only functions of networks need it
     from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
-    entries = cramer.entries
     places = [(i, j) for i, row in enumerate(entries) for j in row]
     indices = np.array(places, np.int32).reshape(-1, 2).T  # scipy 1.14 matches no others
     pattern = csr_array((np.ones(len(places)), tuple(indices)), shape=(len(entries), len(entries)))
@@ -43,14 +55,8 @@ def most_zeros(cramer: CramerEquations) -> int | None:
         return None
     # Row i needs the unknowns of its columns, which the rows matched to them give.
     _, block_of = connected_components(pattern[:, matched], directed=True, connection="strong")
-    total = 0
-    for block in range(max(block_of) + 1):
-        own = np.flatnonzero(block_of == block).tolist()
-        degree = _degree_of_block(cramer, own, [int(matched[i]) for i in own])
-        if degree is None:
-            return None
-        total += degree
-    return total
+    rows = [np.flatnonzero(block_of == block).tolist() for block in range(max(block_of) + 1)]
+    return [(own, [int(matched[i]) for i in own]) for own in rows]
 
 
 def _degree_of_block(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> int | None:

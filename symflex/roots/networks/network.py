@@ -23,7 +23,7 @@ from symflex.library.elements import LinearForm, put_in
 from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.balls import Arithmetic
     from symflex.equations import Equations
@@ -72,8 +72,6 @@ class Network:
     # Powers of s in front of determinant, and of the determinant bordered by input and output.
     below: int
     above: int
-    # Whether the roots of denominator and of numerator mirror each other in the imaginary axis: it is proved.
-    symmetric: tuple[bool, bool]
 
     @property
     def is_colocated(self) -> bool:
@@ -177,11 +175,7 @@ class _NetworkReading:
             if i <= position[v]
         }
         self._check(entries, members, is_passive=is_passive)
-        symmetric = (
-            self._is_symmetric([read.divisor]),
-            self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
-        )
-        network = Network(self.numeric, len(order), entries, members, {}, {}, below, below, symmetric)
+        network = Network(self.numeric, len(order), entries, members, {}, {}, below, below)
         try:
             if any(v in inputs or v in self.delivered for v in form):
                 _refuse("the output reads something that is not the motion of a node")
@@ -261,18 +255,6 @@ class _NetworkReading:
         if any(number(c).degree() > 0 for c in rest.values()):
             _refuse("the output mixes motions and their rates")
         return power, rest
-
-    def _is_symmetric(self, values: Iterable[Factored]) -> bool:
-        """Tell whether all values are even in s, or all odd; what members do is even."""
-        number, parities = PolynomialValues(self.numeric), set()
-        number.update(dict.fromkeys(self.numeric.waves_of, acb_poly([1])))
-        try:
-            for value in values:
-                coefficients = number(value).coeffs()
-                parities |= {k % 2 for k, c in enumerate(coefficients) if not c.is_zero()}
-        except OtherNetworkError:
-            return False
-        return len(parities) <= 1
 
     def _scale(
         self,

@@ -23,6 +23,7 @@ from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.cramer import CramerEquations, is_zero
 from symflex.roots.networks.network import OtherNetworkError, network_of
+from symflex.roots.networks.parity import mirrored
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
     NONE_ON_AXIS,
@@ -83,11 +84,10 @@ def locate_in_network(
     network: Network | None = None
     with suppress(OtherNetworkError):
         network = network_of(equations, *pair, is_passive=energy.is_passive)
-    symmetric = (False, False) if network is None else network.symmetric
     proof = energy.reason if energy.is_passive else ""
     unsure = "" if proof and energy.rests else NONE_ON_AXIS
-    sought = _Sought(name, region, digits, is_default, proof, symmetric, unsure)
     cramer = CramerEquations.of(equations, *pair)
+    sought = _Sought(name, region, digits, is_default, proof, unsure)
     if network is None or not (network.driven and network.read):
         return sought.in_disc(cramer)
     return sought.without_losses(_NetworkSearch(network, cramer, region, digits))
@@ -107,7 +107,6 @@ class _Sought:
     digits: int
     is_default: bool = False
     proof: str = ""  # why no pole lies right of the imaginary axis
-    symmetric: tuple[bool, bool] = (False, False)  # poles, and zeros, mirror each other in the axis
     unsure: str = NONE_ON_AXIS  # what is not known with that proof
 
     def found(
@@ -173,7 +172,7 @@ class _Sought:
         """Find all roots in a disc that holds the region."""
         region = self.region
         try:
-            in_disc = roots_in_disc(cramer, region, self.digits, symmetric=self.symmetric)
+            in_disc = roots_in_disc(cramer, region, self.digits, symmetric=mirrored(cramer))
         except BudgetError as error:
             return self.nothing("; ".join(d.message for d in error.diagnostics), error.diagnostics[0].code)
         except EssentialSingularityError:
