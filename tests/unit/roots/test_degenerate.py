@@ -11,8 +11,8 @@ from fractions import Fraction
 import pytest
 
 from symflex import pipeline
-from symflex.roots import Band, Modes, degenerate
-from symflex.roots.degenerate import NOT_COUNTED, DegeneratePoints, degenerate_points
+from symflex.roots import Band, Modes
+from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.locate import locate
 from tests.unit.roots.stand_ins import places
 
@@ -100,12 +100,6 @@ def test_a_hidden_turn_is_listed_among_the_roots_with_its_place_and_in_the_verdi
     assert places(h.root for h in found.hidden) == [(0, 3, 1), (0, -3, 1)]
     assert places(found.poles) == [(0, 3, 1), (0, -3, 1)]
     assert found.certificate.certified
-
-
-def test_what_is_not_counted_is_said_and_nothing_is_certified(monkeypatch):
-    monkeypatch.setattr(degenerate, "roots_about", lambda *_: (None, None))
-    found = locate(bound(), Band(Fraction("0.4"), Fraction("0.5")), 15)
-    assert found.certificate.reason == NOT_COUNTED
 
 
 @pytest.mark.slow

@@ -2,17 +2,14 @@
 
 import cmath
 from math import pi, sqrt
-from types import SimpleNamespace
 
 import pytest
 
-from symflex.budget import Budget
-from symflex.errors import BudgetError, ModelError
+from symflex.errors import ModelError
 from symflex.roots import Band, Modes
-from symflex.roots.functions.simplified import _value, without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, bound
-from tests.unit.roots.stand_ins import poles_by
+from tests.unit.roots.distributed_models import ROD, bound
 
 
 def of(formula, *, signals=""):
@@ -62,15 +59,6 @@ def test_what_cancels_is_hidden_with_its_multiplicity():
     assert places(found.poles) == [(-1, 0, 1), (3, 0, 1)]
 
 
-def test_a_region_and_a_budget_are_passed_on():
-    assert places(locate(of("u/((s + 1)*(s + 20))"), Modes(1)).poles) == [(-1, 0, 1)]
-    clock = iter(range(1000)).__next__
-    source = of("u/((s + 1)*(s + 20))")
-    with Budget(seconds=0, clock=clock).entered():
-        certificate = locate(source).certificate
-    assert (certificate.is_exceeded, certificate.code) == (True, "SF506")
-
-
 def test_without_zeros_the_poles_are_those_of_the_textbook():
     # x tan x = 2, see ROD, by scipy's brentq.
     found = locate(bound(ROD), Modes(2), with_zeros=False)
@@ -109,30 +97,6 @@ def test_a_hidden_pole_at_0_within_a_block_lets_no_signal_rest_anywhere():
     assert (found.verdict.word, found.verdict.moving) == ("stable", ())
 
 
-def test_an_engine_heeds_its_budget():
-    clock = iter(range(10**6)).__next__
-    source = bound(DELAY_LOOP)
-    with Budget(seconds=1, clock=clock).entered(), pytest.raises(BudgetError, match="SF506"):
-        poles_by("guess-and-prove", source, Modes(3), 15)
-
-
-def test_kernels_of_length_zero_are_numbers():
-    for function, order, value in [
-        ("cosh", 0, 1),
-        ("cos", 0, 1),
-        ("exp", 0, 1),
-        ("sinh", 0, 0),
-        ("sin", 0, 0),
-        # of an equation of order 4, the solution with u''' = 1 and its derivatives
-        ("fundamental", 0, 0),
-        ("fundamental", 2, 0),
-        ("fundamental", 3, 1),
-        ("fundamental", 5, 0),
-    ]:
-        kernel = SimpleNamespace(function=function, order=order, dispersion=SimpleNamespace(order=4))
-        assert _value(kernel) == value, (function, order)
-
-
 WITHOUT_LENGTH = """
 symflex = 1
 parameters.T = {{ value = "0 s", assume = "nonnegative" }}
@@ -151,30 +115,6 @@ def test_a_delay_of_no_time_is_none_and_a_denominator_that_vanishes_without_it_r
     (diagnostic,) = failed.value.diagnostics
     assert diagnostic.message == "the denominator of y/u is zero for these values"
     assert diagnostic.hint == "a part needs its length"
-
-
-HIDING = """
-symflex = 1
-parameters.T = { value = "0 s", assume = "nonnegative" }
-blocks.D = { type = "delay", T = "T" }
-blocks.L = { type = "delay", T = 1 }
-inputs.u = {}
-signals.x = "u/(s - 3)^2"
-"""
-
-
-def test_what_cancels_stays_hidden_where_one_or_all_lengths_are_zero():
-    source = bound(HIDING + 'outputs.y = "(s - 3)^2*x*(s + 2*D)/((s + 3*D)*(s + 5))"')
-    found = locate(source)
-    assert [(float(h.root.re), h.root.multiplicity) for h in found.hidden] == [(3, 2)]
-    assert places(found.poles) == [(-5, 0, 1), (-3, 0, 1)]
-    source = without_lengths_of_zero(bound(HIDING + 'outputs.y = "(s - 3)^2*x/((s + 3*D)*(s + 5*L))"'))
-    assert source.is_distributed
-    ((hidden, times),) = [(h.polynomial, h.multiplicity) for h in source.hidden]
-    assert times == 2
-    assert hidden == source.ratio.ring.context.gen(0) - 3
-    # The delay that is none is 1.
-    assert source.ratio.ring.context.gen(0) + 3 in [factor for factor, _ in source.den.factors]
 
 
 def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):

@@ -1,14 +1,12 @@
 """Poles, zeros and their certificate."""
 
-import json
 from fractions import Fraction
 
 import pytest
 from flint import arb
 
-from symflex.budget import Budget
-from symflex.errors import BudgetError, Diagnostic
-from symflex.roots import Band, Mode, Modes, PolynomialInS, RootProblem, find_pole_zero_map, pole_zero_map
+from symflex.errors import BudgetError
+from symflex.roots import Band, Modes, PolynomialInS, RootProblem, find_pole_zero_map, pole_zero_map
 from symflex.roots.pole_zero_map import ON_AXIS, Certificate, Exclusion, PoleZeroMap, judge
 from symflex.roots.region import Everything
 from symflex.roots.root import Root
@@ -16,22 +14,6 @@ from tests.unit.roots.root_problems import problem, with_root_of_two
 
 POLES = problem(0, 0, 9, 0, 1)  # s^2 (s^2 + 9)
 ZEROS = problem(4, 0, 1)
-
-
-def test_json_has_the_keys_of_the_schema_and_survives_a_round_trip():
-    data = find_pole_zero_map("x_tip/F", POLES, ZEROS, Band(Fraction(0), Fraction(1)), 5).to_json_dict()
-    assert {"schema", "tf", "region", "certified", "poles", "zeros", "hidden"} <= set(data)
-    assert (data["schema"], data["tf"], data["certified"]) == ("symflex.roots/1", "x_tip/F", True)
-    (zero, *_) = data["zeros"]
-    assert {"re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio"} <= set(zero)
-    assert [type(zero[key]) for key in ("re", "im", "radius")] == [str, str, str]
-    assert json.loads(json.dumps(data, allow_nan=False)) == data
-    # Both members of a pair are listed; the rigid body has no damping ratio.
-    assert [(p["im"], p["multiplicity"], p["damping_ratio"]) for p in data["poles"]] == [
-        ("0", 2, None),
-        ("3.0000", 1, 0.0),
-        ("-3.0000", 1, 0.0),
-    ]
 
 
 def test_the_certificate_counts_every_degree_and_a_numerator_without_s_has_no_zeros():
@@ -59,9 +41,6 @@ def test_a_cluster_makes_the_map_uncertified_and_says_why():
 
 
 # ------------------------------------------------------- what is said of roots that a stand-in has found
-
-SPENT = Diagnostic("SF505", "too many steps")
-BAND, EDGE = Band(Fraction(0), Fraction(1)), 2 * 3.141592653589793
 
 
 def real(*places, certified=True):
@@ -125,67 +104,6 @@ def test_a_root_that_is_missing_or_not_told_apart_is_no_certificate():
         assert (found.certified, found.counted, found.found, found.reason) == (False, 3, 3, why), which
 
 
-def test_hidden_factors_have_their_causes_and_count_for_stability():
-    shown, _ = mapped(real(-1, -2), real(-3), real(-4), real(5, 6), hidden=(1, 2))
-    assert [(float(h.root.re), h.cause) for h in shown.hidden] == [
-        (-4, "cause 0"),
-        (5, "cause 1"),
-        (6, "cause 1"),
-    ]
-    assert (shown.verdict.right, shown.certificate.counted) == (2, 6)
-
-
-def test_of_a_band_hidden_modes_right_of_the_axis_are_shown_wherever_they_lie():
-    band = Band(Fraction(0), Fraction(1, 5))
-    shown, _ = mapped(real(-1, 3), real(-2), real(-1, 7, -8), region=band, hidden=(3,))
-    assert [(float(h.root.re), h.cause) for h in shown.hidden] == [(-1, "cause 0"), (7, "cause 0")]
-    assert [float(r.re) for r in shown.poles] == [-1]
-    assert [float(r.re) for r in shown.unstable] == [3]
-    assert [float(r.re) for r in shown.all_poles] == [-1, 3]
-
-
-def test_digits_are_doubled_until_every_root_has_its_side_and_an_unknown_side_is_on_the_boundary():
-    wide, narrow = real((EDGE, 1e-3)), real((EDGE - 0.1, 1e-9))
-    shown, finder = mapped(wide, wide, narrow, (), degrees=(1, 0), region=BAND)
-    assert finder.digits == [10, 20, 40, 10]
-    assert [root.on_boundary for root in shown.poles] == [False]
-    shown, finder = mapped(*[wide] * 4, (), degrees=(1, 0), region=BAND)
-    assert finder.digits == [10, 20, 40, 80, 10]
-    assert [root.on_boundary for root in shown.poles] == [True]
-    # What the first search proved outlasts a second one.
-    shown, finder = mapped(wide, BudgetError(SPENT, found=()), degrees=(1, 0), region=BAND)
-    assert finder.digits == [10, 20]
-    assert [root.on_boundary for root in shown.poles] == [True]
-    assert shown.certificate.is_exceeded
-
-
-def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
-    failed = BudgetError(SPENT, found=real(-1))
-    shown, finder = mapped(failed, hidden=(1,))
-    assert [float(root.re) for root in shown.poles] == [-1]
-    assert (shown.zeros, shown.hidden, finder.digits) == ((), (), [10])
-    expected = Certificate("polynomial", 4, 1, "too many steps", code="SF505")
-    assert shown.certificate == expected
-    assert shown.verdict.reason == "too many steps"
-    assert mapped(BudgetError(SPENT, found=real(-1)), region=Mode(1))[0].poles == ()
-    assert mapped(BudgetError(SPENT))[0].poles == ()
-    clock = iter(range(100)).__next__
-    with Budget(seconds=0, clock=clock).entered():
-        shown, _ = mapped(real(-1, -2))
-    assert (shown.poles, shown.certificate.code) == ((), "SF506")
-
-
-def test_an_exceeded_budget_is_an_error_that_holds_the_map():
-    certificate = Certificate("e", 3, 1, "too many", code="SF505")
-    shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
-    with pytest.raises(BudgetError) as failed:
-        shown.complete()
-    (diagnostic,) = failed.value.diagnostics
-    assert (diagnostic.message, diagnostic.code) == ("too many", "SF505")
-    assert diagnostic.hint == "the attribute 'found' of this error has what was proved until then"
-    assert failed.value.found is shown
-
-
 def test_all_of_a_map_is_in_its_data():
     hole = Exclusion(-2.0, 0.0, 0.5, "poles accumulate")
     certificate = Certificate("e", 3, 1, "too many", code="SF505")
@@ -215,3 +133,14 @@ def test_all_of_a_map_is_in_its_data():
         "boundary": False,
     }
     assert (data["hidden"], data["certified"], data["stability"]["verdict"]) == ([], False, "unknown")
+
+
+def test_an_exceeded_budget_is_an_error_that_holds_the_map():
+    certificate = Certificate("e", 3, 1, "too many", code="SF505")
+    shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
+    with pytest.raises(BudgetError) as failed:
+        shown.complete()
+    (diagnostic,) = failed.value.diagnostics
+    assert (diagnostic.message, diagnostic.code) == ("too many", "SF505")
+    assert diagnostic.hint == "the attribute 'found' of this error has what was proved until then"
+    assert failed.value.found is shown

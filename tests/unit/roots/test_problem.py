@@ -1,20 +1,12 @@
 """Exact polynomials with constants as coefficients, and their splitting into coprime square-free parts."""
 
-from fractions import Fraction
-
 import pytest
 from flint import fmpz_mpoly_ctx
 
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots
 from symflex.roots.problem import split
-from tests.unit.roots.root_problems import from_roots, problem, with_pi, with_root_of_two
-
-
-def test_rationals_are_scaled_to_integers_leading_zeros_dropped_and_degrees_count_multiplicity():
-    assert PolynomialInS.from_rationals([Fraction(1, 6), Fraction(1, 4)]).integers() == (2, 3)
-    assert PolynomialInS.from_integers([1, 2, 0, 0]).degree == 1
-    assert RootProblem(((PolynomialInS.from_integers([1, 0, 1]), 3),)).degree == 6
+from tests.unit.roots.root_problems import problem, with_pi, with_root_of_two
 
 
 def test_polynomials_that_are_zero_lack_constants_or_contain_some_are_refused():
@@ -52,33 +44,7 @@ def parts_of(problem):
     return sorted((p.polynomial.integers(), p.multiplicity, p.in_square) for p in split(problem).parts)
 
 
-def test_equal_roots_of_different_factors_merge():
-    # (s + 1)(s + 2) and (s + 2)^2 (s + 3), the second cubed
-    factors = (
-        (PolynomialInS.from_rationals(from_roots([-1, -2])), 1),
-        (PolynomialInS.from_rationals(from_roots([-2, -2, -3])), 3),
-    )
-    assert parts_of(RootProblem(factors)) == [((1, 1), 1, False), ((2, 1), 7, False), ((3, 1), 3, False)]
-
-
 def test_the_even_part_holds_axis_pairs_and_mirrored_roots_only():
     # (s^2 + 9)(s - 2)(s + 2)(s + 5)
     coefficients = [-180, -36, 25, 5, 5, 1]
     assert parts_of(problem(*coefficients)) == [((-36, 5, 1), 1, True), ((5, 1), 1, False)]
-
-
-def test_content_is_dropped_and_repeated_factors_are_found_with_constants_in_them():
-    polynomial = with_pi(lambda pi, one: (pi * 2, pi * 4))
-    (part,) = split(RootProblem(((polynomial, 1),))).parts
-    assert [str(c) for c in part.polynomial.coefficients] == ["1", "2"]
-    # (s + pi)^2
-    polynomial = with_pi(lambda pi, one: (pi**2, 2 * pi, one))
-    (part,) = split(RootProblem(((polynomial, 1),))).parts
-    assert (part.polynomial.degree, part.multiplicity) == (1, 2)
-
-
-def test_factors_with_different_constants_share_a_ring():
-    first = with_pi(lambda pi, one: (pi, one))
-    second = with_root_of_two(lambda root, one: (root, one))
-    splitting = split(RootProblem(((first, 1), (second, 1), (first, 1))))
-    assert sorted(part.multiplicity for part in splitting.parts) == [1, 2]

@@ -8,7 +8,6 @@ from symflex.algebra.exponential_sum import AxisWave
 from symflex.balls import precision
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
-    IMAGINARY,
     REAL,
     AxisFunction,
     AxisNewton,
@@ -96,20 +95,6 @@ def test_values_of_a_ball_are_in_the_ball_of_values():
             assert value.rad() < 100 * abs(slope).upper() * ball.rad(), t
 
 
-def decay():
-    return AxisFunction((AxisWave((-1,), (0,), {0: {(): 1}}, {}),), REAL, Enclosures(64, (), (arb(1),), (1,)))
-
-
-def test_what_has_decayed_is_a_ball_that_holds_it():
-    values = decay().values(64)
-    with precision(64):
-        late, later = values.value(arb(127)), values.value(arb(129))
-        assert late.rel_accuracy_bits() > 50
-        assert later.contains(arb(-129).exp())
-        assert later.contains(0)
-        assert later.rad() < 1e-38
-
-
 # --------------------------------------------------------------------- roots of polynomials in t, known
 
 
@@ -128,17 +113,6 @@ def test_a_root_next_to_a_guess_is_enclosed():
             assert found.contains(4), (digits, guess)
             with precision(bits_of(digits)):
                 assert found.rad() < 4 * arb(10) ** -digits, guess
-
-
-def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed():
-    for axis, square in [(REAL, 1), (IMAGINARY, 2)]:
-        for sign in [1, -1]:
-            # (t - 1)^2 - 2^-60, times 2^60: 1 +- 2^-30.
-            source = polynomial(2**60 - 1, -(2**61), 2**60, axis=axis)
-            found = AxisNewton(30).frequency(source, 1 + sign * 2.0**-30)
-            with precision(400):
-                roots = [square * (1 + s * arb(2) ** -30) ** 2 for s in (sign, -sign)]
-                assert [found.contains(root) for root in roots] == [True, False], (axis, sign)
 
 
 def test_no_root_is_enclosed_where_none_is_single_or_the_guess_too_large_for_doubles():
@@ -189,26 +163,3 @@ class Real:
 
     def natural_frequency(self, t):
         return 2 * t
-
-
-COSINE = Real(lambda t: t.cos(), lambda t: -t.sin())
-SQUARE = Real(lambda t: t * t - 2, lambda t: 2 * t)
-
-
-def test_a_root_next_to_a_guess_is_enclosed_to_the_digits_wanted():
-    for digits in [5, 15, 30, 100, 400]:
-        for source, guess, root in [
-            (COSINE, 1.5707963267949, lambda: arb.pi() / 2),
-            (SQUARE, 1.41421356237309, lambda: arb(2).sqrt()),
-        ]:
-            found = AxisNewton(digits).frequency(source, guess)
-            with precision(3000):
-                assert found.contains(2 * root()) or abs(found.mid() - 2 * root()) <= found.rad() * 1.001, (
-                    digits
-                )
-                assert found.rad() < abs(found) * arb(10) ** -(digits + 1), (source, guess)
-
-
-def test_a_value_not_told_from_zero_has_no_sign():
-    assert not changes_sign(Real(lambda t: (t - 1) * (t - 3), lambda t: 2 * t - 4), 1.0, 2.0)
-    assert not changes_sign(Real(lambda t: arb(0, 1), lambda t: arb(1)), 1.0, 2.0)

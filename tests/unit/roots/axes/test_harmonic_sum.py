@@ -1,19 +1,18 @@
 """Functions of the root of s on both axes against products of hyperbolic and circular functions."""
 
 from itertools import product
-from math import log, sqrt
+from math import log
 
 import mpmath
-import pytest
 from flint import arb
 from mpmath import mp, mpc, mpf
 
 from symflex.algebra.exponential_sum import ExponentialSum
 from symflex.balls import precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
-from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
+from symflex.roots.axes.harmonic_sum import LosslessFunction
 from symflex.roots.functions.kernel_function import KernelFunction
-from tests.unit.roots.distributed_models import DELAY_LOOP, KELVIN_VOIGT, ON_A_FOUNDATION, bound
+from tests.unit.roots.distributed_models import bound
 from tests.unit.roots.lossless_functions import CONSTANT, DEGREES, RATES, function_of
 
 
@@ -83,22 +82,6 @@ def test_on_an_axis_it_is_the_same_function_but_for_one_exponential_and_one_numb
             assert all(mpmath.re(ratio / ratios[0]) > 0 for ratio in ratios), (axis, name)
 
 
-def test_nothing_grows_on_an_axis_wherever_the_fastest_exponential_stands():
-    for axis, name in product([REAL, IMAGINARY], FUNCTIONS):
-        source = function_of((FUNCTIONS[name], 1)).on_axis(0, axis)
-        assert any(not any(wave.growth) for wave in source.waves), (axis, name)
-        with precision(64):
-            rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
-            assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates), (axis, name)
-    for fastest in [(1, "cosh"), (2, "cosh")]:
-        # cosh(0.75 x)^2 and cosh(x^2/2) grow faster than cosh(1.25 x).
-        sums = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, (fastest, fastest)))
-        source = function_of((sums, 1)).on_axis(0, REAL)
-        with precision(64):
-            rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
-            assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates), fastest
-
-
 def test_what_is_not_real_on_an_axis_is_none():
     for sums, axis in [
         (((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sin"),))), IMAGINARY),
@@ -112,14 +95,6 @@ def test_what_is_not_real_on_an_axis_is_none():
     # exp(j x), with the smallest coefficient there is.
     alone = LosslessFunction(((ExponentialSum({((0, 0, 1),): {(): (1, 0)}}), 1),), function_of().enclosures)
     assert alone.on_axis(0, REAL) is None
-
-
-def test_a_growing_exponential_turns_forward():
-    for argument, turned in [(0, 1.25 * 3 / sqrt(2)), (2, 0.5 * 9)]:
-        # exp(1.25 x) at x = 3 exp(j pi/4), and exp(x^2/2)
-        growing = tuple((1, 0, 0, ((argument, name),)) for name in ("cosh", "sinh"))
-        function = function_of((growing, 1))
-        assert float(function.turn(log(9))) == pytest.approx(turned), argument
 
 
 def test_turns_of_factors_add_up_by_their_exponents_from_the_real_to_the_imaginary_axis():
@@ -138,8 +113,3 @@ def test_turns_of_factors_add_up_by_their_exponents_from_the_real_to_the_imagina
 def kernel_function(text):
     source = bound(text, 0)
     return KernelFunction(source, source.den)
-
-
-def test_losses_foundations_and_delays_have_no_such_function():
-    for text in [KELVIN_VOIGT, ON_A_FOUNDATION, DELAY_LOOP]:
-        assert lossless_function(kernel_function(text), 100) is None

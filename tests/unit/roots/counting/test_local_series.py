@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
@@ -62,18 +62,6 @@ def test_the_error_of_few_values_is_cauchys():
             assert float(coefficient.imag.rad()) == pytest.approx(aliased, rel=1e-6)
 
 
-def test_no_series_is_made_of_values_that_are_no_numbers():
-    @dataclass(frozen=True, eq=False)
-    class Broken(KnownFunction):
-        def value(self, s, bits):
-            return super().value(s, bits) / (acb(0) if s.imag.mid() > 3.01 else acb(1))
-
-    function = Broken((((1,), 1),))
-    assert sampled_series(function, CENTRE, arb(1), arb(9), 100, 8, 8, 0.25) is None
-    assert local_series(function, CENTRE, arb(1), 100, 8) is None
-    assert bound_on_circle(function, CENTRE, arb(1), 8) is None
-
-
 def test_the_bound_on_a_circle_is_at_least_the_largest_value_wherever_it_lies_and_close_to_it():
     for arcs in [1, 2, 16, 32]:
         # Of (s - c + 1/2)^3 on the unit circle about c: (3/2)^3, at the right.
@@ -86,37 +74,6 @@ def test_the_bound_on_a_circle_is_at_least_the_largest_value_wherever_it_lies_an
         opposite = (arb(2) - arb(direction[0]) * 0.9, arb(3) - arb(direction[1]) * 0.9)
         bound = bound_on_circle(known(*[opposite] * 6), CENTRE, arb(1), 16)
         assert float(bound) >= 1.9**6 * (1 - 1e-9), direction
-
-
-def test_where_values_are_no_numbers_on_arcs_these_are_cut():
-    @dataclass(frozen=True, eq=False)
-    class Careful(KnownFunction):
-        def value(self, s, bits):
-            found = super().value(s, bits)
-            return found if s.real.rad() < 0.05 and s.imag.rad() < 0.05 else found / acb(0)
-
-    function = Careful((((0, 0), 1),), scale=1)
-    assert 25 * 0.9 < float(bound_on_circle(function, acb(0), arb(5), 4)) < 25 * 1.5
-
-
-def test_the_circle_is_covered_whatever_arcs_it_is_cut_into():
-    @dataclass(frozen=True, eq=False)
-    class Recorded(KnownFunction):
-        narrow: float = 1.0
-        seen: list = field(default_factory=list)
-
-        def value(self, s, bits):
-            if max(s.real.rad(), s.imag.rad()) > 5 * self.narrow:
-                return acb("nan")
-            self.seen.append(s)
-            return acb(1)
-
-    for narrow, arcs in ((1.0, 1), (1.0, 16), (0.1, 3)):
-        function = Recorded((((0,), 1),), narrow=narrow)
-        assert float(bound_on_circle(function, CENTRE, arb(5), arcs)) == 1
-        for k in range(720):
-            point = CENTRE + 5 * (acb(0, arb(k) / 720) * 2 * arb.pi()).exp()
-            assert any(ball.contains(point.mid()) for ball in function.seen), (narrow, arcs, k)
 
 
 def test_nothing_is_bounded_where_a_function_branches():

@@ -1,7 +1,7 @@
 """Radii beyond which no root lies in the right half plane: Cauchy's bound, and its edge."""
 
 from fractions import Fraction
-from itertools import permutations, product
+from itertools import product
 from math import log, pi, prod, sqrt
 
 import mpmath
@@ -9,7 +9,6 @@ import pytest
 from flint import acb, arb
 
 from symflex import pipeline
-from symflex.algebra.exponential_sum import MOST_EXPONENTIALS
 from symflex.balls import precision
 from symflex.roots.distributed.far_out import (
     ADVANCED,
@@ -20,7 +19,6 @@ from symflex.roots.distributed.far_out import (
     NO_FORMULA,
     NO_LOSS,
     SECTORS,
-    TOO_MANY,
     TWO_WAVENUMBERS,
     _at_infinity,
     _dominant,
@@ -127,18 +125,6 @@ def test_losses_in_the_material_end_the_poles():
         assert 1 / eta < found < 10 / eta, kind
 
 
-def test_all_sectors_of_the_quadrant_are_asked(monkeypatch):
-    asked = set()
-
-    def turned(arguments, sector):
-        asked.add(sector)
-        return _turned(arguments, sector)
-
-    monkeypatch.setattr("symflex.roots.distributed.far_out._turned", turned)
-    assert tail(delayed("s + 10*D"), 20.0) == 20
-    assert asked == set(range(SECTORS))
-
-
 def test_a_sector_holds_its_directions_and_no_others():
     for power, sector in product([Fraction(1), Fraction(1, 2)], [0, 17, SECTORS - 1]):
         with precision(64):
@@ -208,24 +194,6 @@ def test_diffusion_ends_where_its_exponential_outweighs_a_number():
         assert plus(function, number, 0.9 * edge) >= edge, (number, length)
 
 
-def test_powers_of_s_and_of_wavenumbers_weigh_with_the_exponential():
-    # s^n gamma cosh(gamma) + 10^4 with gamma = 2 sqrt(s), on the imaginary axis as above.
-    function = field("w'' - 4*s*w = 0", "w(0) = 0", "w'(1) = F")
-    ring = function.ratio.ring
-    (kernel, *_) = function.kernels.kernels
-    s, cosh = ring.context.gen(0), ring.generator(kernel.generator)
-
-    def excess(g, power):
-        return power * mpmath.log(g * g / 4) + mpmath.log(g * mpmath.sinh(g / sqrt(2))) - mpmath.log(1e4)
-
-    for power in (0, 1, 2):
-        size = mpmath.findroot(lambda g, n=power: excess(g, n), (1, 15), solver="anderson")
-        edge = float(size) ** 2 / 4
-        weighed = s**power * ring.generator(kernel.wavenumber) * cosh
-        found = right_tail(function, [weighed, s**0], [acb(1), acb(1e4)], 1e-3)
-        assert edge * 0.999 <= found <= edge * 1.1, power
-
-
 def test_transport_with_diffusion_ends_where_its_exponential_outweighs_the_rest():
     # cosh(g) - 1.5 sinh(g)/g + 3000 exp(-1.5), g^2 = s + 9/4.
     def is_larger(r):
@@ -255,29 +223,6 @@ def test_transport_with_decay_is_a_delay_that_fades():
         assert isinstance(found, float) == is_bounded, share
 
 
-def test_too_many_exponentials_are_not_looked_at():
-    function = delayed("s + s*D + 1")
-    decay = function.ratio.ring.generator(function.kernels.generators[0])
-    found = right_tail(function, [(1 + decay) ** MOST_EXPONENTIALS], [acb(1)], 1.0)
-    assert found == TOO_MANY
-
-
-def test_what_cancels_wholly_or_between_polynomials_does_not_count():
-    # 1 + 2 D, and s^2 D^2 - s^2 D^2.
-    function = delayed("s + s*D + 1")
-    ring = function.ratio.ring
-    s, decay = ring.context.gen(0), ring.generator(function.kernels.generators[0])
-    found = right_tail(function, [1 + 2 * decay + s**2 * decay**2, s**2 * decay**2], [acb(1), acb(-1)], 1.0)
-    assert found == DELAY_LEADS
-    for scale, reason in [(-1, NEUTRAL), (-2, DELAY_LEADS)]:
-        # s + s D + s^2 D, and s^2 D times the scale.
-        function = delayed("s + s*D + 1")
-        ring = function.ratio.ring
-        s, decay = ring.context.gen(0), ring.generator(function.kernels.generators[0])
-        found = right_tail(function, [s + s * decay + s**2 * decay, s**2 * decay], [acb(1), acb(scale)], 1.0)
-        assert found == reason, scale
-
-
 def lossy_rod(modulus, eta):
     return bound(ELEMENT.format(kind="rod", values=f'E = "{modulus} Pa", rho = 1, A = 1, eta = "{eta} s"'))
 
@@ -298,21 +243,6 @@ def test_a_lossy_rod_ends_where_its_exponential_outweighs_a_number():
         edge = mpmath.findroot(lambda r, v=value, e=eta: excess(r, v, e), (low, high), solver="anderson")
         found = plus(lossy_rod(modulus, loss), number)
         assert edge * 0.999 <= found <= edge * 1.1, (modulus, loss)
-
-
-def test_a_cantilever_that_creeps_ends_where_bending_dies_out():
-    # w'''' + s w = 0, mu^4 = s/4: cosh(2 mu) + cos(2 mu) + 2, the largest exponential against the others.
-    def is_larger(r):
-        sizes = []
-        for k in range(101):
-            mu = (r / 4) ** 0.25 * mpmath.expj(pi / 8 * k / 100)
-            rest = mpmath.exp(-2 * mu.real) + mpmath.exp(2 * mu.imag) + mpmath.exp(-2 * mu.imag) + 4
-            sizes.append(mpmath.exp(2 * mu.real) - rest)
-        return min(sizes) > 0
-
-    found = tail(field("w'''' + s*w = 0", *CLAMPED))
-    assert is_larger(found)
-    assert not is_larger(found / 1.25)
 
 
 def test_beyond_a_radius_a_rational_function_is_a_power_of_s_times_what_is_in_the_ball():
@@ -427,36 +357,6 @@ def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_l
         with precision(64):
             assert not _dominant(terms, arguments, arb(edge * 0.997)), (power, unit)
             assert _dominant(terms, arguments, arb(edge * 1.003)), (power, unit)
-
-
-def test_all_that_a_term_falls_by_makes_up_for_its_power():
-    # r^3 exp(-(2 + 1) r) falls from 1 on.
-    terms = {((0, 1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p3="0.001")}
-    with precision(64):
-        for arguments in permutations([_Power(Fraction(1), acb(2)), _Power(Fraction(1), acb(1))]):
-            assert not _dominant(terms, list(arguments), arb(0.997))
-            assert _dominant(terms, list(arguments), arb(1.003))
-
-
-def test_what_falls_beside_a_delay_counts_too():
-    # exp((2 - d) r) > 5 for a delay's d, which is none but by rounding.
-    terms = {((0, -1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p0=5)}
-    arguments = [_Power(Fraction(1), acb("1e-6"), is_delay=True), _Power(Fraction(1), acb(2))]
-    with precision(64):
-        assert _dominant(terms, arguments, arb(log(5) / 2 * 1.001))
-        assert not _dominant(terms, arguments, arb(log(5) / 2 * 0.999))
-
-
-def test_what_grows_faster_than_the_largest_term_outweighs_it_later():
-    slow = [_Power(Fraction(1), acb("0.001"))]
-    terms = {LEVEL: powers(p1=1), GROWING: powers(p0=5)}
-    with precision(64):
-        assert not _dominant(terms, slow, arb(10))
-        # A delay's exponent never grows: a positive rate is rounding.
-        assert _dominant(terms, [_Power(Fraction(1), acb("0.001"), is_delay=True)], arb(10))
-        # Not so of what a delay is divided by.
-        shrinking = {LEVEL: powers(p1=1), DECAYING: powers(p0=5)}
-        assert not _dominant(shrinking, [_Power(Fraction(1), acb("-0.001"), is_delay=True)], arb(10))
 
 
 def test_a_term_that_may_be_zero_outweighs_nothing():

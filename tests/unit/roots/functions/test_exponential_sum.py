@@ -2,16 +2,14 @@
 
 from functools import cache
 from itertools import product
-from math import log, sqrt
 
 import mpmath
-import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
-from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
+from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.balls import expansion, precision
-from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]
@@ -107,27 +105,6 @@ def test_sums_have_the_values_and_slopes_of_polynomials_in_kernels():
                 assert close(found, slope) if slope else found.contains(0), (i, s)
 
 
-def test_the_largest_term_is_the_largest():
-    for (made, _), s in product(models(), (5.0, 4 + 9j, 40j)):
-        with precision(120):
-            place = made.values.at(acb(s))
-            for i, terms in enumerate(made.sums):
-                own = zip(made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True)
-                sizes = [float((abs(c) * (1 if e is None else abs(e.exp()))).mid()) for c, e in own]
-                largest = list(terms.terms).index(made.values.largest([i], place))
-                assert sizes[largest] == pytest.approx(max(sizes)), (i, s)
-
-
-def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels_if_there_are_any():
-    # cosh^3 sin^2 cos and sin^3 sinh^3 of q = sqrt(s/2): abs(3 + 3 j) abs(q)
-    for make, place, fastest in ((beam, 0, 12 * sqrt(2)), (rod, 1, 3 * 32), (delay, 0, 3 * 16)):
-        with precision(64):
-            assert DoubleSums(make().values).fastest(complex(log(32), place)) == pytest.approx(fastest)
-    with precision(64):
-        for sums in (lambda s, **_: [s + 3], lambda **_: []):
-            assert DoubleSums(Polynomials(ROD, sums).values).fastest(1 + 0j) == 0.0
-
-
 def test_a_ball_of_places_has_a_ball_of_values():
     for made, exact in models():
         with mp.workdps(50), precision(120):
@@ -136,25 +113,3 @@ def test_a_ball_of_places_has_a_ball_of_values():
                 expected = exact(s)[i]
                 exactly = acb(float(expected.real), float(mpmath.im(expected)))
                 assert made.values.value(i, place).contains(exactly), (i, s)
-
-
-def test_too_many_exponentials_are_not_written():
-    source = bound(DELAY_LOOP)
-    ring, table = source.ratio.ring, source.kernels
-    decay = ring.generator(table.kernels[0].generator)
-    arguments = arguments_of(table)
-    polynomial = sum((decay**n for n in range(MOST_EXPONENTIALS)), 0 * decay)
-    assert len(exponential_sum(ring, table, arguments, polynomial).terms) == MOST_EXPONENTIALS
-    assert exponential_sum(ring, table, arguments, polynomial + decay**MOST_EXPONENTIALS) is None
-
-
-def test_powers_of_hyperbolic_functions_are_multiplied_out():
-    for even, odd, expected in [
-        (0, 0, {0: 1}),
-        (2, 0, {2: 1, 0: 2, -2: 1}),
-        (0, 2, {2: 1, 0: -2, -2: 1}),
-        (1, 1, {2: 1, -2: -1}),
-        (2, 1, {3: 1, 1: 1, -1: -1, -3: -1}),
-        (1, 2, {3: 1, 1: -1, -1: -1, -3: 1}),
-    ]:
-        assert spread(even, odd) == expected

@@ -10,7 +10,7 @@ from mpmath import mp, mpc
 from symflex.algebra import Factored
 from symflex.balls import precision
 from symflex.errors import ModelError, UncertifiedError
-from symflex.roots.functions.kernel_function import KernelFunction, _spectral_size
+from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 
 BITS = 160
@@ -97,12 +97,6 @@ def number(value):
     return mpc(value.real.mid().str(40, radius=False), value.imag.mid().str(40, radius=False))
 
 
-def slope(closed, s):
-    """Return the logarithmic derivative in ln(s)."""
-    s = mpmath.mpmathify(s)
-    return s * mpmath.diff(closed, s, h=mpmath.mpf(10) ** -25) / closed(s)
-
-
 def test_about_a_ball_values_are_of_its_middle_and_slopes_of_all_of_it():
     centre, ball = acb(2, 3), acb(arb(2, 0.01), arb(3, 0.01))
     for name, function, _ in models():
@@ -135,11 +129,6 @@ def test_how_far_it_turns_between_two_points_is_the_difference_of_logarithms():
             own = float(turn) / function.power - float(mpmath.arg(closed(t) / closed(s)))
             per_power = float(mpmath.arg(t / s))
             assert own / per_power == pytest.approx(round(own / per_power), abs=1e-6), name
-
-
-def test_a_ball_that_holds_a_root_turns_anywhere():
-    off, _ = function_of(DELAY_LOOP).turn_of_exponentials(acb(arb(0, 9), arb(0, 9)), acb(0), acb(1), BITS)
-    assert off > 1.5
 
 
 def kernels_of(text):
@@ -193,35 +182,3 @@ def test_powers_of_wavenumbers_that_change_with_the_branch_are_divided_by():
                     q = wavenumber(mpmath.mpmathify(s))
                     expected = make(*(values[n](q) for n in order))[i] / q**power
                     assert abs(number(function.value(acb(s), BITS)) - expected) < 1e-25 * abs(expected), i
-
-
-def test_where_a_lossy_member_no_longer_resists_nothing_is_finite():
-    for section in (
-        'type = "beam", theory = "timoshenko", I = "0.01 m^4", G = "0.8 Pa", kappa = "5/6", A = "1 m^2"',
-        'type = "rod", A = "A_0*(1 - x/(2*l))^4"',
-    ):
-        text = 'symflex = 1\nparameters = { A_0 = "1 m^2", l = "1 m" }\n'
-        text += f'elements.arm = {{ {section}, l = "l", '
-        text += 'between = ["ground", "tip"], E = "2 Pa", rho = "1 kg/m^3", eta = "0.02 s" }\n'
-        function = function_of(f'{text}inputs.F = {{ force = "tip" }}\noutputs.y = "tip"')
-        found = function.enclosed(acb(-50), BITS)
-        assert not all(value.is_finite() and slope.is_finite() for value, slope, _ in found), section
-
-
-def test_a_root_has_no_logarithm():
-    # cosh(s) of a rod without a tip, whose roots doubles do not know, and s of a loop without delay at 0.
-    source = bound(DELAY_LOOP)
-    s = source.ratio.ring.context.gen(0)
-    exact = KernelFunction(source, source.den * source.den.polynomial(source.ratio.ring, s - 3))
-    assert exact.at_point(acb(3)) is None
-    assert exact.at_point(acb(3.5)) is not None
-
-
-def test_the_largest_root_is_about_as_large_as_a_coefficients_root():
-    for coefficients, size in [
-        ([acb(0), acb(-16)], 16),
-        ([acb(27), acb(0), acb(0)], 3),
-        ([acb(1), acb(100j)], 100),
-    ]:
-        # The coefficient of the power order - k, to the power 1/k.
-        assert float(_spectral_size(coefficients).real) == pytest.approx(size)

@@ -4,9 +4,8 @@ from flint import acb
 
 from symflex.algebra import Factored
 from symflex.balls import precision
-from symflex.roots.functions import simplified
 from symflex.roots.functions.simplified import without_squares
-from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
+from tests.unit.roots.distributed_models import ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j]
 
@@ -58,27 +57,3 @@ def value(function, part, s):
     with precision(160):
         kernels = function.kernel_values()
         return kernels.value(part, kernels.at(acb(s)))
-
-
-def test_without_a_hidden_square_values_are_the_same():
-    for text, make in [
-        (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)]),
-        (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 2)]),
-        (ROD, lambda s, cosh, sinh: [(cosh, 2), (s, 1)]),
-        (DELAY_LOOP, lambda s, exp: [(s + 2 * exp, 1)]),
-    ]:
-        source, part = product_of(text, make)
-        after = without_squares(source, part)
-        with precision(160):
-            assert all((value(source, part, s) - value(*after, s)).contains(0) for s in PLACES), text
-    # Nothing at all is changed where no square may be hidden.
-    source, part = product_of(ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)])
-    assert without_squares(source, part) == (source, part)
-
-
-def test_squares_of_long_polynomials_are_not_sought(monkeypatch):
-    # cosh - 1 has two terms, (E - 1)^2 three.
-    for most, count in ((3, [2]), (1, [1])):
-        monkeypatch.setattr(simplified, "MOST_TERMS", most)
-        _, part = without_squares(*product_of(ROD, lambda s, cosh, sinh: [(cosh - 1, 1)]))
-        assert [e for _, e in part.factors] == count, most

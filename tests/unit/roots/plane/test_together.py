@@ -2,11 +2,10 @@
 
 from itertools import product
 
-import pytest
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.plane.local_roots import in_disc, is_branched, prove_together, snapped
+from symflex.roots.plane.local_roots import is_branched, prove_together
 from tests.unit.roots.known_functions import KnownFunction
 
 DIGITS = 12
@@ -67,13 +66,6 @@ def test_another_number_of_roots_or_roots_too_far_apart_are_not_proved():
     assert found is None
 
 
-def test_of_a_function_whose_power_is_counted_a_root_counts_once():
-    found = together(beside(0), 2, power=2)
-    assert (found.multiplicity, found.certified) == (1, True)
-    assert type(found.multiplicity) is int
-    assert type(together(beside(1e-6, -1e-6j), 4, power=2).multiplicity) is int
-
-
 def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other():
     for even, on_axis in [(True, True), (False, False)]:
         with precision(BITS):
@@ -84,39 +76,6 @@ def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other():
         assert found.on_imaginary_axis is on_axis, even
         assert found.im.overlaps(arb(10).sqrt()), even
         assert found.re.contains(0), even
-
-
-def test_a_point_closer_to_an_axis_of_symmetry_than_a_distance_is_moved_onto_it():
-    for s, even, expected in [
-        (acb(0.1, 5), True, (0, 5)),
-        (acb(0.1, 5), False, (0.1, 5)),
-        (acb(-0.1, 5), True, (0, 5)),
-        (acb(0.3, 5), True, (0.3, 5)),
-        (acb(5, 0.1), True, (5, 0)),
-        (acb(5, -0.1), False, (5, 0)),
-        (acb(5, 0.3), False, (5, 0.3)),
-    ]:
-        found = snapped(s, arb(0.2), even=even)
-        assert (float(found.real), float(found.imag)) == expected, (s, even)
-
-
-def test_one_root_alone_in_a_disc_that_mirrors_itself_lies_on_the_axis():
-    for centre, times, even, expected in [
-        (acb(0, 5), 1, True, (True, False, True)),
-        (acb(0, 5), 1, False, (False, False, True)),
-        (acb(0, 5), 2, True, (False, False, False)),
-        (acb(5, 0), 1, False, (False, True, True)),
-        (acb(5, 0), 2, True, (False, False, False)),
-        (acb(0), 1, True, (True, True, True)),
-        (acb(4, 5), 1, True, (False, False, True)),
-    ]:
-        found = in_disc(centre, arb(0.5), times, even=even)
-        assert (found.on_imaginary_axis, found.is_real, found.certified) == expected, (centre, times)
-        assert found.multiplicity == times
-        assert float(found.re.rad()) == pytest.approx(0 if expected[0] else 0.5), (centre, times)
-        assert float(found.im.rad()) == pytest.approx(0 if expected[1] else 0.5), (centre, times)
-        assert found.re.contains(centre.real)
-        assert found.im.contains(centre.imag)
 
 
 def test_a_disc_is_branched_where_a_value_in_it_is_no_number():

@@ -1,10 +1,10 @@
 """Guesses by Laguerre's method, and each of its parts, for polynomials made of their roots."""
 
 import pytest
-from flint import acb, acb_poly, arb
+from flint import acb_poly, arb
 
 from symflex.balls import precision
-from symflex.roots.polynomials.discs import _polygon_moduli, propose_by_laguerre
+from symflex.roots.polynomials.discs import propose_by_laguerre
 
 
 @pytest.fixture(autouse=True)
@@ -51,33 +51,7 @@ def test_every_root_of_the_upper_half_plane_is_guessed_once():
             assert [z.imag == 0 for z in found] == [z.imag == 0 for z in wanted], (leading, roots)
 
 
-def test_roots_far_from_1_are_guessed_as_well():
-    for scale in [1e-150, 1e150, 1e250]:
-        found = numbers(propose_by_laguerre(made_of(scale * (1 + 2j), 3 * scale)))
-        assert [z / scale for z in found] == pytest.approx([1 + 2j, 3], rel=1e-11), scale
-
-
 def test_of_a_double_root_both_are_guessed():
     found = numbers(propose_by_laguerre(made_of(2.0, 2.0, -5.0)))
     assert sum(1 if z.imag == 0 else 2 for z in found) == 3
     assert [z.real for z in found] == pytest.approx([2.0] * (len(found) - 1) + [-5.0], rel=1e-6)
-
-
-def test_a_polynomial_lost_in_rounding_altogether_has_still_as_many_guesses_or_none():
-    # z^2 + (0 +- 1): whatever it is, it is said as none or as two.
-    found = propose_by_laguerre(acb_poly([acb(arb(0, 1)), 0, 1]))
-    assert found is None or sum(1 if g.imag == 0 else 2 for g in found) == 2
-
-
-def test_the_newton_polygon_tells_the_moduli_within_doubles():
-    # Sides of the hull of each (Bini 1996): all powers; from 0 to 1 to 2 to 3; with 1 below, and on the hull
-    for coefficients, moduli in (
-        ([16, 0, 0, 0, 1], [2, 2, 2, 2]),
-        ([1e-3, 1, 1, 1e-4], [1e-3, 1, 1e4]),
-        ([4, 1e-3, 1], [2, 2]),
-        ([4, 2, 1], [2, 2]),
-        ([0, 0, -5, 1], [5, 5, 5]),
-        ([1, 100, 1, 1, 1e-6], [0.01, 10, 10, 1e6]),
-    ):
-        found = _polygon_moduli(acb_poly(coefficients), len(coefficients) - 1)
-        assert found == pytest.approx(moduli), coefficients

@@ -1,21 +1,15 @@
 """From discs of s or of s^2 to roots, and what may be said of roots that could not be told apart."""
 
-from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations, product
 
-import pytest
 from flint import acb, arb, fmpq
 
 from symflex.balls import precision
 from symflex.roots import PolynomialInS, Root, RootProblem
 from symflex.roots.polynomial_roots import (
-    _conjugates,
     _hull,
-    _merge,
-    _roots_of,
     _square_roots,
-    _touching,
     find_polynomial_roots,
     in_order,
 )
@@ -85,66 +79,8 @@ def test_a_hull_holds_every_ball_and_little_else():
             assert hull.upper() - hull.lower() <= most, (order, balls)
 
 
-def test_a_hull_holds_balls_whose_middle_is_no_number_of_the_precision():
-    # Of 64 bits, 1 and the next number: their mean is neither.
-    low, high = exact(1), exact(1 + Fraction(1, 2**63))
-    with precision(64):
-        for balls in ([low, high], [high, low]):
-            assert _hull(balls).contains(low)
-            assert _hull(balls).contains(high)
-
-
-def test_a_cluster_becomes_one_box_with_all_its_roots():
-    cluster = [root(1, 1, 0.25, multiplicity=2), root(1.125, 1, 0.25), root(1, 0.75, 0.25, multiplicity=3)]
-    merged = _merge(cluster)
-    assert (merged.multiplicity, merged.certified) == (6, False)
-    for each in cluster:
-        assert merged.re.contains(each.re)
-        assert merged.im.contains(each.im)
-    assert not merged.re.contains(exact(1.5))
-    assert not merged.im.contains(exact(0.25))
-
-
-def test_a_merged_root_lies_where_all_of_its_roots_do_and_one_alone_stays_as_it_is():
-    for name in ["is_real", "on_imaginary_axis"]:
-        both = [replace(root(0, 0, 0.25), **{name: True}), replace(root(0, 0, 0.5), **{name: True})]
-        assert getattr(_merge(both), name)
-        assert not getattr(_merge([both[0], root(0, 0, 0.5)]), name)
-    alone = root(1, 2)
-    assert _merge([alone]) is alone
-
-
-def test_boxes_are_grouped_in_chains_as_long_as_their_discs_are_not_proved_disjoint():
-    for distance, groups in [(1.9, 1), (2.9, 2)]:
-        # Boxes of half side 1 lie in discs of radius sqrt(2).
-        assert len(_touching([root(0, 1, 1), root(distance, 1, 1)])) == groups
-        assert len(_touching([root(0, 1, 1), root(0, 1 + distance, 1)])) == groups
-    chain = [root(2 * i, 0, 0.75) for i in range(4)] + [root(40, 0, 0.75), root(-40, 0, 0.75)]
-    assert sorted(len(group) for group in _touching(chain)) == [1, 1, 4]
-
-
 def disc(re, im, radius, count=1):
     return Disc(acb(exact(re), exact(im)), exact(radius), count)
-
-
-def test_a_disc_off_the_real_axis_stands_for_a_root_and_its_conjugate():
-    for count in [1, 2, 3]:
-        found = _conjugates(disc(-3, 4, 0.5, count))
-        assert [(r.multiplicity, r.certified, r.is_real) for r in found] == [(count, count == 1, False)] * 2
-        assert [r.on_imaginary_axis for r in found] == [False, False], count
-        assert all(encloses(found, p) for p in points_of(disc(-3, 4, 0.5))), count
-        assert bool(found[0].im > 0), count
-        assert bool(found[1].im < 0), count
-
-
-def test_a_disc_about_a_real_centre_holds_a_real_root_or_maybe_a_pair():
-    (found,) = _conjugates(disc(-3, 0, 0.5))
-    assert (found.is_real, found.certified, bool(found.im == 0)) == (True, True, True)
-    assert found.re.contains(exact(-3.5))
-    (found,) = _conjugates(disc(-3, 0, 0.5, 2))
-    assert (found.is_real, found.certified, found.multiplicity) == (False, False, 2)
-    assert found.on_imaginary_axis is False
-    assert found.im.contains(exact(0.5))
 
 
 def test_square_roots_of_every_point_of_a_disc_are_enclosed():
@@ -168,15 +104,6 @@ def test_square_roots_of_every_point_of_a_disc_are_enclosed():
                 assert encloses(found, -s), (count, place)
 
 
-def test_one_root_on_the_real_axis_of_s_squared_gives_an_exact_zero():
-    for z, real in [(4, True), (-4, False), (0.75, True), (-0.75, False)]:
-        found = _square_roots(disc(z, 0, 0.5))
-        assert [r.is_real for r in found] == [real, real], z
-        assert [r.on_imaginary_axis for r in found] == [not real, not real], z
-        assert all(bool((r.im if real else r.re) == 0) for r in found), z
-        assert not any(encloses(found, acb(0)) for _ in found), z
-
-
 def test_a_disc_about_s_squared_that_may_hold_0_is_one_uncertified_box():
     for count, place in product([1, 2], [(0, 0, 1), (0.5, 0, 0.5), (0.3, 0.4, 0.5), (-0.25, 0, 0.5)]):
         z = disc(*place, count)
@@ -187,14 +114,6 @@ def test_a_disc_about_s_squared_that_may_hold_0_is_one_uncertified_box():
             with precision(400):
                 assert encloses([found], point.sqrt()), (count, place)
                 assert encloses([found], -point.sqrt()), (count, place)
-
-
-def test_roots_of_a_part_have_its_multiplicity_and_all_digits():
-    for in_square in [False, True]:
-        found = _roots_of(part(4, in_square=in_square, multiplicity=3), [disc(4, 0, 1e-20)], 10)
-        assert [r.multiplicity for r in found] == ([3, 3] if in_square else [3])
-    found = _roots_of(part(2, in_square=True), [disc(2, 0, 0)], 300)
-    assert all(r.re.rad() < exact(Fraction(1, 10**300)) for r in found)
 
 
 def test_roots_stand_by_natural_frequency_then_real_part_then_positive_imaginary_part_first():
@@ -215,12 +134,6 @@ def test_roots_whose_frequencies_are_not_told_apart_stand_by_their_real_parts():
         lower = root(0, Fraction(49, 10) * size, wide)
         for start in permutations([left, axis, lower]):
             assert in_order(start) == (lower, left, axis), size
-
-
-def test_digits_that_are_none_are_refused():
-    with pytest.raises(ValueError, match="digits must be at least 1, not 0"):
-        find_polynomial_roots(RootProblem(()), 0)
-    assert find_polynomial_roots(RootProblem(()), 1) == ()
 
 
 def product_of(*factors):

@@ -43,23 +43,6 @@ def broken_off(polynomials, calls, digits=20):
     return None
 
 
-def nodes():
-    """The roots of the Chebyshev polynomial, cos((k - 1/2) pi/n)."""
-    with precision(200):
-        return [((arb(k) - arb("0.5")) * arb.pi() / DEGREE).cos() for k in range(1, DEGREE + 1)]
-
-
-def holders(root, values):
-    with precision(200):
-        return [i for i, value in enumerate(values) if root.re.overlaps(value) and root.im.contains(0)]
-
-
-def test_enough_time_finds_all():
-    polynomial = problem_of(CHEBYSHEV)
-    with budget(100_000).entered():
-        assert len(find_polynomial_roots(polynomial, 20)) == DEGREE
-
-
 def test_multiplicities_are_right_though_parts_are_missing():
     for calls in range(10, 300, 58):
         # s^3 (T_12(s - 2))^2 T_7(s - 4): roots at 0 three times, 12 double, 7 simple ones
@@ -107,11 +90,3 @@ def test_a_map_says_what_it_lost_and_keeps_to_its_region():
     assert (second.poles, second.certificate.found > 0) == ((), True)
     lowest = mapped(Modes(1))
     assert (len(lowest.poles), lowest.certificate.certified) == (1, False)
-
-
-def test_poles_are_complete_when_only_the_zeros_took_too_long():
-    zeros = problem_of(SHIFTED)
-    with budget(100).entered():
-        result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20)
-    assert [root.decimal(3).im for root in result.poles] == ["2.00", "-2.00"]
-    assert result.zeros == ()

@@ -17,7 +17,6 @@ from symflex.roots.polynomials.discs import propose_by_laguerre
 from tests.unit.roots.root_problems import (
     chain,
     from_roots,
-    multiply,
     problem,
     problem_of,
     with_pi,
@@ -161,13 +160,6 @@ def test_a_mirrored_quadruple_is_exactly_symmetric():
         assert in_tight_boxes(roots, [acb(x, y) / arb(2).sqrt() for x in (1, -1) for y in (1, -1)], 30)
 
 
-def test_order_does_not_depend_on_the_order_of_factors():
-    factors = [(PolynomialInS.from_integers(c), 1) for c in ((1, 0, 1), (1, 1, 1), (2, 3, 7), (0, 1))]
-    forward = find_polynomial_roots(RootProblem(tuple(factors)), 20)
-    backward = find_polynomial_roots(RootProblem(tuple(reversed(factors))), 20)
-    assert [r.decimal(20) for r in forward] == [r.decimal(20) for r in backward]
-
-
 def test_roots_very_close_to_an_axis_are_told_from_those_on_it():
     # s^2 + 1e-300 s + 1
     upper, _ = find_polynomial_roots(problem(10**300, 1, 10**300), 15)
@@ -217,16 +209,6 @@ def test_roots_too_close_to_be_told_apart_are_enclosed_as_one_and_not_certified(
         assert all(root.certified == (root.multiplicity == 1) for root in roots)
 
 
-def test_two_damped_pairs_1e_30_apart_are_told_apart():
-    # s^2 + s + 1 and s^2 + (1 + 1e-30) s + 1: the damping ratios are 1/2 and (1 + 1e-30)/2
-    for others in ([1], from_roots(range(1, 20))):
-        product = multiply(multiply([1, 1, 1], [1, 1 + TINY, 1]), others)
-        roots = [root for root in find_polynomial_roots(problem(*product), 10) if not root.is_real]
-        assert len(roots) == 4
-        for value in (Fraction(-1, 2), -(1 + TINY) / 2):
-            assert sum(contains(root.re, value) for root in roots) == 2, value
-
-
 def test_double_roots_by_a_hidden_relation_are_uncertified_discs():
     # (s - sqrt 2)^2 written so that exact steps, which do not know sqrt(2)^2 = 2, see no square
     polynomial = with_root_of_two(lambda root, one: (2 * one, -2 * root, one))
@@ -254,22 +236,6 @@ def test_double_roots_by_a_hidden_relation_are_uncertified_discs():
     roots = find_polynomial_roots(RootProblem(((first, 3), (PolynomialInS.from_integers([-2, 0, 1]), 1))), 20)
     assert [(r.multiplicity, r.certified) for r in roots] == [(1, True), (4, False)]
     assert roots[1].re.rad() < arb(10) ** -20
-
-
-def test_roots_at_zero_by_a_hidden_relation_are_enclosed():
-    # s^2 + s + (sqrt(2)^2 - 2)
-    polynomial = with_root_of_two(lambda root, one: (root**2 - 2, one, one))
-    near_zero, other = find_polynomial_roots(RootProblem(((polynomial, 1),)), 20)
-    assert near_zero.re.contains(0)
-    assert not near_zero.is_zero
-    assert near_zero.damping_ratio() is None
-    assert other.re.contains(-1)
-    # s^4 + s^2 + (sqrt(2)^2 - 2)
-    polynomial = with_root_of_two(lambda root, one: (root**2 - 2, 0 * one, one, 0 * one, one))
-    near_zero, upper, lower = find_polynomial_roots(RootProblem(((polynomial, 1),)), 20)
-    assert (near_zero.multiplicity, near_zero.certified) == (2, False)
-    assert upper.on_imaginary_axis
-    assert lower.im.contains(-1)
 
 
 def test_a_hidden_double_root_among_many_leaves_the_others_certified():
@@ -319,12 +285,6 @@ def test_every_engine_finds_as_many_roots_as_the_degree_and_all_agree():
                 assert one.enclosure().overlaps(other.enclosure()), (name, engine)
 
 
-def test_constants_with_a_hidden_relation_need_an_engine_that_bears_double_roots():
-    polynomial = with_root_of_two(lambda root, one: (2 * one, -2 * root, one))
-    roots = find_polynomial_roots(type(PROBLEMS["real"])(((polynomial, 1),)), 10, (propose_by_laguerre,))
-    assert [root.multiplicity for root in roots] == [2]
-
-
 # ---------------------------------------------------------------- Facts that hold for every polynomial
 
 
@@ -366,3 +326,9 @@ def test_roots_of_a_product_are_disjoint_and_as_multiple_as_in_its_square_free_f
     assert sorted(root.multiplicity for root in roots) == expected
     boxes = [root.enclosure() for root in roots]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_constants_with_a_hidden_relation_need_an_engine_that_bears_double_roots():
+    polynomial = with_root_of_two(lambda root, one: (2 * one, -2 * root, one))
+    roots = find_polynomial_roots(type(PROBLEMS["real"])(((polynomial, 1),)), 10, (propose_by_laguerre,))
+    assert [root.multiplicity for root in roots] == [2]
