@@ -8,7 +8,7 @@ from symflex.equations.elimination import is_singular, unreached
 from symflex.errors import Diagnostic, SymflexError
 from symflex.expressions import Sum
 from symflex.model.unused import unnamed_definitions, unused_name
-from symflex.transfer.of_model import FEW_UNKNOWNS, NEVER_LARGE, assemble_for_checks, derive_all
+from symflex.transfer.of_model import NEVER_LARGE, assemble_for_checks, derive_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
     from symflex.model import Model
 
+FEW_UNKNOWNS = 1_000
+"""Unknowns up to which a dense matrix of numbers takes a quarter of a second."""
 MOST_WARNINGS = 100
 """As many as problems, of which a reader stops at as many too."""
 

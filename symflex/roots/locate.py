@@ -53,7 +53,7 @@ from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Regio
 from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
 from symflex.roots.sheets import locate_on_sheet
 from symflex.transfer import BoundNested, bind
-from symflex.transfer.of_model import assemble, assemble_sparse, derive_all, derive_bound, may_be_expanded
+from symflex.transfer.of_model import assemble, assemble_sparse, derive_all, derive_bound, is_large_network
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -178,7 +178,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
         equations_of(bound), bound.name, pair, where, digits, is_default=is_default, energy=energy
     )
     is_open = not located.certificate.certified and located.certificate.code is None
-    if not is_open or not may_be_expanded(model, pair):
+    if not is_open or is_large_network(model, pair):
         return located
     # What resists the counts of a network may yield to those of its formula, where that is not too large.
     try:

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
 
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
-UNASKED = Terms(EXPANDED_TERMS, 10_000)
-"""The same of a distributed model, where the expanded form was not asked for: counted as it is multiplied
-out, since an estimate says little where one member's motion is another's. A second or two."""
 EXPANDED_PRODUCTS = 500
 """The same of a distributed model, where a term holds kernels of every member: four beams on springs have
 900, which print on 1,500 lines, three have 120."""
@@ -51,16 +48,15 @@ QUICK_PRODUCTS = 50
 """The same, beyond which roots are found faster without the expanded form: two links with a motor have 88."""
 CODE_MEMBERS = 4
 """Members up to which code of a formula keeps its digits; of ten equal spans it loses all of them."""
-MOST_PRODUCTS = 20_000
+MOST_PRODUCTS = 10_000
 """The same, beyond which nothing expanded fits into memory: five beams have 8,000, six 70,000."""
+UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)
+"""Limits of a distributed model's expanded form that was not asked for: counted as it is multiplied out, since
+an estimate says little where one member's motion is another's."""
 SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
 SPLIT = "solved as a network: where wavenumbers meet, code of the formula would lose digits"
 NEVER_LARGE = 20
-"""Elements of a lumped model up to which it is not estimated either."""
-FEW_MEMBERS = 2
-"""The same of distributed members."""
-FEW_UNKNOWNS = 1_000
-"""Unknowns up to which dense matrices of numbers take half a second."""
+"""Elements of a lumped model up to which its terms are not estimated."""
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
@@ -91,7 +87,7 @@ def assemble_for_checks(model: Model) -> Equations:
 
 def check_solvable(equations: Equations) -> None:
     """Raise the explanation when the equations have no unique solution."""
-    if equations.ring.is_sparse and len(equations.unknowns) > FEW_UNKNOWNS:
+    if equations.ring.is_sparse:
         from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
         eliminate(equations, equations.model.transfer_functions[:1])
@@ -197,11 +193,11 @@ def derive_as(
         return derive_all(model, pairs), ""
     solves = solves and model.is_distributed
     has_nested = model.is_distributed and not _is_expanded(model)
-    if _may_be_large(model, 1 if solves else FEW_MEMBERS):
+    if _may_be_large(model):
         equations = assemble_sparse(model)
         most = EXPANDED_PRODUCTS if model.is_distributed else EXPANDED_TERMS
         terms = _expanded_terms(equations, pairs[0])
-        if solves and terms <= most and (terms > CODE_PRODUCTS or _may_be_large(model, CODE_MEMBERS)):
+        if solves and terms <= most and (terms > CODE_PRODUCTS or _members(model) > CODE_MEMBERS):
             return nested_form.derive_nested(equations, pairs), SOLVED
         if terms > most:
             reason = f"in nested form: the expanded determinant would have {_some(terms)} terms"
@@ -211,9 +207,9 @@ def derive_as(
             return derive_nested(model, pairs), SPLIT
         derived = _derive_expanded(model, pairs, UNASKED if has_nested else None)
         # Where one beam's motion is another's, the estimate may be far too small.
-        if solves and _may_be_large(model, 1) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
+        if solves and _may_be_large(model) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
-        if is_read and _may_be_large(model, 1) and (terms := max(map(_terms, derived))) > READABLE_TERMS:
+        if is_read and _may_be_large(model) and (terms := max(map(_terms, derived))) > READABLE_TERMS:
             reason = f"in nested form: its formula would have {terms} terms (--representation expanded)"
             return derive_nested(model, pairs), reason
         return derived, ""
@@ -237,11 +233,11 @@ def _kernel_products(tf: TransferFunction) -> int:
     )
 
 
-def is_large_network(model: Model) -> bool:
-    """Tell whether a distributed model's expanded form is larger than anyone reads."""
+def is_large_network(model: Model, pair: tuple[str, str] | None = None) -> bool:
+    """Tell whether a distributed model's expanded form, of its first pair by default, is too large."""
     if not model.is_distributed or not _may_be_large(model):
         return False
-    return _expanded_terms(assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
+    return _expanded_terms(assemble_sparse(model), pair or model.transfer_functions[0]) > EXPANDED_PRODUCTS
 
 
 def _some(terms: float) -> str:
@@ -253,14 +249,15 @@ def _is_expanded(model: Model) -> bool:
     return is_tapered(model) or model.root is not None
 
 
-def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:
+def _may_be_large(model: Model) -> bool:
     """Tell whether the expanded form is worth an estimate; of tapered members there is no other yet."""
     if _is_expanded(model):
         return False
-    if not model.is_distributed:
-        return len(model.elements) > NEVER_LARGE
-    lines = sum(isinstance(use.element, LineElement) for use in model.elements)
-    return lines + len(model.fields) > few
+    return _members(model) > 1 if model.is_distributed else len(model.elements) > NEVER_LARGE
+
+
+def _members(model: Model) -> int:
+    return sum(isinstance(use.element, LineElement) for use in model.elements) + len(model.fields)
 
 
 def _expanded_terms(equations: Equations, pair: tuple[str, str]) -> float:
@@ -289,11 +286,6 @@ def derive_for_values(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[A
     return derive_all(model, pairs)
 
 
-def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
-    """Tell whether roots of a model with numbers may be sought in its expanded form: it is not too large."""
-    return _expanded_terms(assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
-
-
 def derive_for_roots(
     model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False, is_named: bool = False
 ) -> tuple[AnyBoundFunction, ...]:
@@ -306,7 +298,7 @@ def derive_for_roots(
     """
     if not model.is_distributed or _is_expanded(model):
         return derive_bound(model, pairs)
-    is_small = not _may_be_large(model, 1)
+    is_small = not _may_be_large(model)
     if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:
         return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
