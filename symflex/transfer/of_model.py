@@ -45,14 +45,15 @@ READABLE_TERMS = 100
 CODE_PRODUCTS = 8
 """The same of numeric code of several members: two beams at an angle have 12, and 90 kB of code."""
 QUICK_PRODUCTS = 50
-"""The same, beyond which roots are found faster without the expanded form: two links with a motor have 88."""
+"""The same, beyond which roots are found faster without the expanded form: two links with a motor have 88.
+Below, losses may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
 CODE_MEMBERS = 4
 """Members up to which code of a formula keeps its digits; of ten equal spans it loses all of them."""
 MOST_PRODUCTS = 10_000
 """The same, beyond which nothing expanded fits into memory: five beams have 8,000, six 70,000."""
 UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)
-"""Limits of a distributed model's expanded form that was not asked for: counted as it is multiplied out, since
-an estimate says little where one member's motion is another's."""
+"""Limits of a distributed model's expanded form that was not asked for, counted as it is multiplied out: an
+estimate says little where one member's motion is another's."""
 SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
 SPLIT = "solved as a network: where wavenumbers meet, code of the formula would lose digits"
 NEVER_LARGE = 20
