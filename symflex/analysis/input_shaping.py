@@ -193,7 +193,7 @@ def input_shaper(
         hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
         raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
     check_causal(bound.source.model, "an input shaper")
-    region = Modes(modes + MORE_MODES) if bound.is_distributed else Everything()
+    region = Everything() if bound.is_rational else Modes(modes + MORE_MODES)
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
     if modes < 1 or len(ringing) < modes:

@@ -80,7 +80,7 @@ def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
     plan = MeasurementPlan.of(given, model.analysis.band)
     (bound,) = derive_bound(model, pick_pairs(model, [given.tf] if given.tf else [])[:1])
     band = Band(Fraction(plan.low_hz) / 2, Fraction(plan.high_hz) * 2)
-    for pole in locate(bound, band if bound.is_distributed else None).poles:
+    for pole in locate(bound, None if bound.is_rational else band).poles:
         if pole.on_imaginary_axis and not pole.is_zero:
             message = f"{bound.name} has an undamped pole at {pole.frequency_hz():.4g} Hz"
             hint = "only damped systems have a stationary response"

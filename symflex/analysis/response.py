@@ -360,7 +360,7 @@ def respond(
     of_network = _network_turns(bound, grid, values) if isinstance(bound, BoundNested) else None
     if of_network is not None:
         turns = of_network
-    elif bound.is_distributed:
+    elif not bound.is_rational:
         turns = _follow_turns(bound, grid, values, roots)
     else:
         turns = count_turns(grid, values, locate(bound) if roots is None else roots)
@@ -508,7 +508,7 @@ def roots_if_found(
     The certificate says why where roots may be missing. Without a band all are sought, of a distributed
     system those of :func:`symflex.roots.default_region`. ``judged`` is another map of the same function.
     """
-    region = band if bound.is_distributed else None
+    region = None if bound.is_rational else band
     try:
         return locate(bound, region, judged=judged)
     except SymflexError as error:
@@ -538,7 +538,7 @@ def adaptive_grid(
     """
     if roots is None:
         check_band(low_hz, high_hz)
-        roots = locate(bound, Band(Fraction(low_hz), Fraction(high_hz)) if bound.is_distributed else None)
+        roots = locate(bound, None if bound.is_rational else Band(Fraction(low_hz), Fraction(high_hz)))
     return grid_about(roots, partial(evaluate, bound), low_hz, high_hz, points)
 
 

@@ -201,7 +201,7 @@ def _check(bound: BoundTransferFunction, difference: acb, size: acb) -> None:
 
 
 def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Continuous:
-    if not bound.is_distributed:
+    if bound.is_rational:
         sides = [[(f, e * sign) for f, e in bound.ratio.factors if e * sign > 0] for sign in (1, -1)]
         zeros, poles = (find_polynomial_roots(problem_of(bound, side), digits) for side in sides)
         num, den = EnclosedQuotient.of(bound, bits).multiplied_out()

@@ -197,7 +197,7 @@ class TransferFunction(_Derived):
     @property
     def is_distributed(self) -> bool:
         """True when waves or delays make the function transcendental, with infinitely many poles or zeros."""
-        return self.exact.is_distributed
+        return not self.exact.is_rational
 
     @property
     def hidden(self) -> tuple[tuple[sympy.Expr, int], ...]:
@@ -301,7 +301,7 @@ class TransferFunction(_Derived):
         if parameter not in symbols or of not in ("pole", "zero"):
             what = f"parameter '{parameter[:64]}'" if parameter not in symbols else f"root called '{of[:64]}'"
             raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
-        form = self.form("hyperbolic") if self.is_distributed else self._shortest
+        form = self._shortest if self.exact.is_rational else self.form("hyperbolic")
         if form.printed.laws:
             message = f"the waves of {self.name} have no formula, so its sensitivities have none either"
             raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
@@ -309,7 +309,7 @@ class TransferFunction(_Derived):
         return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])
 
     def __repr__(self) -> str:
-        if self.is_distributed:
+        if not self.exact.is_rational:
             return f"<TransferFunction {self.name}: {self.quantity}, distributed>"
         many = zip(counts_of(self.exact), ("zero", "pole"), strict=True)
         said = ", ".join(f"infinitely many {of}s" if n is None else counted(n, of) for n, of in many)
@@ -377,7 +377,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
     @property
     def is_distributed(self) -> bool:
         """True when the function is transcendental."""
-        return self.bound.is_distributed
+        return not self.bound.is_rational
 
     @property
     def _expanded(self) -> transfer_room.BoundTransferFunction:

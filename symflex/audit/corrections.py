@@ -432,7 +432,7 @@ def _multiples(part: Expression) -> Iterator[Expression]:
 
 def _derived_lines(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
     """Yield a line that is what the derived function has in its own: a wavenumber."""
-    derived = dict(print_form(tf).where) if tf.is_distributed else {}
+    derived = {} if tf.is_rational else dict(print_form(tf).where)
     for _ in derived:
         derived = {name: substitute(line, derived) for name, line in derived.items()}
     for i, (name, line) in enumerate(reading.formula.lines):

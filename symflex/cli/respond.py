@@ -83,7 +83,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     roots = None
     if signal is None:
         # With waves, poles are found only where they are needed for the last time anyway.
-        roots = roots_if_found(bound) if until is None or not bound.is_distributed else None
+        roots = roots_if_found(bound) if until is None or bound.is_rational else None
         last = until or Fraction(
             f"{max(default_until(bound, roots), default_until(free) if free else 0):.2g}"
         )

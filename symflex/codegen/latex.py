@@ -137,7 +137,7 @@ class LatexExporter:
         forms, sentences = print_forms(tfs, self.form)
         maps, warnings = [], list(sentences)
         for tf in tfs:
-            if isinstance(tf, NestedTransferFunction) and not tf.is_distributed:
+            if isinstance(tf, NestedTransferFunction) and tf.is_rational:
                 warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
             bound = _bound(tf)
             if bound is None:
@@ -155,7 +155,7 @@ def _bound(tf: AnyTransferFunction) -> AnyBoundFunction | None:
 
     Of large lumped models, which are nested, there is none either: their roots take too long for a print.
     """
-    if isinstance(tf, NestedTransferFunction) and not tf.is_distributed:
+    if isinstance(tf, NestedTransferFunction) and tf.is_rational:
         return None
     try:
         return bind_any(tf)

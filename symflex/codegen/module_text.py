@@ -50,7 +50,7 @@ FOLLOWED = (
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
-    if isinstance(tf, NestedTransferFunction) and tf.is_distributed:
+    if isinstance(tf, NestedTransferFunction) and not tf.is_rational:
         return (inert(_members_of(tf.model)),)
     form = _readable_form(tf)
     if form is not None:
@@ -63,7 +63,7 @@ def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
             return tuple(lines)
     if isinstance(tf, NestedTransferFunction):
         kind = f"nested expressions of {tf.size} operations"
-    elif tf.is_distributed:
+    elif not tf.is_rational:
         kind = f"sums of kernels of {tf.length} terms"
     else:
         above, below = tf.order
@@ -83,7 +83,7 @@ def _readable_form(tf: AnyTransferFunction) -> PrintedForm | None:
     """Return a function in its shortest form, ``None`` where that is known to be long."""
     if isinstance(tf, NestedTransferFunction):
         return print_form(tf) if tf.size <= NESTED_SIZE else None
-    if tf.length <= (KERNEL_TERMS if tf.is_distributed else FORMULA_TERMS):
+    if tf.length <= (FORMULA_TERMS if tf.is_rational else KERNEL_TERMS):
         return print_form(tf)
     if tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
         return print_form(tf, "definitions")

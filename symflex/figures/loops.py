@@ -365,7 +365,7 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     located = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
     response = respond(bound, adaptive_grid(bound, low, high, roots=located), located)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
-    if canvas.band_hz is None and not bound.is_distributed:
+    if canvas.band_hz is None and bound.is_rational:
         values = np.concatenate((values, _onwards(bound, high)))
     return values[np.isfinite(values)], located.verdict
 

@@ -58,7 +58,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     """
     band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
-    maps = [locate(bound, region if bound.is_distributed else None) for bound in bounds]
+    maps = [locate(bound, None if bound.is_rational else region) for bound in bounds]
     panels = [marks_of(located) for located in maps]
     count = len(panels)
     width = canvas.width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)

@@ -181,7 +181,7 @@ def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
     tf, accuracy = member.tf, member.verification.text()
     data = {"name": tf.name, "unit": tf.unit or "", "fixed": not is_closed(tf), "accuracy": accuracy}
     if isinstance(located, str):
-        return {**data, "why": located, "poles": [], "zeros": [], "infinite": tf.is_distributed}
+        return {**data, "why": located, "poles": [], "zeros": [], "infinite": not tf.is_rational}
     data |= {"why": "", "infinite": located.is_infinite, "certified": located.certificate.certified}
     verdict = {"sentence": located.verdict.sentence, "word": located.verdict.word}
     roots = {"poles": _upper(located.all_poles), "zeros": _upper(located.zeros)}

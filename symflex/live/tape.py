@@ -79,7 +79,7 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
         return {"refused": reason}
     try:
         bound = bind(tf)
-        located = locate(bound, Modes(modes + 2) if tf.is_distributed else Everything(), digits=17)
+        located = locate(bound, Everything() if tf.is_rational else Modes(modes + 2), digits=17)
         sides = {"poles": list(_parts(tf, bound, 1)), "zeros": list(_parts(tf, bound, 0))}
     except SymflexError as error:
         return {"refused": error.diagnostics[0].message}

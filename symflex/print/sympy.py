@@ -88,7 +88,7 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     """
     from sympy.physics.control import TransferFunction as SympyTransferFunction  # takes a while
 
-    if function.is_distributed:
+    if not function.is_rational:
         raise not_rational(function.name)
     numbers: dict[str, Expression] = {}
     if isinstance(function, BoundTransferFunction):

@@ -65,7 +65,7 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
     if explained.kind == "colocated" and explained.status == "proved" and _is_passive(tf.model):
         reason = f"the zeros are the poles of the same passive structure with {explained.held}"
         return PhaseCondition("always", reason)
-    if tf.is_distributed:
+    if not tf.is_rational:
         if _has_one_scale(tf):
             reason = "the parameters only scale the s plane: all zeros move along rays from the origin"
             return PhaseCondition("as given", reason)

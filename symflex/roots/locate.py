@@ -94,13 +94,13 @@ def locate(
     if bound.sheets > 1:
         if IMAGINARY in bound.ratio.ring.index:
             check_causal(bound.source.model, "a search on the sheets of a root of s")
-        where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
-        is_default = bound.is_distributed and (region is None or isinstance(region, Everything))
+        where = region or Everything() if bound.is_rational else _region_of(bound, region)[0]
+        is_default = not bound.is_rational and (region is None or isinstance(region, Everything))
         return replace(locate_on_sheet(bound, where, digits, locate), is_default_region=is_default)
     if IMAGINARY in bound.ratio.ring.index:
-        where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
+        where = region or Everything() if bound.is_rational else _region_of(bound, region)[0]
         return locate_lossy(bound, where, digits, locate)
-    if bound.is_distributed:
+    if not bound.is_rational:
         located = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
         if located.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
             return located

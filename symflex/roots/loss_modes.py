@@ -102,11 +102,11 @@ def locate_lossy(
     reason: str | None = None
     engine, missing = POLYNOMIAL, 0
     is_lossy = has_loss_factors(bound.source.model)
-    if bound.is_distributed and not is_lossy:
+    if not bound.is_rational and not is_lossy:
         message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
         hint = "its frequency response shows them (plot bode)"
         raise UncertifiedError(Diagnostic("SF404", message, None, hint))
-    if bound.is_distributed:
+    if not bound.is_rational:
         followed, engine = _followed(bound, region, digits, locate), FOLLOWED
         roots_of_sides = [[r for r in side.roots if not r.im < 0] for side in followed]
         missing = sum(side.missing for side in followed)
@@ -114,9 +114,9 @@ def locate_lossy(
     else:
         every = (*sides, cancelled(bound))
         roots_of_sides = [_of_polynomials(bound, x.factors, digits, is_lossy=is_lossy) for x in every]
-    cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
+    cause = "coincident" if not bound.is_rational and followed[2].is_shared else "cancelled"
     poles, zeros = (_inside(region, roots) for roots in roots_of_sides[:2])
-    concealed = _inside(_among(poles, region) if bound.is_distributed else region, roots_of_sides[2])
+    concealed = _inside(region if bound.is_rational else _among(poles, region), roots_of_sides[2])
     total = count_roots((*poles, *zeros, *concealed))
     verdict = NO_STABILITY
     if not is_lossy:
@@ -130,7 +130,7 @@ def locate_lossy(
         tuple(HiddenRoot(root, cause) for root in concealed),
         Certificate(engine, total + missing, total, reason),
         digits,
-        is_infinite=bound.is_distributed,
+        is_infinite=not bound.is_rational,
         verdict=verdict,
     )
 

@@ -70,7 +70,7 @@ def locate_on_sheet(
     mixed = _part(plain, lambda f: not _is_whole(bound, f), 1)
     count = region.count if isinstance(region, Modes) else getattr(region, "number", 0)
     high = 1.0
-    if not bound.is_distributed:
+    if bound.is_rational:
         located = locate(mixed, Everything(), digits)
     else:
         if count:

@@ -37,7 +37,7 @@ def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:
     is_opened = not isinstance(tf, TransferFunction) and any(
         value.denominator().depends_on(LAPLACE) for _, value in definitions
     )
-    determinant = None if tf.is_distributed or is_opened else partial(_determinant, tf)
+    determinant = partial(_determinant, tf) if tf.is_rational and not is_opened else None
     return Agreement((source.output.name, source.input.name), partial(_values, tf), determinant)
 
 
@@ -47,12 +47,12 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
     if (closed := _closed(tf)) is not None:
         num, den = _sides(closed, here, known)
         values.append(num / den)
-    if tf.is_distributed:
+    if not tf.is_rational:
         whole, num, den = _with_kernels(tf, here, known)
         values += [whole, num / den]
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
         values.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
-    if not isinstance(tf, TransferFunction) and not tf.is_distributed:
+    if not isinstance(tf, TransferFunction) and tf.is_rational:
         values.append(replace(tf.enclosed(current_bits()), root=None)(here.s()))
     return values
 

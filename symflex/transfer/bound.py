@@ -159,9 +159,9 @@ class BoundTransferFunction:
         return tuple((declared | dict(self.values)).items())
 
     @property
-    def is_distributed(self) -> bool:
-        """True when the function is transcendental."""
-        return bool(self.kernels)
+    def is_rational(self) -> bool:
+        """True when the function holds no kernels: a quotient of polynomials in s, or in a root of s."""
+        return not self.kernels
 
     @property
     def is_zero(self) -> bool:

@@ -354,7 +354,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
         message = f"block '{block.name}' holds no model"
         raise ValueError(message)
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
-    if tf.is_distributed or tf.model.root:
+    if not tf.is_rational or tf.model.root:
         message = (
             f"block '{block.name}' stands for a distributed system or a root of s, which no block can hold"
         )

@@ -139,9 +139,9 @@ class NestedTransferFunction:
         return self.num == 0
 
     @property
-    def is_distributed(self) -> bool:
-        """True when fundamental functions of beams, rods, fields or delays are among the generators."""
-        return bool(self.waves)
+    def is_rational(self) -> bool:
+        """True without fundamental functions of beams, rods, fields or delays."""
+        return not self.waves
 
     @property
     def is_nameless(self) -> bool:
@@ -258,9 +258,9 @@ class BoundNested:
         return self.source.is_zero
 
     @property
-    def is_distributed(self) -> bool:
-        """True when the function is transcendental."""
-        return self.source.is_distributed
+    def is_rational(self) -> bool:
+        """True when the function is a quotient of polynomials in s."""
+        return self.source.is_rational
 
     @cached_property
     def _enclosures(self) -> dict[str, Callable[[], arb]]:
@@ -334,7 +334,7 @@ class BoundNested:
         import numpy as np  # binding and ball arithmetic need none of it
 
         points = np.asarray(s, dtype=complex)
-        if self.source.is_distributed and self.source.cut is not None:
+        if not self.source.is_rational and self.source.cut is not None:
             return self._solved(self.source.cut, points)
         with precision(CONSTANT_BITS):
             known: dict[str, Any] = {

@@ -275,7 +275,7 @@ class _Draw:
         if isinstance(tf, NestedTransferFunction):
             nested = BoundNested(tf, exact)
             return lambda _, bits: nested.enclosed(bits), None
-        if not tf.is_distributed:
+        if tf.is_rational:
             return _lumped(tf, values), None
         bound = BoundTransferFunction(tf, exact, tf.ratio, (), tf.kernels)
         if any(d.matrix for d in tf.kernels.dispersions):

@@ -139,7 +139,7 @@ class TransferFunction:
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def __repr__(self) -> str:
-        kind = ", distributed" if self.is_distributed else ""
+        kind = "" if self.is_rational else ", distributed"
         return f"<TransferFunction {self.name}: {self.quantity}{kind}>"
 
     @property
@@ -189,9 +189,9 @@ class TransferFunction:
         return self.ratio.denominator() if self.parts is None else self.parts[1]
 
     @property
-    def is_distributed(self) -> bool:
-        """True when the function is transcendental: it holds kernels besides s."""
-        return bool(self.kernels)
+    def is_rational(self) -> bool:
+        """True when the function holds no kernels: a quotient of polynomials in s, or in a root of s."""
+        return not self.kernels
 
     @cached_property
     def is_nameless(self) -> bool:

@@ -115,7 +115,7 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, located: PoleZeroM
     case = _Case(given, pair, equations, Determinants.of(equations))
     explained = _by_coordinate(case) or _by_condition(case) or _by_terminals(case)
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
-    has_zeros = bound.is_distributed or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
+    has_zeros = not bound.is_rational or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
     complete = replace(explained or plain, has_zeros=has_zeros, has_hidden=bool(bound.hidden))
     return _with_roots(case, complete, located)
 

@@ -204,7 +204,7 @@ class _ModeSearch:
         region: Region | None = None
         if isinstance(self.bound, BoundNested) and self._maps:
             region = next(iter(self._maps))[0]  # a disc holds all roots below: one search serves them all
-        elif self.bound.is_distributed:
+        elif not self.bound.is_rational:
             frequency = Fraction(root.frequency_hz())
             region = Band(frequency * (1 - NEIGHBOURHOOD), frequency * (1 + NEIGHBOURHOOD))
         try:

@@ -79,14 +79,14 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     if modes < 0:
         raise UsageError(Diagnostic("SF902", f"the number of modes cannot be {modes}"))
     for further in FURTHER:
-        region = Modes(modes + further) if bound.is_distributed else Everything()
+        region = Everything() if bound.is_rational else Modes(modes + further)
         located = locate(bound, region, digits)
         poles, left_out = _lowest(located, modes)
-        if left_out or not bound.is_distributed:
+        if left_out or bound.is_rational:
             break
     omitted = min((root.frequency_hz() for root in left_out), default=None)
     zeros, above = _zeros_below(bound, located, omitted, digits)
-    is_exact = not left_out and not bound.is_distributed
+    is_exact = not left_out and bound.is_rational
     if not is_exact:
         zeros = _no_more_than(zeros, count_roots(poles))
     excess = max(count_roots(zeros) - count_roots(poles), 0) if is_exact else 0
@@ -112,7 +112,7 @@ def _zeros_below(
     zeros = located.zeros
     if limit_hz is None:
         return zeros, zeros
-    if bound.is_distributed and all(root.frequency_hz() < limit_hz for root in zeros):
+    if not bound.is_rational and all(root.frequency_hz() < limit_hz for root in zeros):
         # There may be more of them below the limit than were asked for.
         zeros = locate(bound, Band(Fraction(0), Fraction(limit_hz)), digits).zeros
     return tuple(takewhile(lambda root: root.frequency_hz() < limit_hz, zeros)), zeros
@@ -173,7 +173,7 @@ def approximate(
         check_band(*band)
     if not isinstance(bound, BoundNested):
         bound = without_lengths_of_zero(bound)
-    elif not bound.is_distributed:
+    elif bound.is_rational:
         bound = of_numbers(bound)
     if bound.is_zero:
         message = f"{bound.name} is identically zero"

@@ -337,7 +337,7 @@ def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[
 
     Numerator and denominator are as smooth in s there as anywhere: values on a circle tell them.
     """
-    if not bound.is_distributed:
+    if bound.is_rational:
         return None
     sides = [KernelFunction(bound, value) for value in (bound.num, bound.den)]
     above, below = (side.part for side in sides)

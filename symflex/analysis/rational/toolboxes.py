@@ -189,7 +189,7 @@ class ExactFunction(RationalFunction):
 
     def __init__(self, bound: BoundTransferFunction, *, is_minimal: bool = False) -> None:
         check_causal(bound.source.model, "a system of a toolbox")
-        if bound.is_distributed:
+        if not bound.is_rational:
             raise not_rational(bound.name)
         self._bound = bound
         self._is_minimal = is_minimal

@@ -121,7 +121,7 @@ def time_response(
     integrations = INTEGRATIONS[kind]
     if bound.is_zero or not len(times):
         sampled = Sampled((arb(0),) * len(times))
-    elif isinstance(bound, BoundNested) and bound.is_distributed:
+    elif isinstance(bound, BoundNested) and not bound.is_rational:
         sampled = _of_network(bound, integrations, times)
     else:
         written = of_numbers(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
@@ -234,7 +234,7 @@ def _answer(asked: Asked) -> Sampled:
 
 
 def _by_partial_fractions(asked: Asked) -> Plan | Refused:
-    return Refused() if asked.bound.is_distributed else partial(_of_lumped, asked)
+    return partial(_of_lumped, asked) if asked.bound.is_rational else Refused()
 
 
 def _by_echoes(asked: Asked) -> Plan | Refused:
@@ -256,7 +256,7 @@ def _by_settling(asked: Asked) -> Plan | Refused:
 
 
 def _by_wave_echoes(asked: Asked) -> Plan | Refused:
-    if not asked.bound.is_distributed or asked.quotient is not None:
+    if asked.bound.is_rational or asked.quotient is not None:
         return Refused()
     waves = wave_quotient(asked.bound)
     if waves is None:
@@ -277,14 +277,14 @@ def _by_delays(asked: Asked) -> Plan | Refused:
 def _by_modes(
     find: Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused], asked: Asked
 ) -> Plan | Refused:
-    if asked.has_delays or not asked.bound.is_distributed:
+    if asked.has_delays or asked.bound.is_rational:
         return Refused("there is a delay in a loop")
     bound = find(asked.bound, asked.integrations)
     return bound if isinstance(bound, Refused) else partial(_summed, asked, *bound)
 
 
 def _by_estimate(asked: Asked) -> Plan | Refused:
-    if not asked.bound.is_distributed:
+    if asked.bound.is_rational:
         return Refused()
     return partial(estimated, asked.bound, asked.integrations, asked.times)
 

@@ -194,7 +194,7 @@ def default_until(bound: AnyBoundFunction, roots: PoleZeroMap | None = None) -> 
 
 
 def _delays(bound: AnyBoundFunction) -> list[float]:
-    if isinstance(bound, BoundNested) or not bound.is_distributed:
+    if isinstance(bound, BoundNested) or bound.is_rational:
         return []
     evaluator, delays = bound.kernel_values(), []
     values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}

@@ -105,7 +105,7 @@ class Asked:
     @cached_property
     def quotient(self) -> DelayedQuotient | None:
         """The function as a quotient of delays; None if it holds anything else."""
-        return delayed_quotient(self.bound) if self.bound.is_distributed else None
+        return None if self.bound.is_rational else delayed_quotient(self.bound)
 
 
 class Gathered:

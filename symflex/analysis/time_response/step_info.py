@@ -160,7 +160,7 @@ def find_step_info(
     bound = without_lengths_of_zero(bound)
     if bound.is_zero or bound.sheets > 1:
         return None
-    if bound.is_distributed:
+    if not bound.is_rational:
         return _of_modes(bound, modes)
     wanted = 2 * digits + MORE_DIGITS
     poles = find_polynomial_roots(

@@ -279,8 +279,8 @@ def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
 
 def is_closed(tf: AnyTransferFunction) -> bool:
     """Tell whether a function is a short closed expression, not the solution of equations at every s."""
-    if isinstance(tf, NestedTransferFunction) or not tf.is_distributed:
-        return not tf.is_distributed
+    if isinstance(tf, NestedTransferFunction) or tf.is_rational:
+        return tf.is_rational
     is_followed = any(law.matrix for law in tf.kernels.dispersions)
     return not tf.is_nameless and not is_followed and tf.length <= CLOSED_TERMS
 
@@ -314,7 +314,7 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
     analysis = bound.source.model.analysis
     if up_to is None and analysis.band is not None:
         up_to = analysis.band[1]
-    if not bound.is_distributed:
+    if bound.is_rational:
         return locate(bound, Everything(), DIGITS), up_to or LUMPED_END
     if up_to is not None:
         return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to

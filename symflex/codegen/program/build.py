@@ -106,7 +106,7 @@ def forge_of(model: Model) -> Forge:
 def available_forms(tf: TransferFunction) -> tuple[str, ...]:
     """Return the forms a lumped transfer function can be evaluated in, the preferred one first."""
     forms: list[str] = []
-    if tf.is_distributed:
+    if not tf.is_rational:
         return ()
     if (closed := tf.closed) is not None and not tf.is_zero:
         used = [value for name, value in tf.definitions if name in closed.generators]
@@ -277,7 +277,7 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
 
     Raises BudgetError: SF503 when it would be too large.
     """
-    if tf.is_distributed and tf.cut is not None:
+    if not tf.is_rational and tf.cut is not None:
         return _build_solved(tf, tf.cut.network)
     size = tf.size
     if size > OPERATION_LIMIT:

@@ -255,7 +255,7 @@ def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
     band = tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     pieces = None
-    if not isinstance(tf, NestedTransferFunction) and tf.is_distributed and not tf.is_zero:
+    if not isinstance(tf, NestedTransferFunction) and not tf.is_rational and not tf.is_zero:
         values = {p.name: double_of(p.value) for p in tf.parameters if p.value}
         pieces = Pieces(tf, None if missing else values)
     if missing:
@@ -372,7 +372,7 @@ def sample_frequencies(
     The ``pieces`` are those of a distributed system where it has been begun to make them.
     """
     low, high = float(band_hz[0]), float(band_hz[1])
-    is_costly = isinstance(bound, BoundNested) and bound.source.is_distributed
+    is_costly = isinstance(bound, BoundNested) and not bound.source.is_rational
     centers = _centers(bound, low, high, pieces)
     return _frequencies(band_hz, samples, centers, ASIDE[::2] if is_costly else ASIDE)
 
@@ -442,7 +442,7 @@ def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
 
 def _part(bound: BoundTransferFunction | BoundNested) -> float:
     """Return which part of the usual number of frequencies is looked at."""
-    if isinstance(bound, BoundNested) and bound.source.is_distributed:
+    if isinstance(bound, BoundNested) and not bound.source.is_rational:
         return LEAST
     if isinstance(bound, BoundNested):
         return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))

@@ -141,7 +141,7 @@ def _arranged(
 
         if (own := _proposed(tf, own_form(tf))) is not None:
             return own
-    if tf.is_distributed:
+    if not tf.is_rational:
         made = _distributed(tf, form, digits, arranged or Arranged())
     else:
         made = _lumped(tf, form, digits, arranged)
@@ -172,7 +172,7 @@ def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: 
         return replace(min(made, key=_length), source=own)
 
     closed, opened = arranged.definitions.of(tf), shortest(tf)
-    if closed is None or not closed.is_distributed:
+    if closed is None or closed.is_rational:
         return opened
     kept = shortest(closed)
     return opened if MORE * _length(opened) < _length(kept) else kept
@@ -346,7 +346,7 @@ def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
     >>> terms_to_print(pipeline.derive_all(model)[0], "polynomial")
     3
     """
-    if isinstance(tf, NestedTransferFunction) or tf.is_distributed or form == "zpk":
+    if isinstance(tf, NestedTransferFunction) or not tf.is_rational or form == "zpk":
         return 0
     closed = tf.closed if form in (None, "definitions") and tf.length > LARGE else None
     return tf.length if closed is None else len(closed.num) + len(closed.den)
@@ -354,7 +354,7 @@ def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
 
 def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     candidates: tuple[str, ...] = CANDIDATES
-    if tf.is_distributed:
+    if not tf.is_rational:
         candidates = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
     return candidates if tf.length <= LARGE else candidates[:1]
 

@@ -35,7 +35,7 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     closed form, and the expanded polynomial rewritten in the definitions by exact division. Functions with
     kernels are printed as in the hyperbolic form.
     """
-    if tf.is_distributed:
+    if not tf.is_rational:
         return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):
         return PrintedForm("definitions", *_from_closure(tf, tf.closed))

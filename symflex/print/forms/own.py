@@ -54,7 +54,7 @@ SIMPLE: Final = 64
 def own_form(tf: TransferFunction) -> PrintedForm | None:
     """Return a form in one's own names, None if no factor of the function is one in them."""
     lines = tf.model.analysis.print
-    if tf.is_distributed or tf.is_large:
+    if not tf.is_rational or tf.is_large:
         return None
     in_names, made = _products_of(tf), factored_form(tf)
     front, powers = powers_of(quotient(made.num, made.den))

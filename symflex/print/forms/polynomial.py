@@ -36,7 +36,7 @@ def polynomial_form(tf: TransferFunction) -> PrintedForm:
     """
     notation = Notation({}, ())
     arranger = plain_printer(tf, tf.ratio.ring).arranger
-    if tf.is_distributed:
+    if not tf.is_rational:
         notation = notation_of(tf, tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors), Naming.of(tf))
         arranger = kernel_printer(tf, notation).arranger
     num, den = (arranger.collected(side.expand()) for side in (tf.ratio.numerator(), tf.ratio.denominator()))
@@ -93,7 +93,7 @@ def factored_form(tf: TransferFunction) -> PrintedForm:
     Powers of polynomials in roots are found too: ``m*s^2 + 2*sqrt(k*m)*s + k`` is a square. Of functions
     with kernels the trigonometric factors too.
     """
-    if tf.is_distributed:
+    if not tf.is_rational:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))

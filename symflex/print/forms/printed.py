@@ -123,7 +123,7 @@ def functions_in(form: PrintedForm) -> dict[str, str]:
 
 def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     """Return the forms a transfer function has."""
-    if not tf.is_distributed:
+    if tf.is_rational:
         return RATIONAL
     return WITHOUT_FORMULA if not tf.has_formula else DISTRIBUTED
 
@@ -161,9 +161,9 @@ def require(tf: TransferFunction, form: str) -> None:
     """
     if form in ("zpk", "frequency") and tf.model.root is not None:
         reason = "it holds roots of s"
-    elif form in KERNELS_ONLY and not tf.is_distributed:
+    elif form in KERNELS_ONLY and tf.is_rational:
         reason = "it is a rational function of s"
-    elif form in RATIONAL_ONLY and tf.is_distributed:
+    elif form in RATIONAL_ONLY and not tf.is_rational:
         reason = "it is not a rational function of s"
     elif form in FORMULA_ONLY and not tf.has_formula:
         reason = "the exponents of its field equations have no formula"

@@ -59,8 +59,8 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     ... outputs.y = "u/(1 + D)"
     ... ''')
     >>> bound = pipeline.derive_bound(model, model.transfer_functions)[0]
-    >>> without_lengths_of_zero(bound).is_distributed
-    False
+    >>> without_lengths_of_zero(bound).is_rational
+    True
     """
     gone = [kernel for kernel in bound.kernels.kernels if kernel.length.is_zero]
     if not gone:
