@@ -208,6 +208,7 @@ class ModeShape:
         return picture_of_shape(self.model, self.enclosed)
 
     def __repr__(self) -> str:
-        damping = self.damping_ratio
+        damping, factor = self.damping_ratio, self.enclosed.pole.loss_factor()
         damped = f", damping ratio {damping:.4g}" if damping else ""
+        damped = damped if factor is None else f", loss factor {float(factor.mid()):.4g}"
         return f"<ModeShape at {self.frequency_hz:.6g} Hz{damped}, {self.reference} = 1>"

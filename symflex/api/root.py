@@ -309,6 +309,12 @@ class Sensitivity:
         damping_ratio = self.moved.damping_ratio
         return None if damping_ratio is None else to_mpmath(damping_ratio)
 
+    @property
+    def loss_factor(self) -> mpmath.mpf | None:
+        """deta/dp of the loss factor [1 per unit of the parameter]; ``None`` in models without any."""
+        loss_factor = self.moved.loss_factor
+        return None if loss_factor is None else to_mpmath(loss_factor)
+
     def __repr__(self) -> str:
         if self.moved.derivative is None:
             return f"<Sensitivity of a {self.kind} to {self.parameter}: {self.status}>"

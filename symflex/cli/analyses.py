@@ -52,7 +52,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         pair = first_pair(model, given.tf, "showing")
         shown = given.digits or model.analysis.digits or 15
         is_explained = bool(given.sensitivity) or given.explain
-        (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=is_explained, is_named=is_explained)
+        (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=given.explain, is_named=is_explained)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()

@@ -147,7 +147,7 @@ def draw_shapes(
 
 
 def heading(shape: EnclosedModeShape) -> str:
-    r"""Return natural frequency and damping ratio of a mode, or its pole where that is real.
+    r"""Return natural frequency and damping ratio, or loss factor, of a mode, or its pole if that is real.
 
     Examples
     --------
@@ -163,8 +163,9 @@ def heading(shape: EnclosedModeShape) -> str:
     if pole.is_real:
         return f"$s = {label_of_value(float(pole.re.mid()), 4)}$ rad/s{unstable}"
     frequency = f"${label_of_value(pole.frequency_hz(), 4)}$ Hz"
-    damping = pole.damping_ratio()
-    return rf"{frequency}, $\zeta = {label_of_value(damping, 3)}${unstable}" if damping else frequency
+    factor = pole.loss_factor()
+    name, damping = (r"\zeta", pole.damping_ratio()) if factor is None else (r"\eta", float(factor.mid()))
+    return rf"{frequency}, ${name} = {label_of_value(damping, 3)}${unstable}" if damping else frequency
 
 
 def label_of_value(value: float, digits: int) -> str:

@@ -39,6 +39,8 @@ WITH_ROOTS = (
     "a step response",
 )
 """What is available with roots of s."""
+WITH_LOSSES = ("a sensitivity", "a mode shape")
+"""What is available with loss factors and complex coefficients, as it asks the equations at a root alone."""
 LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
 """Values of elements that their loss factor multiplies."""
 
@@ -127,12 +129,12 @@ def check_causal(model: object, what: str) -> None:
         hint = "formulas, frequency responses, responses in time, poles, zeros, stable gains and code are"
         raise ModelError(Diagnostic("SF910", message, None, hint))
     unit = getattr(model, "imaginary", None)
-    if unit is None:
+    if unit is None or what in WITH_LOSSES:
         return
     message = f"{what} is not available with loss factors (j): these hold only on s = j*omega, omega > 0"
     hint = (
-        "formulas, frequency responses, modes (roots) and numpy code are available; "
-        "a damper or eta in seconds holds at every s"
+        "formulas, frequency responses, modes (roots), their shapes and sensitivities, and numpy code are "
+        "available; a damper or eta in seconds holds at every s"
     )
     if not has_loss_factors(cast("Model", model)):
         message = f"{what} is not available with complex coefficients (j)"

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.equations.elimination import free_at_rest
-from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedError
+from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
-from symflex.model.loss_factors import check_causal
+from symflex.model.loss_factors import check_causal, has_loss_factors
 from symflex.model.model import IMAGINARY
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.distributed.proof import TOUCHING, limits
@@ -30,7 +30,7 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.exact_zeros import is_shared_exactly
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.loss_modes import locate_lossy
+from symflex.roots.loss_modes import NO_STABILITY, check_searched, locate_lossy
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
@@ -164,19 +164,18 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
 
     source = bound.source
-    if source.model.imaginary:
-        message = f"modes of {bound.name} are not searched: its closed form is too large with j"
-        hint = "its frequency response shows them (plot bode); or let equal parts share their parameters"
-        raise UncertifiedError(Diagnostic("SF404", message, source.model.imaginary.span, hint))
     model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
         return locate(of_numbers(bound), region, digits)
+    check_searched(bound)
     where, is_default = _region_of(bound, region)
     energy = energy_proof(source.model, bound.values, source.output)
     located = locate_in_network(
         equations_of(bound), bound.name, pair, where, digits, is_default=is_default, energy=energy
     )
+    if has_loss_factors(model):
+        located = replace(located, verdict=NO_STABILITY)
     is_open = not located.certificate.certified and located.certificate.code is None
     if not is_open or is_large_network(model, pair):
         return located

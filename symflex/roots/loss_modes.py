@@ -38,7 +38,7 @@ from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, St
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
-from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, count_roots, overlap
+from symflex.roots.root import FLOAT_BITS, ROUNDING, LossyRoot, Root, count_roots, overlap
 from symflex.transfer import bind
 from symflex.transfer.of_model import derive_all
 
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.roots.region import Region
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 NO_STABILITY: Final = StabilityVerdict(
     "unknown",
@@ -69,23 +69,6 @@ DOUBLINGS: Final = 5
 GUARD_BITS: Final = 40
 
 
-@dataclass(frozen=True, slots=True)
-class LossyRoot(Root):
-    """A root of a function with loss factors: ``s^2 = -omega_r^2 (1 + j eta_r)``."""
-
-    def natural_frequency(self) -> arb:
-        """Return omega_r [rad/s], abs(s) where s^2 has no negative real part."""
-        with precision(self.working_bits()):
-            square = self.im**2 - self.re**2
-            return square.sqrt() if square > 0 else abs(self.enclosure())
-
-    def loss_factor(self) -> arb | None:
-        """Return eta_r; None where s^2 has no negative real part."""
-        with precision(self.working_bits()):
-            square = self.im**2 - self.re**2
-            return -2 * self.re * self.im / square if square > 0 else None
-
-
 def locate_lossy(
     bound: BoundTransferFunction,
     region: Region,
@@ -102,11 +85,8 @@ def locate_lossy(
     reason: str | None = None
     engine, missing = POLYNOMIAL, 0
     is_lossy = has_loss_factors(bound.source.model)
-    if not bound.is_rational and not is_lossy:
-        message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
-        hint = "its frequency response shows them (plot bode)"
-        raise UncertifiedError(Diagnostic("SF404", message, None, hint))
     if not bound.is_rational:
+        check_searched(bound)
         followed, engine = _followed(bound, region, digits, locate), FOLLOWED
         roots_of_sides = [[r for r in side.roots if not r.im < 0] for side in followed]
         missing = sum(side.missing for side in followed)
@@ -133,6 +113,14 @@ def locate_lossy(
         is_infinite=not bound.is_rational,
         verdict=verdict,
     )
+
+
+def check_searched(bound: AnyBoundFunction) -> None:
+    """Raise UncertifiedError, SF404, for waves or delays with complex coefficients that are no losses."""
+    if bound.source.model.imaginary and not has_loss_factors(bound.source.model):
+        message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
+        hint = "its frequency response shows them (plot bode)"
+        raise UncertifiedError(Diagnostic("SF404", message, None, hint))
 
 
 def _inside(region: Region, roots: Sequence[Root]) -> tuple[Root, ...]:
@@ -163,7 +151,7 @@ def _of_polynomials(
         g, h = g // common, h // common
         if not h.is_zero() and (degree_in(g, 0) or degree_in(h, 0)):
             roots += _apart(bound, g, h, abs(exponent), digits)
-    return [_lossy(r) for r in roots if not r.im < 0] if is_lossy else roots
+    return [LossyRoot.of(r) for r in roots if not r.im < 0] if is_lossy else roots
 
 
 def _apart(
@@ -190,11 +178,6 @@ def _vanishes(bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, root: 
         real, imaginary = (summed(terms_of(f), ring.names, values.__getitem__, acb(1)) for f in (g, h))
         ours, theirs = (bool((real + acb(0, sign) * imaginary).contains(0)) for sign in (1, -1))
         return None if ours == theirs else ours
-
-
-def _lossy(root: Root) -> Root:
-    on_axis, is_real, certified = root.on_imaginary_axis, root.is_real, root.certified
-    return LossyRoot(root.re, root.im, root.multiplicity, on_axis, is_real, certified)
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,13 +264,13 @@ def _side(
         plain, _ = split_off_kernels(part, bound.kernels)
         return _Followed(_of_polynomials(bound, plain.factors, digits))
     if not _is_lossy(bound, part):
-        return _Followed([_lossy(root) for root in roots], 0, reason, [_lossy(root) for root in shared])
+        return _Followed([*map(LossyRoot.of, roots)], 0, reason, [*map(LossyRoot.of, shared)])
     bits = int(digits * 3.33) + GUARD_BITS
     function, moved, factor = _series(bound, part, bits), list[Root](), arb(0)
     extra = list[Root]()
     for root in sorted((*roots, *shared), key=_size):
         if root.is_zero:
-            moved.append(_lossy(root))
+            moved.append(LossyRoot.of(root))
             continue
         lossy = _moved(function, root, factor, bits) or _moved(function, root, arb(0), bits)
         if lossy is not None and not any(overlap(lossy, other) for other in (*moved, *extra)):

@@ -181,8 +181,8 @@ def _hull(balls: Sequence[arb]) -> arb:
 
 
 def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
-    """Sort by natural frequency, real part, imaginary part downwards; overlapping balls count as equal."""
-    keyed = [(root.natural_frequency(), root) for root in roots]
+    """Sort by abs(s), real part, imaginary part downwards; overlapping balls count as equal."""
+    keyed = [(root.size(), root) for root in roots]
 
     def compare(a: tuple[arb, Root], b: tuple[arb, Root]) -> int:
         x, y = float(a[0].mid()), float(b[0].mid())

@@ -155,6 +155,29 @@ class Root:
         return decimals(self.re, self.im, digits)
 
 
+@dataclass(frozen=True, slots=True)
+class LossyRoot(Root):
+    """A root of a function with loss factors: ``s^2 = -omega_r^2 (1 + j eta_r)``."""
+
+    @staticmethod
+    def of(root: Root) -> LossyRoot:
+        """Return the same root."""
+        on_axis, is_real, certified = root.on_imaginary_axis, root.is_real, root.certified
+        return LossyRoot(root.re, root.im, root.multiplicity, on_axis, is_real, certified)
+
+    def natural_frequency(self) -> arb:
+        """Return omega_r [rad/s], abs(s) where s^2 has no negative real part."""
+        with precision(self.working_bits()):
+            square = self.im**2 - self.re**2
+            return square.sqrt() if square > 0 else abs(self.enclosure())
+
+    def loss_factor(self) -> arb | None:
+        """Return eta_r; None where s^2 has no negative real part."""
+        with precision(self.working_bits()):
+            square = self.im**2 - self.re**2
+            return -2 * self.re * self.im / square if square > 0 else None
+
+
 def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
     """Print a complex number with at most ``digits`` significant digits in each part, all certified.
 
@@ -244,7 +267,7 @@ def groups(roots: Sequence[Root]) -> list[list[Root]]:
     >>> len(groups([one, other])), len(groups([one, replace(other, re=arb(2.1, 1e-9))]))
     (1, 2)
     """
-    sizes = ((float(root.natural_frequency().mid()), i) for i, root in enumerate(roots) if not root.is_zero)
+    sizes = ((float(root.size().mid()), i) for i, root in enumerate(roots) if not root.is_zero)
     indices: list[list[int]] = []
     for _, i in sorted(sizes):
         # Images stand next to each other, but for the few that are as large.

@@ -29,6 +29,7 @@ from symflex.along.law import BoundLaw
 from symflex.balls import Arithmetic, Value, at_centre, current_bits, raised
 from symflex.expressions import names_among
 from symflex.model.along import is_tapered, varies_along_x
+from symflex.model.model import IMAGINARY, J
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order
 from symflex.transfer.enclose_kernels import fundamental_functions
 
@@ -134,7 +135,9 @@ class EquationsAt:
 
     @cached_property
     def _parameters(self) -> Mapping[str, Callable[[], arb]]:
-        return {"pi": arb.pi} | {name: enclosure(value) for name, value in self.values}
+        return {"pi": arb.pi, IMAGINARY: enclosure(J)} | {
+            name: enclosure(value) for name, value in self.values
+        }
 
     def constant(self, name: str) -> acb:
         """Return the value of a name free of s at the current precision."""
@@ -277,7 +280,8 @@ class NamedValues(dict[str, Arithmetic]):
 
     def _tangent(self, name: str) -> acb_series:
         """Return a parameter, or a function of constants, to first order in the one they move along."""
-        known = {n: first_order(enclosure(v)(), int(n == self.along)) for n, v in self.equations.values}
+        real = [(n, v) for n, v in self.equations.values if not v.is_imaginary]
+        known = {n: first_order(enclosure(v)(), int(n == self.along)) for n, v in real}
         call = self.equations.functions.get(name)
         value = known[name] if call is None else constant_tangent(call, known)
         return acb_series([acb(value[0]), acb(value[1])], 2)

@@ -303,10 +303,9 @@ def derive_for_roots(
     if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:
         return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
-    # Modes with loss factors are found in the expanded form alone.
     # Roots accumulate at a finite s where a law of waves has a pole, as Kelvin and Voigt's.
     laws = (x for c in equations.continua for row in c.system.matrix for x in row)
-    is_quick = not (is_explained or model.imaginary or any(x.denominator().depends_on(LAPLACE) for x in laws))
+    is_quick = not (is_explained or any(x.denominator().depends_on(LAPLACE) for x in laws))
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_small and _expanded_terms(equations, pairs[0]) <= most:
         expanded = _expanded_unless_large(model, pairs, UNASKED)

@@ -106,26 +106,57 @@ class RootDerivative:
             return relative * self.exact_value()
 
     @property
-    def frequency(self) -> arb | None:
-        """df/dp of the natural frequency ``f = abs(s)/(2 pi)`` [Hz per unit of the parameter]."""
-        relative = self.relative
-        if relative is None:
+    def _loss(self) -> arb | None:
+        """The loss factor of ``s^2 = -omega_r^2 (1 + j eta_r)``, None without."""
+        if self.root.loss_factor() is None:
             return None
         with precision(self._bits):
-            return abs(self.place) * relative.real / (2 * arb.pi())
+            square = self.place**2
+            return square.imag / square.real
+
+    @property
+    def rate(self) -> arb | None:
+        """``(1/f) df/dp`` of the natural frequency f [1 per unit of the parameter], ``None`` at s = 0.
+
+        With loss factors f is ``omega_r/(2 pi)``, and ``2 ds/s = 2 df/f + j deta/(1 + j eta)``.
+        """
+        relative, loss = self.relative, self._loss
+        if relative is None or loss is None:
+            return None if relative is None else relative.real
+        with precision(self._bits):
+            return relative.real - loss * relative.imag
+
+    @property
+    def frequency(self) -> arb | None:
+        """df/dp of the natural frequency ``f = abs(s)/(2 pi)`` [Hz per unit of the parameter]."""
+        rate = self.rate
+        if rate is None:
+            return None
+        with precision(self._bits):
+            size = abs(self.place) if self._loss is None else (-(self.place**2).real).sqrt()
+            return size * rate / (2 * arb.pi())
 
     @property
     def damping_ratio(self) -> arb | None:
         """dzeta/dp of ``zeta = -re/abs(s)`` [1 per unit of the parameter]; ``None`` for real roots.
 
         With s in polar coordinates zeta is minus the cosine of its angle, which turns by
-        the imaginary part of (1/s) ds/dp.
+        the imaginary part of (1/s) ds/dp. ``None`` with loss factors, too.
         """
         relative = self.relative
-        if relative is None or self.root.is_real:
+        if relative is None or self.root.is_real or self._loss is not None:
             return None
         with precision(self._bits):
             return relative.imag * self.place.imag / abs(self.place)
+
+    @property
+    def loss_factor(self) -> arb | None:
+        """deta/dp of the loss factor [1 per unit of the parameter]; ``None`` without."""
+        relative, loss = self.relative, self._loss
+        if relative is None or loss is None:
+            return None
+        with precision(self._bits):
+            return 2 * (1 + loss**2) * relative.imag
 
     def exact_value(self) -> arb:
         """Return the parameter's value at the current precision."""
@@ -151,6 +182,7 @@ class RootDerivative:
             "normalised": _complex_json(self.normalised, digits),
             "frequency_hz": real_json(self.frequency, digits),
             "damping_ratio": real_json(self.damping_ratio, digits),
+            **({} if self._loss is None else {"loss_factor": real_json(self.loss_factor, digits)}),
         }
 
 
@@ -351,9 +383,13 @@ def sensitivities(
     given = dict(bound.values)
     values = {p.name: given.get(p.name, p.value) for p in model.parameters}
     real = {name: value for name, value in values.items() if value is not None}
-    chosen = [p for p in model.parameters if p.name in real and (not names or p.name in names)]
+    chosen = [p for p in model.settable if p.name in real and (not names or p.name in names)]
     pair = (bound.source.output.name, bound.source.input.name)
-    if isinstance(bound, BoundNested) or (not model.is_distributed and len(model.elements) > NEVER_LARGE):
+    if (
+        isinstance(bound, BoundNested)
+        or model.imaginary
+        or (not model.is_distributed and len(model.elements) > NEVER_LARGE)
+    ):
         return _of_equations(model, pair, real, located, chosen, digits)
     if model.is_distributed:
         return differentiate(bound.symbolic or bound.source, real, located, chosen, digits)
@@ -380,6 +416,7 @@ def _of_equations(
         ("zero", SingularMatrix.of(at, *pair), located.zeros),
     )
     moved: list[RootDerivative] = []
+    is_real = model.imaginary is None
     for kind, matrix, roots in sides:
         upper: tuple[acb, dict[str, acb | None]] | None = None
         for i, root in enumerate(roots):
@@ -390,7 +427,12 @@ def _of_equations(
             elif root.multiplicity > 1:
                 # Whether it parts is not read off the equations.
                 status, place, slopes = "undecided", root.enclosure(), {}
-            elif root.im < 0 and upper is not None and upper[0].conjugate().overlaps(root.enclosure()):
+            elif (
+                root.im < 0
+                and is_real
+                and upper is not None
+                and upper[0].conjugate().overlaps(root.enclosure())
+            ):
                 place = _conjugate(upper[0])
                 slopes = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}
             else:

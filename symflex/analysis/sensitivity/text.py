@@ -9,7 +9,7 @@ import sympy
 from flint import arb
 
 from symflex.balls import precision
-from symflex.roots.root import decimals, figure
+from symflex.roots.root import NEARLY_ZERO, decimals, figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 WIDTH = 80
 DIGITS = 6
 INDENT = "    "
-HEAD = ("Re [rad/s]", "Im [rad/s]", "p", "(p/f) df/dp", "p dzeta/dp")
+HEAD = ("Re [rad/s]", "Im [rad/s]", "p", "(p/f) df/dp")
 TITLES = {"pole": "  sensitivity of poles", "zero": "  sensitivity of zeros"}
 OBSTACLES = {"multiple": "no derivative: multiple roots part", "undecided": "not decided"}
 
@@ -37,18 +37,22 @@ def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str
         lines += ["", TITLES[kind], *_table(list(group), width)]
     if not lines:
         return "\n  no root depends on a parameter"
-    lines += ["", "  f = abs(s)/(2 pi), zeta = -Re(s)/abs(s); changes are per relative change of p"]
+    is_lossy = any(m.root.loss_factor() is not None for m in moved)
+    meaning = "s^2 = -(2 pi f)^2 (1 + j eta)" if is_lossy else "f = abs(s)/(2 pi), zeta = -Re(s)/abs(s)"
+    lines += ["", f"  {meaning}; changes are per relative change of p"]
+    damping = "deta/dp" if is_lossy else "dzeta/dp"
     about = [m.parameter for m in moved if _is_zero(m)]
     zeros = sorted({p.name + (f" [{p.unit}]" if p.unit else "") for p in about})
     if zeros:
-        lines.append(f"  * the parameter is 0: (1/f) df/dp and dzeta/dp, per unit: {', '.join(zeros)}")
+        lines.append(f"  * the parameter is 0: (1/f) df/dp and {damping}, per unit: {', '.join(zeros)}")
     if any(m.derivative is not None for m in moved):
         lines.append("  every digit is proved, except for the rounding of the last one")
     return "\n".join(lines)
 
 
 def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
-    rows: list[tuple[str, ...]] = [HEAD]
+    damping = "p dzeta/dp" if all(m.root.loss_factor() is None for m in moved) else "p deta/dp"
+    rows: list[tuple[str, ...]] = [(*HEAD, damping)]
     roots = {m.index: m.root for m in moved}
     printed = {i: decimals(r.re, r.im, DIGITS).readable for i, r in roots.items()}
     places = {(p.re, p.im) for p in printed.values()}
@@ -60,11 +64,11 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
         place = (re, f"+-{im}" if mirrored else im)
         for n, cells in enumerate(_rows(roots[index], list(group))):
             rows.append((*(place if n == 0 else ("", "")), *cells))
-    numbers = [row for row in rows if len(row) == len(HEAD)]
-    columns = [max(len(row[i]) for row in numbers) for i in range(len(HEAD))]
+    numbers = [row for row in rows if len(row) == len(rows[0])]
+    columns = [max(len(row[i]) for row in numbers) for i in range(len(rows[0]))]
     places_width = [max(len(row[i]) for row in rows) for i in (0, 1)]
     columns[:2] = places_width
-    spare = width - len(INDENT) - 2 * (len(HEAD) - 1) - sum(columns[:2]) - sum(columns[3:])
+    spare = width - len(INDENT) - 2 * len(HEAD) - sum(columns[:2]) - sum(columns[3:])
     columns[2] = max(1, min(columns[2], spare))
     return [line for row in rows for line in _laid_out(row, columns)]
 
@@ -93,22 +97,23 @@ def _row(derivative: RootDerivative) -> tuple[str, ...]:
     name = derivative.parameter.name
     if derivative.derivative is None:
         return (f"{name}: {OBSTACLES[derivative.status]}",)
-    relative, damping = derivative.relative, derivative.damping_ratio
-    if relative is None:
+    rate, damping = derivative.rate, derivative.damping_ratio
+    damping = derivative.loss_factor if damping is None else damping
+    if rate is None:
         slope = decimals(derivative.derivative.real, derivative.derivative.imag, DIGITS).readable
         shown = slope.re if slope.im == "0" else f"{slope.re} + ({slope.im}) j"
         return (f"{name}: ds/dp = {shown}",)
     if _is_zero(derivative):
-        return (f"{name}*", _number(relative.real), "" if damping is None else _number(damping))
-    with precision(max(relative.bits(), 1) + 64):
+        return (f"{name}*", _number(rate), "" if damping is None else _number(damping))
+    with precision(max(rate.bits(), 1) + 64):
         value = derivative.exact_value()
-        change = relative.real * value
+        change = rate * value
         turned = None if damping is None else damping * value
     return (name, _number(change), "" if turned is None else _number(turned))
 
 
 def _number(value: arb) -> str:
-    return figure(value, DIGITS)
+    return NEARLY_ZERO if value.contains(0) and not value.is_zero() else figure(value, DIGITS)
 
 
 def _negated(text: str) -> str:

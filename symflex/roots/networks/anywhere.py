@@ -12,12 +12,13 @@ from math import hypot, pi
 from typing import TYPE_CHECKING
 
 from symflex.budget import entered_budget
+from symflex.model.loss_factors import has_loss_factors
 from symflex.roots.networks.blocks import most_zeros
 from symflex.roots.networks.disc_search import DiscSearch
 from symflex.roots.pole_zero_map import take_out_shared
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
-from symflex.roots.root import Root, count_modes, overlap, root_at_zero
+from symflex.roots.root import LossyRoot, Root, count_modes, overlap, root_at_zero
 
 if TYPE_CHECKING:
     from symflex.roots.networks.cramer import CramerEquations
@@ -90,6 +91,9 @@ def _roots(search: DiscSearch, radius: float, digits: int) -> DiscRoots:
         return any(overlap(a, b) for a in near[0] for b in near[1])
 
     poles, zeros, shared = take_out_shared(den.all_roots(digits), num.all_roots(digits), coincide)
+    if has_loss_factors(search.equations.equations.model):  # which belong to omega > 0
+        for side in (poles, zeros, shared):
+            side[:] = [LossyRoot.of(root) for root in side if not root.im < 0]
     common = min(den.at_zero, num.at_zero)
     shared += root_at_zero(common, max(den.zero_reach, num.zero_reach))
     poles += root_at_zero(den.at_zero - common, den.zero_reach)

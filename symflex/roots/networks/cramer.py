@@ -22,6 +22,7 @@ from symflex.algebra.factored import least_common_multiple
 from symflex.balls import UndecidedError, current_bits, eliminate, precision, settled
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
+from symflex.model.model import IMAGINARY
 from symflex.transfer.equations_at import EquationsAt, Majorants, NamedValues
 
 if TYPE_CHECKING:
@@ -91,6 +92,11 @@ class CramerEquations:
             equations, rows, read.divisor * below, values
         )
         return cramer
+
+    @property
+    def is_real(self) -> bool:
+        """Whether determinants are real for real s, as without loss factors."""
+        return IMAGINARY not in self.equations.ring.index
 
     # -------------------------------------------------------------------------------- values at points
 

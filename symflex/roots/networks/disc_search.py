@@ -68,7 +68,10 @@ class DiscSide:
     @property
     def found(self) -> int:
         """How many roots are enclosed."""
-        return self.at_zero + sum(n * images(box, is_even=self.is_even) for box, n in self.roots)
+        is_real = self.series.is_real
+        return self.at_zero + sum(
+            n * (images(box, is_even=self.is_even) if is_real else 1) for box, n in self.roots
+        )
 
     def refined(self, box: acb, digits: int) -> acb:
         """Return a smaller enclosure of a simple root, to so many digits."""
@@ -84,7 +87,7 @@ class DiscSide:
                 closer = middle - self.value(middle, bits) / slope
                 if self.is_even and box.real.mid() == 0:
                     closer = acb(arb(0, closer.real.abs_upper()), closer.imag)
-                elif box.imag == 0:
+                elif self.series.is_real and box.imag == 0:
                     closer = acb(closer.real)
                 before, behind = (b.real.rad() + b.imag.rad() for b in (box, closer))
                 if not closer.is_finite() or behind > before / 4:
@@ -98,7 +101,7 @@ class DiscSide:
         if count == 1:
             box = self.refined(box, digits)
         on_axis = self.is_even and count == 1 and bool(box.real.mid() == 0)
-        is_real = count == 1 and bool(box.imag == 0)
+        is_real = count == 1 and self.series.is_real and bool(box.imag == 0)
         with precision(2 * bits_for_digits(digits) + GUARD_BITS):
             s = box * self.series.radius
         re = arb(0) if on_axis else s.real
@@ -107,7 +110,7 @@ class DiscSide:
     def all_roots(self, digits: int) -> list[Root]:
         """Return all roots of the disc but those at 0."""
         roots = [self.root(box, count, digits) for box, count in self.roots]
-        return mirror_images(roots, even=self.is_even)
+        return mirror_images(roots, even=self.is_even) if self.series.is_real else roots
 
 
 def images(box: acb, *, is_even: bool) -> int:
@@ -261,11 +264,16 @@ class DiscSearch:
             # Points so narrow that values do not gain from more bits of theirs.
             with precision(8 * bits):
                 values = circle_values(
-                    partial(self._value, bits=bits), middle, count, symmetric=all(self.symmetric)
+                    partial(self._value, bits=bits),
+                    middle,
+                    count,
+                    symmetric=all(self.symmetric),
+                    is_real=self.equations.is_real,
                 )
+            den, num = [v.den for v in values], [v.num for v in values]
             yield (
-                DiscSeries.of([v.den for v in values], middle, bound[0], ratio, bits),
-                DiscSeries.of([v.num for v in values], middle, bound[1], ratio, bits),
+                DiscSeries.of(den, middle, bound[0], ratio, bits, is_real=self.equations.is_real),
+                DiscSeries.of(num, middle, bound[1], ratio, bits, is_real=self.equations.is_real),
             )
             extra *= 2
 
@@ -277,7 +285,7 @@ class DiscSearch:
 
     def _side(self, series: DiscSeries, name: str) -> DiscSide | None:
         """Return all roots of one function; ``None`` where they are not all proved."""
-        is_even = self.symmetric[name == "num"]
+        is_even = series.is_real and self.symmetric[name == "num"]
         count = series.count()
         at_zero = series.order_at_zero()
         size = len(self.equations.entries) - (name == "den")
@@ -307,7 +315,7 @@ def enclosed_roots(series: DiscSeries, at_zero: int, *, is_even: bool = False) -
     boxes: list[tuple[acb, int]] = []
     left: list[acb] = []
     for guess in series.approximate(at_zero, is_even=is_even):
-        if guess.imag < 0 or (is_even and guess.real < -(abs(guess) * NEAR_AXIS)):
+        if (series.is_real and guess.imag < 0) or (is_even and guess.real < -(abs(guess) * NEAR_AXIS)):
             continue
         x = acb(0, guess.imag) if is_even and abs(guess.real) < abs(guess) * NEAR_AXIS else guess
         box = series.proved(x) or series.proved(guess)
@@ -339,12 +347,25 @@ def _clusters(
 
 
 def circle_values(
-    value: Callable[[acb], CramerValue], radius: arb, count: int, *, symmetric: bool = False
+    value: Callable[[acb], CramerValue],
+    radius: arb,
+    count: int,
+    *,
+    symmetric: bool = False,
+    is_real: bool = True,
 ) -> list[CramerValue]:
     """Return values on a circle, mirrored in the real axis; ``symmetric`` ones in the imaginary axis, too."""
     half = count // 2
     values = {0: value(acb(radius)), half: value(acb(-radius))}
     signs = _parities(values[0], values[half]) if symmetric else None
+    if not is_real:
+        for k in (k for k in range(count) if k not in values):
+            across = values.get(k - half)
+            if across is not None and signs is not None:
+                values[k] = CramerValue(signs[0] * across.den, signs[1] * across.num)
+            else:
+                values[k] = value(radius * acb(0, 2 * arb.pi() * k / count).exp())
+        return [values[k] for k in range(count)]
     for k in range(1, half):
         across = values.get(half - k)
         if across is not None and signs is not None:

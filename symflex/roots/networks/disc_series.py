@@ -46,16 +46,25 @@ class RootNearCircleError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class DiscSeries:
-    """``f(radius*x)`` for ``abs(x) <= 1``, real for real x."""
+    """``f(radius*x)`` for ``abs(x) <= 1``."""
 
     radius: arb  # [rad/s]
     polynomial: acb_poly  # in x
     off: arb  # how far the polynomial is off
     slope_off: arb  # and its derivative by x is
     bits: int
+    is_real: bool = True  # for real x; with loss factors it is not
 
     @staticmethod
-    def of(values: Sequence[acb], radius: arb, log_bound: float, ratio: float, bits: int) -> DiscSeries:
+    def of(
+        values: Sequence[acb],
+        radius: arb,
+        log_bound: float,
+        ratio: float,
+        bits: int,
+        *,
+        is_real: bool = True,
+    ) -> DiscSeries:
         """Return the series from values at ``radius*exp(2 pi j k/n)``.
 
         ``log_bound`` is ln of a bound on abs(f) within ratio times the radius.
@@ -65,15 +74,18 @@ class DiscSeries:
             most, shrink = arb(log_bound).exp(), 1 / arb(ratio)
             last = most * shrink**n / (1 - shrink)
             coefficients = acb.dft(list(values))
-            aliased = [acb(arb(0, (last * shrink**k).upper())) for k in range(n)]
-            terms = [(c / n).real + a for c, a in zip(coefficients, aliased, strict=True)]
+            aliased = [(last * shrink**k).upper() for k in range(n)]
+            terms = [
+                acb((c / n).real + arb(0, a), 0 if is_real else (c / n).imag + arb(0, a))
+                for c, a in zip(coefficients, aliased, strict=True)
+            ]
             slope = most * shrink**n * (n * (1 - shrink) + shrink) / (1 - shrink) ** 2
             # As the bound is crude, most of the last terms are as small as what they lack.
             off, most = last, LEFT_OUT * last
             while len(terms) > FEWEST_POINTS and (more := (off + abs(terms[-1])).upper()) < most:
                 slope += (len(terms) - 1) * abs(terms.pop())
                 off = more
-        return DiscSeries(radius, acb_poly(terms), arb(off), slope, bits)
+        return DiscSeries(radius, acb_poly(terms), arb(off), slope, bits, is_real)
 
     def slope_on(self, box: acb) -> acb:
         """Return the derivative by x on a box within the unit disc."""
@@ -109,7 +121,7 @@ class DiscSeries:
     def count(self) -> int:
         """Return how many roots the disc holds: proved. RootNearCircleError with one close to its edge."""
         # From one real value to another: half of the circle turns by a multiple of pi.
-        return self._turns(acb(0), 1.0, pi, arb.pi)
+        return self._turns(acb(0), 1.0, pi, arb.pi) if self.is_real else self.count_about(acb(0), 1.0)
 
     def count_about(self, centre: acb, size: float) -> int:
         """Return how many roots lie in a disc about a point, within the unit disc: proved."""
@@ -191,13 +203,18 @@ class DiscSeries:
             if is_even:
                 roots = [x for r in roots for x in (r.sqrt().mid(), -r.sqrt().mid())]
             close = 2.0 ** (-self.bits // 4)
-            guesses = [acb(x.real) if abs(x.imag) < abs(x) * close else x for x in roots if bool(abs(x) < 1)]
+            guesses = [
+                acb(x.real) if self.is_real and abs(x.imag) < abs(x) * close else x
+                for x in roots
+                if bool(abs(x) < 1)
+            ]
             return sorted(guesses, key=lambda x: float(abs(x).mid()))
 
     def proved(self, guess: acb) -> acb | None:
         """Return a box about a guess that holds exactly one root; ``None`` where none is proved."""
         with precision(self.bits):
             x = guess.mid()
+            on_line = self.is_real and bool(x.imag == 0)
             # Horner's rule would turn a box at every step, and widen it.
             local = self.about(x)
             value = local[0] + ball_about_zero(self.off)
@@ -206,9 +223,9 @@ class DiscSeries:
                 return None
             reach = (abs(value / slope) * 4).abs_upper()
             for _ in range(WIDENINGS):
-                box = x + acb(arb(0, reach), arb(0, 0 if x.imag == 0 else reach))
+                box = x + acb(arb(0, reach), arb(0, 0 if on_line else reach))
                 step = value / self._slope(local, box)
-                if stays_inside(step.real if x.imag == 0 else step, reach):
+                if stays_inside(step.real if on_line else step, reach):
                     return box
                 reach = (reach * 4).abs_upper()
         return None

@@ -81,12 +81,12 @@ def locate_in_network(
     """
     if is_zero(equations, *pair):
         return _Sought(name, region, digits, is_default).nothing(ZERO)
+    cramer = CramerEquations.of(equations, *pair)
     network: Network | None = None
     with suppress(OtherNetworkError):
-        network = network_of(equations, *pair, is_passive=energy.is_passive)
+        network = network_of(equations, *pair, is_passive=energy.is_passive) if cramer.is_real else None
     proof = energy.reason if energy.is_passive else ""
     unsure = "" if proof and energy.rests else NONE_ON_AXIS
-    cramer = CramerEquations.of(equations, *pair)
     sought = _Sought(name, region, digits, is_default, proof, unsure)
     if network is None or not (network.driven and network.read):
         return sought.in_disc(cramer)

@@ -67,3 +67,12 @@ def test_a_filter_in_the_output_is_a_pole():
         other = equations.at(acb(-2), 100).den
     assert complex(ratio) == pytest.approx(2 + 0.4 + 0.3j)  # s + 2, without its denominator
     assert other.contains(0)
+
+
+def test_bounds_hold_where_a_constant_is_negative():
+    # With the constant's size in place of its value the ratio would all but vanish.
+    number = "(0.17364817766693 - cos(100*pi/180))*1000000"
+    turned = f'g = {{ type = "transformer", from = ["a"], to = ["b"], ratio = "{number}" }}\n'
+    equations = rod(turned + 'm = { type = "mass", at = "b", m = "1 kg" }')
+    value = equations.at(acb(0.5), 64)
+    assert equations.bounds(0.5)[0] >= log(float(abs(value.den).mid()))
