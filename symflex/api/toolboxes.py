@@ -219,6 +219,14 @@ class Toolboxes:
         return sympy_system(self._expanded)
 
     def dcgain(self) -> float:
-        """Return the limit for s -> 0 from the right, possibly infinite."""
+        """Return the limit for s -> 0 from the right, possibly infinite; it is proved to the last digit.
+
+        Raises
+        ------
+        UncertifiedError
+            SF405 when it cannot be decided.
+        """
+        from symflex.analysis.rational.laurent import limit_at_zero
+
         check_causal(self.bound.source.model, "a value at s = 0")
-        return self.bound.limit_at_zero()
+        return float(limit_at_zero(self.bound).mid())

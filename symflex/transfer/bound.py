@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
-from math import inf, prod
+from math import prod
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb
@@ -21,7 +21,7 @@ from symflex.balls import EvaluationPlan, at_centre, ball, expansion, plan, prec
 from symflex.budget import spend
 from symflex.equations import radicals_of
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.transfer.double_value import double_value, limit_at_zero
+from symflex.transfer.double_value import double_value
 from symflex.transfer.enclose import enclosure, later
 
 if TYPE_CHECKING:
@@ -326,23 +326,6 @@ class BoundTransferFunction:
         if self.ratio.is_zero:
             return 0j
         return double_value(self._known, s, 0 if self.kernels else None)
-
-    def limit_at_zero(self) -> float:
-        """Return the limit for s -> 0 from the right: 0, a finite gain, or a signed infinity."""
-        if self.ratio.is_zero:
-            return 0.0
-        if self.kernels:
-            return limit_at_zero(self.enclosed)
-        s = self.ratio.ring.context.gen(0)
-        order = self.ratio.exponent_of(s)
-        if order > 0:
-            return 0.0
-        rest = tuple((f, e) for f, e in self.ratio.factors if f != s)
-        finite = BoundTransferFunction(
-            self.source, self.values, Factored(self.ratio.ring, self.ratio.unit, rest), ()
-        )
-        value = finite(0j).real
-        return value if order == 0 else inf if value > 0 else -inf
 
 
 def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpoly, ...]:

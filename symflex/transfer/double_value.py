@@ -61,16 +61,6 @@ def order_near(enclosed: Callable[[int], Ball], s: complex) -> tuple[int, acb | 
         return round(float(ratio.mid())), nearer
 
 
-def limit_at_zero(enclosed: Callable[[int], Ball]) -> float:
-    """Return the limit from two values close to zero, where it goes like an integer power of s."""
-    order, value = order_near(enclosed, 0j)
-    if value is None:
-        return nan
-    if order < 0:
-        return inf if value.real > 0 else -inf
-    return float(value.real.mid()) if order == 0 else 0.0
-
-
 def _beside(enclosed: Callable[[int], Ball], s: complex, exponent: int) -> acb | None:
     """Return a ball around the value at ``s + 2^exponent``, ``None`` when it is not found."""
     for bits in precisions(FIRST_BITS * 8, LAST_BITS):

@@ -26,7 +26,7 @@ from flint import acb, acb_mat, acb_series, arb, fmpq
 from symflex.algebra import LAPLACE, Factored, composed, evaluated, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.along.law import BoundLaw
-from symflex.balls import Arithmetic, Value, at_centre, current_bits, raised
+from symflex.balls import Arithmetic, Value, at_centre, current_bits, eliminate, raised
 from symflex.expressions import names_among
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.model.model import IMAGINARY, J
@@ -89,6 +89,16 @@ class EquationsAt:
         Members that taper have no derivatives.
         """
         return NamedValues(self, acb_series([s, 1], 2) if along == LAPLACE else s, along)
+
+    def value(self, output: str, source: str, s: acb) -> acb:
+        """Return the value of a transfer function on a ball of s; UndecidedError where A may be singular."""
+        equations, number = self.equations, self.on(s)
+        given = next(v for v in equations.inputs if v.owner == source)
+        read = next(o for o in equations.outputs if o.name == output)
+        columns = {v: j for j, v in enumerate((*equations.unknowns, given))}
+        forms, size = [*(row.form for row in equations.rows), read.form], len(equations.unknowns)
+        left = eliminate([number.row(form, columns) for form in forms], size).rows[size]
+        return acb(left.get(size, ZERO) / number(read.divisor))
 
     def moving(self, along: str) -> frozenset[str]:
         """Return the names whose values depend on s or a parameter, that itself among them."""
@@ -260,9 +270,9 @@ class NamedValues(dict[str, Arithmetic]):
             result = result * (known if exponent == 1 else raised(known, exponent))
         return result
 
-    def row(self, form: LinearForm, columns: Mapping[Variable, int]) -> dict[int, Value]:
+    def row(self, form: LinearForm, columns: Mapping[Variable, int]) -> dict[int, Arithmetic]:
         """Return the coefficients of a linear form by column; what belongs to no column is left out."""
-        entries: dict[int, Value] = {}
+        entries: dict[int, Arithmetic] = {}
         for variable, coefficient in form.terms:
             if variable in columns:
                 j, entry = columns[variable], self(coefficient)

@@ -16,7 +16,9 @@ functions are evaluated at points.
 from __future__ import annotations
 
 from cmath import isfinite
+from contextlib import suppress
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cache, cached_property, partial
 from math import prod
 from operator import truediv
@@ -26,14 +28,15 @@ from flint import acb, acb_series, arb
 
 from symflex.algebra import LAPLACE
 from symflex.algebra.straight_line import Operation, Step, StraightLine
-from symflex.balls import ball, expansion, precision, precisions, raised
+from symflex.balls import UndecidedError, ball, expansion, precision, precisions, raised
 from symflex.budget import spend, uncollected
+from symflex.model import ExactValue
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
 from symflex.transfer.bind import Given, bind, values_for
 from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.derive import nested_transfer
-from symflex.transfer.direct_solve import NotFollowedError, Point, SingularPointError
-from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value, limit_at_zero
+from symflex.transfer.direct_solve import Point
+from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value
 from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.transfer_function import (
     TransferFunction,
@@ -44,7 +47,6 @@ from symflex.transfer.transfer_function import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from fractions import Fraction
 
     import numpy as np
     import numpy.typing as npt
@@ -53,7 +55,8 @@ if TYPE_CHECKING:
     from symflex.equations import ConstantFunction, Equations
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
-    from symflex.model import ExactValue, Input, Model, ModelParameter, Output
+    from symflex.model import Input, Model, ModelParameter, Output
+    from symflex.transfer.equations_at import EquationsAt
 
 CONSTANT_BITS = 256
 
@@ -76,30 +79,6 @@ class CutModel:
 
         with uncollected():
             return line_network(self.solve.direct.equations)
-
-    def value(self, pair: tuple[str, str], values: Mapping[str, ExactValue], s: acb) -> acb:
-        """Return a ball around the value of a function, from the equations themselves, with numbers."""
-        if self.solve.direct.unsolved:
-            return acb("nan")
-        try:
-            return self.solve.direct.at(Point(lambda: s, self._parameters(values)), [pair]).values[pair]
-        except (SingularPointError, NotFollowedError):
-            return acb("nan")
-
-    def _parameters(self, values: Mapping[str, ExactValue]) -> dict[str, Callable[[], arb]]:
-        """Return how to enclose every parameter at the current precision."""
-        declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
-        # A function does not depend on a parameter without value, though its network may.
-        return {p.name: lambda: arb(1) for p in self.model.parameters} | {
-            name: enclosure(value) for name, value in (declared | dict(values)).items()
-        }
-
-    def constants(self, values: Mapping[str, ExactValue]) -> dict[str, Callable[[], arb]]:
-        """Return, per name of the entries but s, how to enclose it at the current precision."""
-        known = self._parameters(values)
-        return {**known, "pi": arb.pi} | {
-            c.generator: later(c.expression, known) for c in self.network.equations.constants
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,11 +259,19 @@ class BoundNested:
 
     def solved(self, s: acb, bits: int) -> acb:
         """Return a ball around the value from the equations; not finite where they are singular."""
-        if self.source.cut is None:
-            return acb("nan")
-        with precision(bits):
-            pair = self.source.output.name, self.source.input.name
-            return self.source.cut.value(pair, dict(self.values), s)
+        source = self.source
+        with precision(bits), suppress(UndecidedError):
+            if source.equations is not None:
+                return self._numeric(source.equations).value(source.output.name, source.input.name, s)
+        return acb("nan")
+
+    def _numeric(self, equations: Equations) -> EquationsAt:
+        """Return equations of the model with numbers."""
+        from symflex.transfer.equations_at import EquationsAt  # only with beams
+
+        # A function does not depend on a parameter without value, though its network may.
+        declared = ((p.name, p.value or ExactValue(Fraction(1))) for p in self.source.model.parameters)
+        return EquationsAt(equations, tuple((dict(declared) | dict(self.values)).items()))
 
     @cached_property
     def _known(self) -> Callable[[int], EnclosedNested]:
@@ -313,10 +300,6 @@ class BoundNested:
             if self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:
                 return bits
         return LAST_BITS
-
-    def limit_at_zero(self) -> float:
-        """Return the limit for s -> 0 from the right, possibly infinite."""
-        return 0.0 if self.is_zero else limit_at_zero(self.enclosed)
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the values in double precision at many complex frequencies at once.
@@ -352,10 +335,11 @@ class BoundNested:
 
         from symflex.algebra.line_networks import network_value  # few functions are of so many members
 
-        network, known = cut.network, cut.constants(dict(self.values))
+        network = cut.network
+        known = self._numeric(network.equations).constant
         with precision(CONSTANT_BITS), np.errstate(all="ignore"):
             entries = network.values(
-                name=lambda name: points if name == LAPLACE else float(known[name]().mid()),
+                name=lambda name: points if name == LAPLACE else float(known(name).real.mid()),
                 number=lambda x: x.numerator / x.denominator,
                 total=sum,
                 product=prod,

@@ -1,12 +1,13 @@
-"""The equations of a model with numbers, enclosed at one s, and what they leave free there.
+"""What equations leave free at one s: null spaces of ball matrices, and how distributed parts move in them.
 
-Input: :class:`symflex.equations.Equations` and exact values. Output: ball matrices, and enclosures of a basis
-of the null space of one that is singular somewhere in its balls.
+Input: a matrix that is singular somewhere in its balls, and what it may be scaled after.
+Output: enclosures of a basis of its null space.
+Example: ``[1 -2; -2 4]`` takes (2, 1) to zero. Theorem: see :func:`null_space`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from symflex.equations import Continuum
     from symflex.library.elements import Variable
-    from symflex.transfer.equations_at import EquationsAt, NamedValues
+    from symflex.transfer.equations_at import NamedValues
 
 
 SEED = 7
@@ -160,67 +161,35 @@ def _scales(rows: Sequence[Sequence[acb]]) -> tuple[list[arb], list[arb]]:
     return [two**e for e in left], [two**e for e in right]
 
 
-def system_at(equations: EquationsAt, s: acb) -> SystemAt:
-    """Return equations at a ball of s [rad/s], at the current precision."""
-    symbolic, number = equations.equations, equations.on(s)
-    matrix = number.matrix([row.form for row in symbolic.rows], symbolic.unknowns)
-    continua = tuple(_continuum(c, number) for c in symbolic.continua)
-    return SystemAt(tuple(symbolic.unknowns), matrix, continua)
-
-
-@dataclass(frozen=True, slots=True)
-class ContinuumAt:
-    """A distributed part's field equations at one s."""
-
-    at_rest: DistributedShape
-    load_columns: tuple[tuple[acb, ...], ...]  # none where coefficients vary along x
-    initial: tuple[Variable | None, ...]
-    loads: tuple[Variable, ...]
-
-    def shape(self, values: Mapping[Variable, acb]) -> DistributedShape:
-        """Return how it moves when the unknowns have these values; inputs are at rest."""
-        initial = tuple(acb(0) if v is None else values[v] for v in self.initial)
-        load = [values.get(variable, acb(0)) for variable in self.loads]
-        varying = self.at_rest.varying
-        if varying is not None:
-            return replace(self.at_rest, load=tuple(load), initial=varying.started(initial))
-        total = self.at_rest.load
-        for size, column in zip(load if self.load_columns else (), self.load_columns, strict=True):
-            total = tuple(x + b * size for x, b in zip(total, column, strict=True))
-        return replace(self.at_rest, load=total, initial=initial)
-
-
-@dataclass(frozen=True, slots=True)
-class SystemAt:
-    """``matrix x = 0`` at one s, with the names of x and the distributed parts."""
-
-    unknowns: tuple[Variable, ...]
-    matrix: acb_mat
-    continua: tuple[ContinuumAt, ...]
-
-
-def _continuum(continuum: Continuum, number: NamedValues) -> ContinuumAt:
-    system = continuum.system
-    axes = system.axes
+def moving_continuum(
+    continuum: Continuum, number: NamedValues, motion: Mapping[Variable, acb]
+) -> DistributedShape:
+    """Return how a distributed part moves when the unknowns have these values; inputs are at rest."""
+    system, axes = continuum.system, continuum.system.axes
+    matrix: tuple[tuple[acb, ...], ...] = ()
+    initial = tuple(acb(0) if v is None else motion[v] for v in continuum.initial)
+    load = tuple(motion.get(variable, acb(0)) for variable in continuum.loads)
     varying: VaryingCarrier | None = None
     if continuum.parts:
         parts = tuple((states, number.equations.laws[law]) for states, law in continuum.parts)
         varying = VaryingCarrier(parts, number[LAPLACE], len(system.states))
-    matrix, loads = (
-        tuple(tuple(number(x) for x in row) for row in (() if varying else rows))
-        for rows in (system.matrix, system.loads)
-    )
-    at_rest = DistributedShape(
+        initial = varying.started(initial)
+    else:
+        matrix = tuple(tuple(number(x) for x in row) for row in system.matrix)
+        columns = [
+            [number(x) * size for x in column] for column, size in zip(system.loads, load, strict=True)
+        ]
+        load = tuple(sum(xs, acb(0)) for xs in zip(*columns, strict=True)) or (acb(0),) * len(system.states)
+    return DistributedShape(
         continuum.name,
         continuum.kind,
         system.states,
         matrix,
-        (acb(0),) * len(system.states),
-        (),
+        load,
+        initial,
         number(continuum.start).real,
         number(continuum.length).real,
         current_bits(),
         () if axes is None else tuple(number(x).real for x in (axes.cos, axes.sin)),
         varying,
     )
-    return ContinuumAt(at_rest, loads, continuum.initial, continuum.loads)

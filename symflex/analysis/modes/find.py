@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import BESIDE, SystemAt, null_space, system_at
+from symflex.analysis.modes.bound_equations import BESIDE, moving_continuum, null_space
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.balls import precision
 from symflex.budget import spend
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from symflex.library.elements import Variable
     from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import AnyBoundFunction
+    from symflex.transfer.equations_at import NamedValues
 
 DIGITS = 15
 SPARE_DIGITS = 15
@@ -163,6 +164,7 @@ class _ModeSearch:
         missing = tuple(p for p in model.parameters if p.name not in given)
         self.equations = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
         domains = {n.name: n.domain for n in model.nodes}
+        self._rows = [row.form for row in equations.rows]
         self._units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
 
     def map(self, region: Region | None, digits: int) -> PoleZeroMap:
@@ -241,16 +243,17 @@ class _ModeSearch:
         bits = root.working_bits() + SPARE_BITS
         with precision(bits):
             s = acb(root.re, root.im)
-            system = system_at(self.equations, s)
-            typical = system_at(self.equations, s.mid() * BESIDE if s.mid() != 0 else acb(1)).matrix
+            number, unknowns = self.equations.on(s), self.equations.equations.unknowns
+            beside = self.equations.on(s.mid() * BESIDE if s.mid() != 0 else acb(1))
+            matrix, typical = (x.matrix(self._rows, unknowns) for x in (number, beside))
             for dimension in range(1, DIMENSIONS + 1):
-                space = null_space(system.matrix, dimension, typical)
+                space = null_space(matrix, dimension, typical)
                 if space is None:
                     continue
                 if not space.is_refuted:
-                    basis = _tidied(space.basis, system.unknowns, self._units)
+                    basis = _tidied(space.basis, unknowns, self._units)
                     is_proved = dimension == 1 and root.certified
-                    raw = [self._shape(root, system, values, is_proved) for values in basis]
+                    raw = [self._shape(root, number, values, is_proved) for values in basis]
                     scaled = [normalised(shape, digits) for shape in raw]
                     return tuple(x for x in scaled if x is not None) if None not in scaled else ()
                 if dimension == 1:
@@ -262,10 +265,11 @@ class _ModeSearch:
         return ()
 
     def _shape(
-        self, root: Root, system: SystemAt, values: Sequence[acb], is_proved: bool
+        self, root: Root, number: NamedValues, values: Sequence[acb], is_proved: bool
     ) -> EnclosedModeShape:
-        amplitudes = dict(zip(system.unknowns, values, strict=True))
-        distributed = tuple(part.shape(amplitudes) for part in system.continua)
+        equations = self.equations.equations
+        amplitudes = dict(zip(equations.unknowns, values, strict=True))
+        distributed = tuple(moving_continuum(part, number, amplitudes) for part in equations.continua)
         starts = {part.name: float(part.start.mid()) for part in distributed}
         motions = tuple(
             Motion(_name(variable, starts), variable, value, self._units[variable])

@@ -57,6 +57,7 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import GUARD_BITS
 from symflex.transfer import BoundNested
+from symflex.transfer.double_value import DOUBLE_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -72,6 +73,8 @@ LAST_BITS = 12288
 """Precision of the first attempt, and where doubling it ends: six times."""
 DETECTION_BITS = 768
 """Precision at which a coefficient whose ball holds zero counts as zero if nothing proves it."""
+DOUBLE_DIGITS = 17
+"""Digits that tell a double from its neighbours."""
 SLACK = 16
 """Terms that roots of vanishing coefficients may cost."""
 LONGEST = 160
@@ -98,6 +101,30 @@ class LaurentSeries:
     def principal_part(self) -> tuple[acb, ...]:
         """The coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order."""
         return tuple(self.coefficient(-power) for power in range(1, 1 - self.order))
+
+
+def limit_at_zero(bound: AnyBoundFunction) -> arb:
+    """Return the limit for s -> 0 from the right, to double precision; it is infinite at a pole.
+
+    SF405 when it cannot be decided.
+    """
+    value = acb(0) if bound.is_zero else bound.enclosed(FIRST_BITS)(acb(0))
+    if isinstance(bound, BoundNested) and not value.is_finite():
+        value = bound.solved(acb(0), FIRST_BITS)
+    if value == 0 or (value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS):
+        return value.real
+    if not isinstance(bound, BoundNested) and bound.root is not None and bound.root.shift != 0:
+        raise _undecided(bound)  # s = 0 is not where the root of s vanishes
+    series = expand_at_zero(bound, 0, DOUBLE_DIGITS)
+    first = series.coefficients[0].real
+    if series.order:
+        return arb(0) if series.order > 0 else arb("inf" if first > 0 else "-inf")
+    return first
+
+
+def _undecided(bound: AnyBoundFunction) -> UncertifiedError:
+    message = f"the behaviour of {bound.name} near s = 0 could not be determined"
+    return UncertifiedError(Diagnostic("SF405", message))
 
 
 def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSeries:
@@ -134,8 +161,7 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
             bits = next(finer, None)
             if expansion == "unproved":
                 orders = [None] * len(orders)
-    message = f"the behaviour of {bound.name} near s = 0 could not be determined"
-    raise UncertifiedError(Diagnostic("SF405", message))
+    raise _undecided(bound)
 
 
 def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeries:
@@ -150,8 +176,7 @@ def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeri
             coefficients = [acb(c.real) for c in series_quotient(first, second, count)]
         if _is_accurate(coefficients, digits, bits_for_digits(digits)):
             return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in coefficients))
-    message = f"the behaviour of {sides.bound.name} near s = 0 could not be determined"
-    raise UncertifiedError(Diagnostic("SF405", message))
+    raise _undecided(sides.bound)
 
 
 def _quotient(

@@ -162,30 +162,6 @@ def test_rods_have_the_values_of_the_wave_equation_at_forty_digits():
         assert bound(s) == pytest.approx(complex(exact), rel=4e-16), (text, given)
 
 
-def test_the_limit_of_a_rod_at_zero():
-    for text, output, a, limit in [
-        # Two metres of rod on a spring of 3 N/m: 1/3 + l/(E A).
-        (HELD, "X", 1, 1 / 3 + 2 / 7e6),
-        (HELD, "V", 1, 0.0),
-        (HELD, "N", -1, -(1 / 3 + 2 / 7e6)),
-        (FREE, "X", 1, math.inf),
-        (FREE, "V", 1, math.inf),
-        (FREE, "N", -1, -math.inf),
-        (FREE, "N", 0, 0.0),
-    ]:
-        found = pipeline.bind(derive(text, output), {"a": a} if output == "N" else {}).limit_at_zero()
-        assert found == pytest.approx(limit, rel=1e-15, abs=0), (text, output, a)
-
-
-def test_the_limit_of_masses_and_springs_at_zero():
-    for output, limit in [("Y", 1 / 24), ("V", 0.0), ("I", -math.inf), ("W", 4 * math.pi / 24 - 3 / 24)]:
-        # At rest both masses move by F/(3 k).
-        found = pipeline.bind(derive(TWO_MASSES, output)).limit_at_zero()
-        assert found == pytest.approx(limit, rel=1e-15, abs=0), output
-    # The integral of 1/24 has no bound, however small that is.
-    assert pipeline.bind(derive(TWO_MASSES.replace("-y/s", "y/s"), "I")).limit_at_zero() == math.inf
-
-
 def diagnostic(error, code, values=None, text=TWO_MASSES, output="Y", source="F"):
     with pytest.raises(error) as caught:
         pipeline.bind(derive(text, output, source), values)
@@ -365,7 +341,7 @@ def test_where_a_wavenumber_vanishes_the_value_is_the_limit():
 
 def test_a_function_that_values_make_zero_is_zero_everywhere():
     bound = pipeline.bind(derive(HELD, "N"), {"a": 0})
-    assert (bound(3j), bound(0j), bound.limit_at_zero()) == (0, 0, 0)
+    assert (bound(3j), bound(0j)) == (0, 0)
 
 
 def test_a_denominator_of_a_wavenumber_that_vanishes_is_told_with_a_way_out():

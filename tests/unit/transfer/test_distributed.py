@@ -99,17 +99,6 @@ def test_the_rigid_body_position_is_hidden_from_the_velocity():
     assert [(str(h.polynomial), h.multiplicity) for h in SLIDING["V_act/F"].hidden] == [("s", 1)]
 
 
-def test_the_static_limit_is_that_of_the_tables():
-    clamped = members(ARM, FIXED, outputs='X = "q"\nQ = "q.theta"')
-    sprung = members(ARM, SLIDE, 'k = { type = "spring", between = ["p", "ground"], k = "k" }')
-    for tf, wanted in [
-        (clamped["X/F"], LENGTH**3 / (3 * EI)),
-        (clamped["Q/F"], LENGTH**2 / (2 * EI)),
-        (sprung["X/F"], LENGTH**3 / (3 * EI) + mp.mpf("1e-4")),
-    ]:
-        assert abs(pipeline.bind(tf).limit_at_zero() / float(wanted) - 1) < 1e-13, wanted
-
-
 def test_what_a_loop_reads_between_the_ends_adds_no_hidden_power_of_s():
     """A force on the free ends by what u does between them leaves the bar's translation: s^2 = 0, twice.
 

@@ -10,12 +10,13 @@ import scipy.signal
 
 from symflex import pipeline
 from symflex.analysis.rational import expand_at_pole, expand_at_zero, find_residues
+from symflex.analysis.rational.laurent import limit_at_zero
 from symflex.balls import to_complex_mpmath
 from symflex.errors import UncertifiedError
 from symflex.roots import Modes
 from symflex.roots.locate import locate
 from tests.independent import classics
-from tests.unit.analysis.rods import bound, rational
+from tests.unit.analysis.rods import CLAMPED_ROD, FREE_ROD, bound, rational
 from tests.unit.roots import distributed_models as distributed
 
 CLASSICS = Path(__file__).parents[4] / "derivations" / "classics"
@@ -40,6 +41,29 @@ def test_a_double_pole_at_zero_by_hand():
     assert [float(c.real) for c in one.coefficients] == [2]
     assert not zero.is_estimate
     assert not one.is_estimate
+
+
+@pytest.mark.parametrize(
+    ("function", "limit"),
+    [
+        (rational("(s + 3)/(s + 4)"), 0.75),
+        (rational("s^2/(s + 1)"), 0),
+        (rational("-1/s"), -np.inf),
+        (rational("sqrt(s + 4)/(sqrt(s + 4) + 3)"), 0.4),
+        (rational("1/sqrt(s)"), np.inf),
+        (bound(CLAMPED_ROD, "X/F"), 1),  # l/(E A)
+        (bound(CLAMPED_ROD, "V/F"), 0),
+        (bound(FREE_ROD, "Y/F"), np.inf),
+    ],
+)
+def test_limits_at_zero_are_those_of_the_closed_forms(function, limit):
+    found = limit_at_zero(function)
+    assert (float(found.mid()), float(found.rad()) < 1e-16) == (limit, True)
+
+
+def test_the_limit_is_not_said_where_a_root_of_s_has_a_pole_at_zero():
+    with pytest.raises(UncertifiedError, match="near s = 0"):
+        limit_at_zero(rational("1/(sqrt(s + 4) - 2)"))
 
 
 def test_partial_fractions_are_those_of_scipy():
