@@ -346,7 +346,7 @@ def respond(
     if grid.ndim != 1 or not np.isfinite(grid).all():
         message = "omega must be a one-dimensional array of finite numbers"
         raise UsageError(Diagnostic("SF902", message))
-    settled = bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
+    settled = without_lengths_of_zero(bound) if bound.is_reduced else bound
     if settled is not bound:
         bound, roots = settled, None
     quantity, unit = bound.source.quantity, bound.source.unit
@@ -357,7 +357,7 @@ def respond(
             check_causal(bound.source.model, "a response at omega <= 0")
         return SampledResponse(bound.name, grid, evaluate(bound, grid), quantity, unit)
     values = evaluate(bound, grid)
-    of_network = _network_turns(bound, grid, values) if isinstance(bound, BoundNested) else None
+    of_network = None if bound.is_reduced else _network_turns(bound, grid, values)
     if of_network is not None:
         turns = of_network
     elif not bound.is_rational:
@@ -435,12 +435,7 @@ def _turns_to(
 
 def evaluate(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
     """Return the values at angular frequencies, with more bits where cancellation asks for them."""
-    points = (1j * omega).tolist()
-    if isinstance(bound, BoundNested) and points:
-        # All ask for about as many bits, in long chains for more.
-        bits = bound.bits_at(points[-1])
-        return np.array([bound(s, bits) for s in points], np.complex128)
-    return np.array([bound(s) for s in points], np.complex128)
+    return np.array(bound.each((1j * omega).tolist()), np.complex128)
 
 
 REFINED_DAMPING = 0.3

@@ -175,7 +175,7 @@ class _Derived:
 
     def __reduce__(self) -> tuple[object, ...]:
         pair = self.exact.output.name, self.exact.input.name
-        return _derive_again, (self.exact.model, pair, isinstance(self, NestedTransferFunction))
+        return _derive_again, (self.exact.model, pair, not self.exact.is_reduced)
 
     def __call__(self, *_: object) -> NoReturn:
         """Say that only numbers have a value."""

@@ -63,7 +63,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         response_text,
     )
     from symflex.data.measurement.input_signal import ENDINGS
-    from symflex.transfer import BoundNested
+    from symflex.roots.locate import as_quotient
 
     place = Path(given.record or given.to)
     is_file = given.record is not None or place.suffix.lower() in ENDINGS
@@ -93,7 +93,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         wanted = tuple(dict.fromkeys(signal.times))
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
-        whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
+        whole = as_quotient(bound)
         forced = forced_response(
             whole, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
         )

@@ -12,7 +12,6 @@ from symflex.model.model import Figure as Asked
 from symflex.print.forms import print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.roots.locate import locate
-from symflex.transfer import NestedTransferFunction
 from symflex.transfer.nested_form import bind_any
 
 if TYPE_CHECKING:
@@ -137,7 +136,7 @@ class LatexExporter:
         forms, sentences = print_forms(tfs, self.form)
         maps, warnings = [], list(sentences)
         for tf in tfs:
-            if isinstance(tf, NestedTransferFunction) and tf.is_rational:
+            if tf.is_rational and not tf.is_reduced:
                 warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
             bound = _bound(tf)
             if bound is None:
@@ -155,7 +154,7 @@ def _bound(tf: AnyTransferFunction) -> AnyBoundFunction | None:
 
     Of large lumped models, which are nested, there is none either: their roots take too long for a print.
     """
-    if isinstance(tf, NestedTransferFunction) and tf.is_rational:
+    if tf.is_rational and not tf.is_reduced:
         return None
     try:
         return bind_any(tf)

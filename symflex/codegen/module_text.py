@@ -50,7 +50,7 @@ FOLLOWED = (
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
-    if isinstance(tf, NestedTransferFunction) and not tf.is_rational:
+    if tf.solves_network:
         return (inert(_members_of(tf.model)),)
     form = _readable_form(tf)
     if form is not None:
@@ -61,14 +61,7 @@ def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
             lines.append(f"{word} {inert(f'{symbol} = {format_expression(expression)}')}")
         if sum(map(len, lines)) <= FORMULA_LENGTH:
             return tuple(lines)
-    if isinstance(tf, NestedTransferFunction):
-        kind = f"nested expressions of {tf.size} operations"
-    elif not tf.is_rational:
-        kind = f"sums of kernels of {tf.length} terms"
-    else:
-        above, below = tf.order
-        kind = f"polynomials of degree {above} and {below}"
-    return (f"A quotient of {kind} in s, which symflex derive --tf {inert(tf.name)} prints.",)
+    return (f"A quotient of {tf.extent} in s, which symflex derive --tf {inert(tf.name)} prints.",)
 
 
 def _members_of(model: Model) -> str:

@@ -47,7 +47,7 @@ from symflex.roots import Everything, Modes
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.passivity import energy_proof
-from symflex.transfer import NestedTransferFunction, bind
+from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -75,7 +75,7 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
     >>> [part["degree"] for part in tape["poles"]], len(tape["start"]["poles"])
     ([1, 2], 1)
     """
-    if (reason := _refusal(tf)) or isinstance(tf, NestedTransferFunction):
+    if (reason := _refusal(tf)) or not tf.is_reduced:
         return {"refused": reason}
     try:
         bound = bind(tf)
@@ -99,7 +99,7 @@ def _refusal(tf: AnyTransferFunction) -> str:
     """Return why there is no tape of a function, empty where there may be one."""
     if not is_closed(tf):
         return "it is evaluated by a product over its roots, whose parameters are fixed"
-    if isinstance(tf, NestedTransferFunction) or tf.is_large or tf.length > TERM_LIMIT:
+    if not tf.is_reduced or tf.is_large or tf.length > TERM_LIMIT:
         return "its polynomials would have too many terms"
     if tf.model.root is not None or tf.model.imaginary:
         return "it is a function of a root of s, or its coefficients are complex"

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from symflex.expressions import Name, format_expression, names
 from symflex.print.forms import hidden_expressions
 from symflex.print.latex import inline_latex
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +37,7 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
         "where": [[n, format_expression(lines[n])] for n in TopologicalSorter(needs).static_order()],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
-        "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
+        "hidden": hidden if tf.is_reduced else None,
         "stability": form.stability.to_json_dict() if form.stability else None,
         **({"closed": closed} if closed else {}),
     }

@@ -42,7 +42,6 @@ from symflex.expressions import (
 )
 from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
-from symflex.transfer import NestedTransferFunction
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.probes import SOLVED_BITS, probes_of
 
@@ -98,7 +97,7 @@ def read_hidden(
     Wavenumbers are roots, of which any may be taken: a factor is one up to a fourth root of 1, and where s is
     on the right, for to its left one may be the other. Raises InternalError: SF992 where they differ.
     """
-    if isinstance(tf, NestedTransferFunction) or not tf.hidden:
+    if not (tf.is_reduced and tf.hidden):
         return
     probes, bits = probes_of(tf), PRECISIONS[1]
     chosen = [i for i, (_, (re, _)) in enumerate(probes.points) if re > 0]
@@ -212,12 +211,12 @@ class _Reader:
     @property
     def kernels(self) -> Sequence[Kernel]:
         """The kernels of the transfer function."""
-        return () if isinstance(self.tf, NestedTransferFunction) else self.tf.kernels.kernels
+        return self.tf.kernels.kernels
 
     @cached_property
     def matrices(self) -> Sequence[tuple[Dispersion, tuple[tuple[str, Equation], ...]]]:
         """The laws that vary along x, each with the printed line of every row."""
-        if isinstance(self.tf, NestedTransferFunction) or not self.form.laws:
+        if not (self.tf.is_reduced and self.form.laws):
             return ()
         rows = iter([(name, law) for name, law in self.form.laws if isinstance(law.left, Derivative)])
         used = self.tf.ratio.ring.used_in(f for f, _ in self.tf.ratio.factors)
@@ -298,7 +297,7 @@ class _Points:
     def _entry(self, name: str, place: list[acb]) -> list[acb]:
         """Return an entry of a fundamental matrix."""
         tf, probes = self._reader.tf, self._reader.probes
-        assert not isinstance(tf, NestedTransferFunction)
+        assert tf.is_reduced
         d, i, j = self._reader.entries[name]
         for kernel in self._reader.kernels:
             if kernel.dispersion is not d or kernel.order != i * d.order + j:

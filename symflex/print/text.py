@@ -19,7 +19,6 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -75,7 +74,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
     for factor, multiplicity in hidden:
         times = f", {multiplicity} times" if multiplicity > 1 else ""
         lines += hanging(f"{INDENT}hidden: ", factor, width, f" cancelled{times}")
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
     elif tf.hidden:
         lines.append("")

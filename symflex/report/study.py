@@ -21,7 +21,7 @@ from symflex.model.loss_factors import has_loss_factors
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
-from symflex.transfer import BoundNested, BoundTransferFunction, TransferFunction
+from symflex.transfer import BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -176,7 +176,7 @@ class Study:
         return tuple(
             (bound.source, by_name[bound.name], why)
             for bound in self.bounds
-            if bound.name in by_name and (self.model.imaginary or isinstance(bound, BoundNested))
+            if bound.name in by_name and (self.model.imaginary or not bound.is_reduced)
         )
 
     @cached_property

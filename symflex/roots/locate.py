@@ -159,6 +159,11 @@ def of_numbers(bound: AnyBoundFunction) -> BoundTransferFunction:
     return derived
 
 
+def as_quotient(bound: AnyBoundFunction) -> BoundTransferFunction:
+    """Return a function as a quotient in lowest terms: as it is, or of numbers where it is nested."""
+    return bound if bound.is_reduced else of_numbers(bound)
+
+
 def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> PoleZeroMap:
     """Find poles and zeros of a function in nested form, from the equations it solves."""
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large

@@ -33,7 +33,7 @@ from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
-from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested, TransferFunction, bind_any
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction, bind_any
 
 LARGEST = 1023
 """Exponent of two beyond which nothing is told."""
@@ -195,7 +195,7 @@ class RootSolver:
 
     def _bound(self, values: dict[str, ExactValue]) -> AnyBoundFunction:
         bound = bind_any(self._tf, values)
-        return bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
+        return without_lengths_of_zero(bound) if bound.is_reduced else bound
 
     def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
         similarity = self._similarities.at({**self._declared, **values}) if self._similarities else None

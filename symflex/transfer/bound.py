@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
 from math import prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from flint import acb, acb_poly, acb_series, arb
 
@@ -25,7 +25,7 @@ from symflex.transfer.double_value import double_value
 from symflex.transfer.enclose import enclosure, later
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -132,6 +132,7 @@ Enclosed = EnclosedTransferFunction | EnclosedDistributed
 class BoundTransferFunction:
     """A transfer function with numbers."""
 
+    is_reduced: ClassVar[Literal[True]] = True  # numerator and denominator have nothing in common
     source: TransferFunction  # the symbolic function
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
     ratio: Factored  # over a ring with generators s, pi and the functions of constants
@@ -326,6 +327,10 @@ class BoundTransferFunction:
         if self.ratio.is_zero:
             return 0j
         return double_value(self._known, s, 0 if self.kernels else None)
+
+    def each(self, points: Sequence[complex]) -> list[complex]:
+        """Return the values at many complex frequencies [rad/s]; see :meth:`__call__`."""
+        return [self(s) for s in points]
 
 
 def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpoly, ...]:

@@ -22,11 +22,11 @@ from fractions import Fraction
 from functools import cache, cached_property, partial
 from math import prod
 from operator import truediv
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.balls import UndecidedError, ball, expansion, precision, precisions, raised
 from symflex.budget import spend, uncollected
@@ -39,6 +39,7 @@ from symflex.transfer.direct_solve import Point
 from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value
 from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.transfer_function import (
+    HiddenFactor,
     TransferFunction,
     name_quantity,
     parameters_named,
@@ -89,6 +90,10 @@ class NestedTransferFunction:
     mode, is not looked for. As a function of s and the parameters the quotient is exact.
     """
 
+    is_reduced: ClassVar[Literal[False]] = False
+    hidden: ClassVar[tuple[HiddenFactor, ...]] = ()  # none was looked for
+    kernels: ClassVar[KernelTable] = NO_KERNELS  # it holds no wavenumbers
+    is_nameless: ClassVar[bool] = False  # for the same reason
     output: Output  # what is measured
     input: Input  # what drives
     program: StraightLine  # the steps; those of several functions of a model may share a program
@@ -123,9 +128,14 @@ class NestedTransferFunction:
         return not self.waves
 
     @property
-    def is_nameless(self) -> bool:
-        """False, as it holds no wavenumbers."""
-        return False
+    def solves_network(self) -> bool:
+        """True when values are those of a network of waves, solved at every s."""
+        return not self.is_rational
+
+    @property
+    def extent(self) -> str:
+        """What numerator and denominator are, and how long, in words."""
+        return f"nested expressions of {self.size} operations"
 
     @cached_property
     def waves(self) -> tuple[Waves, ...]:
@@ -219,6 +229,8 @@ def _only_value(tf: NestedTransferFunction, _: Point, known: Mapping[str, acb]) 
 class BoundNested:
     """A nested transfer function with numbers."""
 
+    is_reduced: ClassVar[Literal[False]] = False
+    kernels: ClassVar[KernelTable] = NO_KERNELS  # it holds no wavenumbers
     source: NestedTransferFunction  # the symbolic function
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
     located: dict[object, Any] = field(default_factory=dict)  # poles and zeros that are known, by region
@@ -293,8 +305,15 @@ class BoundNested:
         # A program may divide by what is zero for these values, such as the sine of an angle of 180 degrees.
         return double_value(lambda bits: partial(self.solved, bits=bits), s, 1)
 
-    def bits_at(self, s: complex) -> int:
-        """Return how many bits of precision the value needs; other points need about as many."""
+    def each(self, points: Sequence[complex]) -> list[complex]:
+        """Return the values at many complex frequencies [rad/s]; see :meth:`__call__`.
+
+        All ask for about as many bits as the last, in long chains for more.
+        """
+        bits = self._bits_at(points[-1]) if points else FIRST_BITS
+        return [self(s, bits) for s in points]
+
+    def _bits_at(self, s: complex) -> int:
         point = acb(s.real, s.imag)
         for bits in precisions(FIRST_BITS, LAST_BITS // 2):
             if self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:

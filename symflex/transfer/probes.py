@@ -196,7 +196,7 @@ def probes_of(tf: AnyTransferFunction) -> Probes:
 
 def _is_large(tf: AnyTransferFunction) -> bool:
     """Tell whether a function is so long that few points have to do."""
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         return tf.size > LARGE
     sides = (tf.closed.num, tf.closed.den) if tf.closed is not None else (f for f, _ in tf.ratio.factors)
     return sum(map(len, sides)) > LARGE

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, degree_in
 from symflex.equations import radicals_of
@@ -101,6 +101,8 @@ class ClosedForm:
 class TransferFunction:
     """``output = ratio(s) * input``, in lowest terms."""
 
+    is_reduced: ClassVar[Literal[True]] = True  # what they had in common is in ``hidden``
+    solves_network: ClassVar[bool] = False  # values are those of the formula
     output: Output  # what is measured
     input: Input  # what drives
     # Numerator over denominator; every factor of one is coprime to every factor of the other. None when it is
@@ -244,6 +246,14 @@ class TransferFunction:
             if name in used:
                 used |= value.ring.used_in(f for f, _ in value.factors)
         return parameters_named(self.model, self.constants, used)
+
+    @property
+    def extent(self) -> str:
+        """What numerator and denominator are, and how long, in words."""
+        if not self.is_rational:
+            return f"sums of kernels of {self.length} terms"
+        above, below = self.order
+        return f"polynomials of degree {above} and {below}"
 
     @property
     def order(self) -> tuple[int, int]:

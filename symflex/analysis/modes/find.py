@@ -25,7 +25,7 @@ from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
-from symflex.transfer import BoundNested, nested_transfer
+from symflex.transfer import nested_transfer
 from symflex.transfer.bind import read_values
 from symflex.transfer.equations_at import EquationsAt
 
@@ -155,7 +155,7 @@ class _ModeSearch:
         self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
         model = bound.source.model
         check_causal(model, "a mode shape")
-        of_nested = bound.source.equations if isinstance(bound, BoundNested) else None
+        of_nested = None if bound.is_reduced else bound.source.equations
         given = dict(bound.values)
         if of_nested is None and is_tapered(model):
             # Bounds on a coefficient in names are wide: a member is taken in ten times as many steps.
@@ -204,7 +204,7 @@ class _ModeSearch:
         if root.is_zero or any(p is root for p in known):
             return root
         region: Region | None = None
-        if isinstance(self.bound, BoundNested) and self._maps:
+        if self.bound.source.solves_network and self._maps:
             region = next(iter(self._maps))[0]  # a disc holds all roots below: one search serves them all
         elif not self.bound.is_rational:
             frequency = Fraction(root.frequency_hz())

@@ -29,10 +29,9 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import locate, of_numbers
+from symflex.roots.locate import as_quotient, locate
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, modes_of
-from symflex.transfer import BoundNested
 from symflex.transfer.bound import EnclosedTransferFunction
 
 if TYPE_CHECKING:
@@ -171,10 +170,8 @@ def approximate(
     check_form(form, tuple(FORMS))
     if band is not None:
         check_band(*band)
-    if not isinstance(bound, BoundNested):
-        bound = without_lengths_of_zero(bound)
-    elif bound.is_rational:
-        bound = of_numbers(bound)
+    if bound.is_reduced or bound.is_rational:
+        bound = without_lengths_of_zero(as_quotient(bound))
     if bound.is_zero:
         message = f"{bound.name} is identically zero"
         raise ModelError(Diagnostic("SF402", message, None, "the input does not reach the output"))

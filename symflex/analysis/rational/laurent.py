@@ -457,7 +457,7 @@ def find_residues(
     too long, SF405 when poles cannot be separated, or the behaviour at one cannot be decided.
     """
     check_causal(bound.source.model, "a residue")
-    if not isinstance(bound, BoundNested):
+    if bound.is_reduced:
         bound = without_lengths_of_zero(bound)
     return residues_at(bound, locate(bound, region, digits).complete().all_poles, digits)
 

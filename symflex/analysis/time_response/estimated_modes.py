@@ -25,7 +25,6 @@ from symflex.roots.distributed.proof import holes_about
 from symflex.roots.distributed.side import accumulation_points
 from symflex.roots.locate import locate
 from symflex.roots.region import Modes
-from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,7 +43,7 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     Raises UncertifiedError: SF810 where modes do not say what the response is.
     """
     few, many = EFFORT.few_estimated, EFFORT.estimated_modes
-    count = few if isinstance(bound, BoundNested) else many
+    count = many if bound.is_reduced else few
     modal_sum = _summed(bound, integrations, times, count)
     left = sorted(modal_sum.at_times or (modal_sum.rest,), key=arb.mid)
     typical = left[len(left) // 2]
@@ -78,9 +77,7 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
         at_times: tuple[arb, ...] = ()
         if terms:
             # At t = 0 it is known what all modes add up to. A taper so far beyond its modes takes gigabytes.
-            tapers = not isinstance(bound, BoundNested) and any(
-                kernel.function == "entry" for kernel in bound.kernels.kernels
-            )
+            tapers = any(kernel.function == "entry" for kernel in bound.kernels.kernels)
             far = (1 if tapers else EFFORT.far) * max(abs(term.rate).upper() for term in terms)
             small = EFFORT.begun_closely * max(sizes, default=0.0)
             begun, sooner = (_begun(bound, integrations, s.mid(), small) for s in (far, far / 2))
@@ -127,7 +124,7 @@ def _rings(
     bound: AnyBoundFunction, poles: Sequence[Root], integrations: int
 ) -> list[tuple[Annulus, list[ExponentialTerm]]]:
     """Return what poles add that accumulate, as about -1/eta, as far as all others on a ring are known."""
-    if isinstance(bound, BoundNested):
+    if not bound.is_reduced:
         return []
     reached = max((root.natural_frequency() for root in poles), default=arb(0), key=arb.mid)
     places = [root.enclosure() for root in poles]

@@ -54,7 +54,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions.format import decimal_exponent
 from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import equations_of, of_numbers
+from symflex.roots.locate import as_quotient, equations_of
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
@@ -121,11 +121,11 @@ def time_response(
     integrations = INTEGRATIONS[kind]
     if bound.is_zero or not len(times):
         sampled = Sampled((arb(0),) * len(times))
-    elif isinstance(bound, BoundNested) and not bound.is_rational:
+    elif not (bound.is_reduced or bound.is_rational):
         sampled = _of_network(bound, integrations, times)
     else:
-        written = of_numbers(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
-        sampled = _answer(Asked(written, integrations, times, digits))
+        quotient = without_lengths_of_zero(as_quotient(bound))
+        sampled = _answer(Asked(quotient, integrations, times, digits))
     return EnclosedResponse(
         bound.name,
         kind,

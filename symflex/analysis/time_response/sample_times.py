@@ -23,7 +23,6 @@ from symflex.analysis.response import real_numbers, roots_if_found
 from symflex.balls import at_centre, ball
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
-from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -194,7 +193,7 @@ def default_until(bound: AnyBoundFunction, roots: PoleZeroMap | None = None) -> 
 
 
 def _delays(bound: AnyBoundFunction) -> list[float]:
-    if isinstance(bound, BoundNested) or bound.is_rational:
+    if not bound.is_reduced or bound.is_rational:
         return []
     evaluator, delays = bound.kernel_values(), []
     values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}

@@ -41,7 +41,6 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import figure
-from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -155,7 +154,7 @@ def find_step_info(
     With waves, numbers are as sharp as the modes left out allow.
     """
     check_causal(bound.source.model, "a step response")
-    if isinstance(bound, BoundNested):
+    if not bound.is_reduced:
         return None
     bound = without_lengths_of_zero(bound)
     if bound.is_zero or bound.sheets > 1:

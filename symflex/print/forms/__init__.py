@@ -346,7 +346,7 @@ def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
     >>> terms_to_print(pipeline.derive_all(model)[0], "polynomial")
     3
     """
-    if isinstance(tf, NestedTransferFunction) or not tf.is_rational or form == "zpk":
+    if not (tf.is_reduced and tf.is_rational) or form == "zpk":
         return 0
     closed = tf.closed if form in (None, "definitions") and tf.length > LARGE else None
     return tf.length if closed is None else len(closed.num) + len(closed.den)

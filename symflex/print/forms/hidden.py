@@ -24,7 +24,6 @@ from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm, in_roots
 from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -44,8 +43,8 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
 
     Kernels are written out, ``cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A)))))``: names of a form mean nothing here.
     """
-    if isinstance(tf, NestedTransferFunction):
-        return ()  # not looked for
+    if not tf.is_reduced:
+        return ()
     factors = _spelled_out(tf)
     read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
     root = tf.model.root
@@ -76,7 +75,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     >>> format_expression(factor), times, [name for name, _ in form.where]
     ('sinh(q) - sin(q)', 1, ['q', 'mu', 'a'])
     """
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         return form, ()
     has_kernels = tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators)
     if tf.model.root or not has_kernels:

@@ -22,7 +22,6 @@ from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
 from symflex.print.roots import KINDS, region_text, roots_of
 from symflex.print.width import EM_MM
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -170,7 +169,7 @@ def _blocks(
         # Without a blank line: a display belongs to the paragraph before it.
         yield _equation(tf, named, width_mm, "\n\n")
         hidden = []
-        if not isinstance(tf, NestedTransferFunction):
+        if tf.is_reduced:
             writer = Writer(form_labels(tf, named))
             pairs = zip(tf.hidden, factors, strict=True)
             hidden = [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in pairs]
@@ -218,7 +217,7 @@ def _plain_stem(name: str) -> str:
 
 def _introduction(tf: AnyTransferFunction) -> str:
     unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         about = "in nested form; hidden modes were not looked for"
     else:
         zeros, poles = counts_of(tf)
