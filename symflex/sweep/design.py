@@ -26,6 +26,7 @@ from symflex.quantities import parse_quantity
 from symflex.roots import Region
 from symflex.transfer import AnyTransferFunction, Given
 from symflex.transfer.bind import read_values
+from symflex.transfer.of_model import derive_all, derive_as
 
 Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]
@@ -185,10 +186,6 @@ Rows = dict[str, Array]
 CODE_LENGTH = 5
 
 
-Derive = Callable[["Model", Sequence[tuple[str, str]]], tuple["AnyTransferFunction", ...]]
-"""A function from a model and pairs to transfer functions; a worker imports it by its name."""
-
-
 @dataclass(frozen=True)
 class Task:
     """What is wanted at every point."""
@@ -197,7 +194,6 @@ class Task:
     pair: tuple[str, str]  # output and input
     of: str  # a key of :data:`QUANTITIES`
     names: tuple[str, ...]  # the swept parameters, in the order of a point's values
-    derive: Derive  # from a model to transfer functions
     region: Region | None = None  # where roots are sought
     frequencies: tuple[float, ...] = ()  # of a response [Hz]
     gain: str = ""  # of margins
@@ -215,8 +211,12 @@ def fingerprint(task: Task) -> str:
 
 
 def derived(task: Task, *symbols: str) -> AnyTransferFunction:
-    """Return the task's transfer function, with the swept parameters and others as symbols."""
-    return task.derive(with_numbers(task.model, (*task.names, *symbols)), [task.pair])[0]
+    """Return the task's transfer function, with the swept parameters and others as symbols.
+
+    That of a large network is in nested form.
+    """
+    model, pairs = with_numbers(task.model, (*task.names, *symbols)), [task.pair]
+    return derive_as(model, pairs)[0][0] if model.is_distributed else derive_all(model, pairs)[0]
 
 
 def codes_of(codes: Sequence[str]) -> Array:

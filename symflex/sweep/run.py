@@ -1,7 +1,7 @@
 """Running a sweep: chunks of points go to this process, to others or to a cluster, in any order.
 
 Input: a model and ``--over k=1:5:lin:9 --modes 3``.
-Output: ``Task(model, ("X", "F"), "poles", ("k",), derive_for_values, Modes(3))`` and a design of 9 points,
+Output: ``Task(model, ("X", "F"), "poles", ("k",), Modes(3))`` and a design of 9 points,
 solved; and the file it goes to.
 """
 
@@ -49,7 +49,7 @@ from symflex.sweep.files import FolderJournal, check_writable, open_journal, swe
 from symflex.sweep.follow import Between, Complexes
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
 from symflex.sweep.sweep import Sweep, assembled
-from symflex.transfer.of_model import derive_for_values, pick_pairs
+from symflex.transfer.of_model import pick_pairs
 
 CONNECT_SECONDS = 10
 
@@ -310,7 +310,7 @@ def sweep_task(
         pick_gain(model.parameters, gain)
     check_design(model, design)
     lines = tuple(map(float, frequencies))
-    return Task(model, pair, of, design.names, derive_for_values, region, lines, gain)
+    return Task(model, pair, of, design.names, region, lines, gain)
 
 
 def sweep(

@@ -277,16 +277,6 @@ def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundT
     return tuple(bind(tf) for tf in derive_all(with_numbers(model), pairs))
 
 
-def derive_for_values(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[AnyTransferFunction, ...]:
-    """Return transfer functions that are to be bound to many values: of large networks in nested form.
-
-    Raises what :func:`derive_all` raises for lumped models.
-    """
-    if model.is_distributed:
-        return derive_as(model, pairs)[0]
-    return derive_all(model, pairs)
-
-
 def derive_for_roots(
     model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False, is_named: bool = False
 ) -> tuple[AnyBoundFunction, ...]:
