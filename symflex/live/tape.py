@@ -28,7 +28,7 @@ A polynomial in s of degree n has n zeros: n discs that are apart hold them all,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial, reduce
 from typing import TYPE_CHECKING
@@ -89,8 +89,8 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
         for kind in sides
     }
     # Energy decides on stability whatever the values are, if they are positive.
-    free = tuple(replace(p, value=None, assume="positive") for p in tf.model.parameters)
-    passive = energy_proof(replace(tf.model, parameters=free), output=tf.output).is_passive
+    every = tuple(p.name for p in tf.model.parameters)
+    passive = energy_proof(tf.model, output=tf.output, free=every).is_passive
     named = {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "passive": passive}
     return named | {"start": start, **sides}
 

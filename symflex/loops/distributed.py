@@ -185,7 +185,7 @@ class DistributedFactors:
         is_straight = all(factor.degree <= 1 for factor in self.factors)
         if self.limits[0] < 0 or self.bound.sheets > 1 or not is_straight or not self.gain:
             return EnergyProof()
-        return energy_proof(source.model, self.bound.all_values, source.output, self.gain)
+        return energy_proof(source.model, self.bound.all_values, source.output, (self.gain,))
 
     @property
     def axis_end(self) -> float:

@@ -1,7 +1,7 @@
 """May a pole of a model lie right of the imaginary axis, may one lie on it, and if not, why: by energy.
 
-Input: a model with values, an output whose own poles count, the name of a gain of which any positive value is
-meant. Output: an :class:`EnergyProof`.
+Input: a model with values, an output whose own poles count, names of parameters of which any positive value
+is meant. Output: an :class:`EnergyProof`.
 
 Of ``x^H A(s) x/s`` mass, loss and stiffness are each nonnegative where no element supplies energy, and at
 Re(s) > 0 their sum vanishes only where nothing moves: no pole lies there (Anderson & Vongpanitlerd 1973,
@@ -114,14 +114,14 @@ def energy_proof(
     model: Model,
     values: Iterable[tuple[str, ExactValue]] = (),
     output: Output | None = None,
-    gain: str = "",
+    free: Sequence[str] = (),
 ) -> EnergyProof:
     """Return what energy says of the poles of a model.
 
-    ``values`` are put in place of those the parameters have. An ``output`` may have poles of its own, as
-    ``x/(T*s + 1)`` has. The parameter ``gain`` may have any positive value. Nothing is known with parameters
-    that depend on s, elements that are not of this program, fields beside elements or signals, or a value of
-    the wrong sign.
+    ``values`` are put in place of those the parameters have; those named ``free``, such as a gain, may have
+    any positive value. An ``output`` may have poles of its own, as ``x/(T*s + 1)`` has. Nothing is known with
+    parameters that depend on s, elements that are not of this program, fields beside elements or signals, or
+    a value of the wrong sign.
 
     Examples
     --------
@@ -134,16 +134,13 @@ def energy_proof(
     ... inputs.F = { force = "x" }
     ... outputs.X = "x"
     ... '''
-    >>> for sign in ("", "-"):
-    ...     print(energy_proof(pipeline.loads(text.replace("SIGN", sign))))
-    EnergyProof(reason='passive, nothing supplies energy', rests=False, limit=0.0, has_loop=False, \
-stiffness=0.0, damping=0.0)
-    EnergyProof(reason='', rests=False, limit=0.0, has_loop=False, stiffness=0.0, damping=0.0)
+    >>> [energy_proof(pipeline.loads(text.replace("SIGN", sign))).reason for sign in ("", "-")]
+    ['passive, nothing supplies energy', '']
     """
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
-    known.pop(gain, None)
-    free = (replace(p, value=None, assume="positive") if p.name == gain else p for p in model.parameters)
-    model = replace(_observed(model, output), parameters=tuple(free))
+    known = {name: value for name, value in known.items() if name not in free}
+    declared = (replace(p, value=None, assume="positive") if p.name in free else p for p in model.parameters)
+    model = replace(_observed(model, output), parameters=tuple(declared))
     if model.fields:
         is_passive, rests = fields_supply_nothing(model, known)
         return EnergyProof(PASSIVE, rests) if is_passive else EnergyProof()
@@ -158,7 +155,7 @@ stiffness=0.0, damping=0.0)
     if (
         not all(isinstance(e.element, ThroughSource) for e in sources)
         or not all(e.element.is_source or _supplies_nothing(e, line, signs[e.name]) for e in rest)
-        or (pressed and (has_loop or gain))
+        or (pressed and (has_loop or free))
         or (limit := _fastest_growth(pressed, line)) is None
     ):
         return EnergyProof()
@@ -169,6 +166,7 @@ stiffness=0.0, damping=0.0)
         for e in rest
     )
     equations, places = _with_signals_for(replace(model, elements=pulled), sources)
+    gain = free[0] if len(free) == 1 else ""
     structure = _Structure(equations, pulled, signs, gain, line, known, {use.name for use in pressed})
     closed = structure.closed_at(places)
     if closed is None:

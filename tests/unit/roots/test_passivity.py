@@ -43,7 +43,7 @@ def arm(tau=PD, section=UNIFORM, between='"hub", "tip"', more=""):
 
 
 def closed(model):
-    return energy_proof(model, gain="K")
+    return energy_proof(model, free=("K",))
 
 
 def test_pd_control_of_a_geared_joint_is_a_spring_and_a_damper_at_the_rotor():
