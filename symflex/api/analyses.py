@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from symflex import roots as roots_room
+    from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.rational import RationalApproximation
 
@@ -338,6 +339,24 @@ class Analyses(Plotted):
         return SensitivityTable(
             Sensitivity(m) for m in sensitivities(model, self.bound, located, parameters, digits)
         )
+
+    def explain_zeros(
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> ZeroExplanation:
+        """Return the system whose poles are the zeros, with the proof; print the result to read it.
+
+        Parameters and errors are those of :meth:`zeros`; they choose the zeros that the text names.
+        """
+        from symflex.analysis.explanation import explain_zeros  # not needed for roots
+
+        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        return explain_zeros(self.bound.source.model, self.bound, located)
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None

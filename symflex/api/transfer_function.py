@@ -20,7 +20,7 @@ from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
-from symflex.options import RootsOptions, checked_digits
+from symflex.options import checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import transfer as transfer_room
-    from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.model import Model
 
@@ -437,24 +436,6 @@ class BoundTransferFunction(Toolboxes, Analyses):
         given = exact_values(u, len(exactly))
         response = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
         return face_of(TimeResponse, response)
-
-    def explain_zeros(
-        self,
-        modes: int | None = None,
-        *,
-        mode: int | None = None,
-        band: tuple[float, float] | None = None,
-        digits: int = 15,
-        budget: float | None = None,
-    ) -> ZeroExplanation:
-        """Return the system whose poles are the zeros, with the proof; print the result to read it.
-
-        Parameters and errors are those of :meth:`zeros`; they choose the zeros that the text names.
-        """
-        from symflex.analysis.explanation import explain_zeros  # not needed for roots
-
-        located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return explain_zeros(self.bound.source.model, self.bound, located)
 
 
 @dataclass(frozen=True, repr=False)

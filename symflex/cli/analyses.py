@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
-NO_CLOSED_FORM = Diagnostic(
-    "SF502",
-    "--explain needs the closed form, which is too large here",
-    hint="split the model, or ask for the roots alone",
-)
 
 
 @command_of("roots", RootsOptions)
@@ -43,7 +38,6 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.print.roots import roots_text
     from symflex.roots.region import region_of
-    from symflex.transfer import BoundNested
 
     chosen = region_of(given, "--")
     # However short the time is, what is sought is told, and how many roots there are.
@@ -52,21 +46,19 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         pair = first_pair(model, given.tf, "showing")
         shown = given.digits or model.analysis.digits or 15
         is_explained = bool(given.sensitivity) or given.explain
-        (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=given.explain, is_named=is_explained)
+        (bound,) = pipeline.derive_for_roots(model, [pair], is_named=is_explained)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
     wanted, is_over = bool(given.sensitivity), located.certificate.is_exceeded
     try:
-        if isinstance(bound, BoundNested) and given.explain:
-            raise BudgetError(NO_CLOSED_FORM)
         if wanted:
             from symflex.analysis.sensitivity.sensitivity import sensitivities  # most calls need none of it
 
             names = () if "" in given.sensitivity else given.sensitivity
             moved = sensitivities(model, bound, located, names, shown)
-        if given.explain and not isinstance(bound, BoundNested):
+        if given.explain:
             from symflex.analysis.explanation import explain_zeros
 
             explained = explain_zeros(model, bound, located)

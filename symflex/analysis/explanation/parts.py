@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.analysis.explanation.at_points import PrimePoints
     from symflex.equations import Equations
     from symflex.model import Model, PlacedElement
 
@@ -45,8 +46,9 @@ class ConstrainedPart:
     signals: tuple[str, ...]
     order: int | None  # number of its poles; ``None`` when they are infinitely many
     has_input: bool  # whether the input drives it
-    # The factors in s of its determinant, over the equations' ring.
+    # The factors in s of its determinant, over the equations' ring; 1 where that is not multiplied out.
     determinant: Factored = field(compare=False, repr=False)
+    system: Equations = field(compare=False, repr=False)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -135,41 +137,48 @@ class _Matrix:
             yield sorted(rows), variables
 
 
-def separate(equations: Equations, source: str, model: Model | None = None) -> Separation:
+def separate(
+    equations: Equations, source: str, model: Model | None = None, points: PrimePoints | None = None
+) -> Separation:
     """Return the parts of a constrained system, those without poles left out.
 
     Parts that hold the input ``source`` are marked; elements of ``model`` are named, by default all those of
-    the equations.
+    the equations. With ``points`` determinants of parts with waves are not multiplied out.
     """
     named = equations.model if model is None else model
     matrix = _Matrix.of(equations, source)
     matrix.settle()
     parts = []
     for rows, variables in matrix.components():
-        determinant = _determinant(equations, matrix, rows, variables)
-        if determinant.is_constant:
+        system = _part(equations, matrix, rows, variables)
+        waves = [] if points is None else waves_of(equations)
+        if points is not None and any(
+            c.depends_on(w) for row in system.rows for c in row.form.coefficients for w in waves
+        ):
+            determinant, order = Factored.number(equations.ring, 1), None
+            is_constant = not points.varies(system)
+        else:
+            determinants = Determinants.of(system)
+            determinant = varying(equations, opened(equations, determinants.opened(determinants.den)))
+            order, is_constant = _order(equations, determinant), determinant.is_constant
+        if is_constant:
             continue
-        order = _order(equations, determinant)
         owners = {v.owner for v in variables if v.kind == "field"}
         fields = tuple(f.name for f in equations.model.fields if f.name in owners)
         elements = tuple(u.name for u in named.elements if _is_in(named, u, variables))
         signals = tuple(x.name for x in equations.model.signals if Variable("signal", x.name) in variables)
         has_input = any(i in matrix.driven for i in rows)
-        parts.append(ConstrainedPart(elements, fields, signals, order, has_input, determinant))
+        parts.append(ConstrainedPart(elements, fields, signals, order, has_input, determinant, system))
     return Separation(tuple(parts), frozenset(matrix.resting))
 
 
-def _determinant(
-    equations: Equations, matrix: _Matrix, rows: list[int], variables: set[Variable]
-) -> Factored:
-    """Return the factors in s of a part's determinant."""
+def _part(equations: Equations, matrix: _Matrix, rows: list[int], variables: set[Variable]) -> Equations:
+    """Return the equations of a part."""
     forms: list[EquationRow] = [
         replace(equations.rows[i], form=LinearForm(tuple(matrix.rows[i].items()))) for i in rows
     ]
     unknowns = tuple(v for v in equations.unknowns if v in variables)
-    part = replace(equations, unknowns=unknowns, inputs=(), rows=tuple(forms), outputs=())
-    determinants = Determinants.of(part)
-    return varying(equations, opened(equations, determinants.opened(determinants.den)))
+    return replace(equations, unknowns=unknowns, inputs=(), rows=tuple(forms), outputs=())
 
 
 def _order(equations: Equations, determinant: Factored) -> int | None:
@@ -237,7 +246,7 @@ def relate(
     equations' ring. ``None`` when the numerator is zero, or when the generators of the two rings differ.
     """
     equations = whole.equations
-    if _generators(constrained.equations) != _generators(equations):
+    if generators(constrained.equations) != generators(equations):
         return None
     num = opened(equations, whole.opened(whole.num(*pair)))
     if num.is_zero:
@@ -255,7 +264,7 @@ def relate(
     return Relation(order, filtered, above, below, has_zeros, is_delayed)
 
 
-def _generators(equations: Equations) -> tuple[object, ...]:
+def generators(equations: Equations) -> tuple[object, ...]:
     """Return what tells whether generators of equal names mean the same in two systems."""
     waves = equations.propagation
     lengths = () if waves is None else tuple(tuple(map(str, lengths)) for lengths in waves.lengths)

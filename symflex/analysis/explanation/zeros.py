@@ -22,10 +22,20 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, degree_in
+from symflex.analysis.explanation.at_points import PrimePoints
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
-from symflex.analysis.explanation.parts import Relation, Separation, relate, separate, varying, waves_of
+from symflex.analysis.explanation.parts import (
+    Relation,
+    Separation,
+    generators,
+    opened,
+    relate,
+    separate,
+    varying,
+    waves_of,
+)
 from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
 from symflex.balls import opposite
 from symflex.equations import Equations
@@ -35,12 +45,13 @@ from symflex.expressions import format_expression, power, product_of
 from symflex.model import Input, Model, Output, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
-from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundNested
 from symflex.transfer.lowest_terms import cancel
-from symflex.transfer.of_model import assemble
+from symflex.transfer.of_model import assemble, assemble_sparse
 
 if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
+    from symflex.transfer import AnyBoundFunction
 
 SYMBOLIC_ELEMENTS = 12
 """Lumped models up to this size keep their symbols, so that factors print in them."""
@@ -55,7 +66,7 @@ class _Case:
     model: Model
     pair: tuple[str, str]
     equations: Equations
-    whole: Determinants
+    whole: Determinants | PrimePoints  # of the equations, or where these are not multiplied out
 
     @property
     def output(self) -> Output:
@@ -72,6 +83,13 @@ class _Case:
         except ModelError:
             return None
 
+    def explanation(self) -> ZeroExplanation | None:
+        """Return what the zeros are the poles of; ``None`` if of no constrained system that is tried."""
+        whole = self.whole
+        if isinstance(whole, PrimePoints):
+            return _by_points(self, whole)
+        return _by_coordinate(self, whole) or _by_condition(self, whole) or _by_terminals(self, whole)
+
     def explained(
         self, kind: Kind, status: Status, constraint: Constraint, *, is_direct: bool, order: int = 0
     ) -> ZeroExplanation:
@@ -80,10 +98,10 @@ class _Case:
         return ZeroExplanation("/".join(self.pair), kind, status, *self.pair, is_direct, *held, order)
 
 
-def explain_zeros(model: Model, bound: BoundTransferFunction, located: PoleZeroMap) -> ZeroExplanation:
+def explain_zeros(model: Model, bound: AnyBoundFunction, located: PoleZeroMap) -> ZeroExplanation:
     """Explain the zeros of a transfer function; the model's numbers are those of ``bound``.
 
-    A determinant that would be too large raises a BudgetError, SF50x.
+    Determinants of networks in nested form are compared at points, see :mod:`.at_points`.
 
     Examples
     --------
@@ -105,25 +123,72 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, located: PoleZeroM
     values = dict(bound.values)
     parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
     given = replace(model, parameters=parameters)
-    if len(model.elements) > SYMBOLIC_ELEMENTS:
+    is_nested = isinstance(bound, BoundNested)
+    if is_nested or len(model.elements) > SYMBOLIC_ELEMENTS:
         given = with_numbers(given)
     pair = (bound.source.output.name, bound.source.input.name)
     given = seen_at_the_input(in_one_way(given), pair[0], bound.source.input)
-    if bound.ratio.is_zero:
+    if bound.is_zero if isinstance(bound, BoundNested) else bound.ratio.is_zero:
         return ZeroExplanation(bound.name, "zero", "proved", *pair)
-    equations = assemble(given)
-    case = _Case(given, pair, equations, Determinants.of(equations))
-    explained = _by_coordinate(case) or _by_condition(case) or _by_terminals(case)
+    equations = assemble_sparse(given) if is_nested else assemble(given)
+    case = _Case(given, pair, equations, PrimePoints(equations) if is_nested else Determinants.of(equations))
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
-    has_zeros = not bound.is_rational or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
-    complete = replace(explained or plain, has_zeros=has_zeros, has_hidden=bool(bound.hidden))
+    has_zeros, has_hidden = True, any(not h.root.is_zero for h in located.hidden)
+    if not isinstance(bound, BoundNested):
+        has_hidden, factors = bool(bound.hidden), bound.ratio.factors
+        has_zeros = not bound.is_rational or any(e > 0 and degree_in(f, 0) for f, e in factors)
+    complete = replace(case.explanation() or plain, has_zeros=has_zeros, has_hidden=has_hidden)
     return _with_roots(case, complete, located)
 
 
 # ------------------------------------------------------------------------------ what the zeros are poles of
 
 
-def _by_coordinate(case: _Case) -> ZeroExplanation | None:
+def _by_points(case: _Case, points: PrimePoints) -> ZeroExplanation | None:
+    """Hold what the output shows, or open the terminals, of a network that is not multiplied out."""
+    motion = measured(case.equations, case.pair[0])
+    model = case.model
+    constraint = open_circuit(model, case.input) if motion is None else hold(model, motion.coordinates)
+    if constraint is None:
+        return None
+    held = assemble_sparse(constraint.model)
+    one = Factored.number(case.equations.ring, 1)
+    factor = one if motion is None else motion.factor
+    if generators(held) != generators(case.equations):
+        return None
+    ratio = points.ratio(case.pair, factor, [held])
+    if ratio is None:
+        return None
+    separation = separate(held, case.pair[1], model, points)
+    if motion is None:
+        if ratio.order is None:
+            return None
+        kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
+        plain = case.explained(kind, "proved", constraint, is_direct=True, order=ratio.order)
+        return replace(plain, parts=separation.parts)
+    undriven = [part.system for part in separation.parts if not part.has_input]
+    beyond = points.ratio(case.pair, factor, undriven) if undriven else None
+    is_direct = acting(case.model, case.input) == motion.coordinates
+    if ratio.order == 0:
+        kind = "colocated"
+    elif beyond is not None and (beyond.order == 0 or beyond.is_rational):
+        kind, ratio = "beyond" if beyond.order == 0 else "partly", beyond
+    else:
+        return case.explained("colocated", "not shown", constraint, is_direct=True) if is_direct else None
+    s = Factored.generator(case.equations.ring, LAPLACE)
+    own = opened(case.equations, factor)
+    order = own.exponent_of(case.equations.ring.generator(LAPLACE))
+    return replace(
+        case.explained(kind, "proved", constraint, is_direct=is_direct, order=order),
+        filtered=_text(case.equations, varying(case.equations, own / s**order)),
+        is_delayed=ratio.is_delayed,
+        transmission="..." if kind == "partly" else "",
+        parts=separation.parts,
+        ends=_end_changes(case, separation),
+    )
+
+
+def _by_coordinate(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     """Hold the coordinate that the output shows."""
     motion = measured(case.equations, case.pair[0])
     if motion is None:
@@ -133,7 +198,7 @@ def _by_coordinate(case: _Case) -> ZeroExplanation | None:
     if held is None:
         return None
     is_direct = acting(case.model, case.input) == motion.coordinates
-    relation = relate(case.whole, case.pair, motion.factor, held)
+    relation = relate(whole, case.pair, motion.factor, held)
     if relation is None:
         return case.explained("colocated", "not shown", constraint, is_direct=True) if is_direct else None
     separation = separate(held.equations, case.pair[1], case.model)
@@ -175,7 +240,7 @@ def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind
     return ("partly", rest) if undriven else ("noncolocated", one)
 
 
-def _by_condition(case: _Case) -> ZeroExplanation | None:
+def _by_condition(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     """Let a field's condition that holds the input give way to one that keeps the output at zero."""
     replaced = replace_condition(case.model, case.input, case.output.expression)
     if replaced is None:
@@ -186,7 +251,7 @@ def _by_condition(case: _Case) -> ZeroExplanation | None:
         return None
     # The factor that cleared the denominators of the condition with the input is not part of the numerator.
     scale = _coefficient(case.equations, case.pair[1])
-    relation = relate(case.whole, case.pair, scale, held)
+    relation = relate(whole, case.pair, scale, held)
     if relation is None and replaced.is_dual:
         return case.explained("colocated", "not shown", constraint, is_direct=True)
     if relation is None or not relation.apart.is_constant:
@@ -212,14 +277,14 @@ def _coefficient(equations: Equations, source: str) -> Factored:
     return next(c for v, c in terms if v.kind == "input" and v.owner == source)
 
 
-def _by_terminals(case: _Case) -> ZeroExplanation | None:
+def _by_terminals(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     """Open the terminals of a voltage input whose current the output shows; free what an input moves."""
     constraint = open_circuit(case.model, case.input)
     held = None if constraint is None else case.constrained(constraint)
     if constraint is None or held is None:
         return None
     one = Factored.number(case.equations.ring, 1)
-    relation = relate(case.whole, case.pair, one, held)
+    relation = relate(whole, case.pair, one, held)
     if relation is None or not relation.apart.is_constant:
         return None
     s = case.equations.ring.generator(LAPLACE)
@@ -249,7 +314,8 @@ def _text(equations: Equations, value: Factored) -> str:
 
 def _end_changes(case: _Case, separation: Separation) -> tuple[EndChange, ...]:
     """Return the line elements whose ends the constraint changes, parts with the input left out."""
-    before = separate(case.equations, case.pair[1]).resting
+    points = case.whole if isinstance(case.whole, PrimePoints) else None
+    before = separate(case.equations, case.pair[1], points=points).resting
     driven = {name for part in separation.parts if part.has_input for name in part.elements}
     changes = []
     for use in case.model.elements:

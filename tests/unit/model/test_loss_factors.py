@@ -279,7 +279,7 @@ def test_what_needs_another_s_is_refused():
     bound = tf.bind()
     for call in (
         lambda: bound.step_response([0.0, 1.0]), bound.step_response, bound.step_info, bound.input_shaper,
-        bound.residues, bound.rational, bound.explain_zeros, bound.state_space,
+        bound.residues, bound.rational, bound.state_space,
         bound.to_scipy, bound.dcgain, lambda: bound.discretise(0.01),
         lambda: bound.frequency_response([0.0, 1.0]), lambda: bound(1.0 + 1j), lambda: bound(-1j),
         lambda: tf.form("zpk"), tf.state_space, model.state_space, lambda: model.stability("k_1"),
