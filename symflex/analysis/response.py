@@ -168,7 +168,7 @@ class _Walk:
     """Follows the argument of one function."""
 
     def __init__(self, bound: AnyBoundFunction) -> None:
-        if isinstance(bound, BoundNested):
+        if not bound.is_reduced:
             # It has all that paths ask for.
             self.function = cast("KernelFunction", NestedFunction(bound))
             sides = [self.function]

@@ -45,7 +45,6 @@ from symflex.expressions import format_expression, power, product_of
 from symflex.model import Input, Model, Output, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
-from symflex.transfer import BoundNested
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.of_model import assemble, assemble_sparse
 
@@ -123,18 +122,18 @@ def explain_zeros(model: Model, bound: AnyBoundFunction, located: PoleZeroMap) -
     values = dict(bound.values)
     parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
     given = replace(model, parameters=parameters)
-    is_nested = isinstance(bound, BoundNested)
+    is_nested = not bound.is_reduced
     if is_nested or len(model.elements) > SYMBOLIC_ELEMENTS:
         given = with_numbers(given)
     pair = (bound.source.output.name, bound.source.input.name)
     given = seen_at_the_input(in_one_way(given), pair[0], bound.source.input)
-    if bound.is_zero if isinstance(bound, BoundNested) else bound.ratio.is_zero:
+    if bound.is_zero:
         return ZeroExplanation(bound.name, "zero", "proved", *pair)
     equations = assemble_sparse(given) if is_nested else assemble(given)
     case = _Case(given, pair, equations, PrimePoints(equations) if is_nested else Determinants.of(equations))
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
     has_zeros, has_hidden = True, any(not h.root.is_zero for h in located.hidden)
-    if not isinstance(bound, BoundNested):
+    if bound.is_reduced:
         has_hidden, factors = bool(bound.hidden), bound.ratio.factors
         has_zeros = not bound.is_rational or any(e > 0 and degree_in(f, 0) for f, e in factors)
     complete = replace(case.explanation() or plain, has_zeros=has_zeros, has_hidden=has_hidden)

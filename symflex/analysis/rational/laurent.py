@@ -56,7 +56,6 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import GUARD_BITS
-from symflex.transfer import BoundNested
 from symflex.transfer.double_value import DOUBLE_BITS
 
 if TYPE_CHECKING:
@@ -109,11 +108,11 @@ def limit_at_zero(bound: AnyBoundFunction) -> arb:
     SF405 when it cannot be decided.
     """
     value = acb(0) if bound.is_zero else bound.enclosed(FIRST_BITS)(acb(0))
-    if isinstance(bound, BoundNested) and not value.is_finite():
+    if not (bound.is_reduced or value.is_finite()):
         value = bound.solved(acb(0), FIRST_BITS)
     if value == 0 or (value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS):
         return value.real
-    if not isinstance(bound, BoundNested) and bound.root is not None and bound.root.shift != 0:
+    if bound.is_reduced and bound.root is not None and bound.root.shift != 0:
         raise _undecided(bound)  # s = 0 is not where the root of s vanishes
     series = expand_at_zero(bound, 0, DOUBLE_DIGITS)
     first = series.coefficients[0].real
@@ -132,7 +131,7 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
 
     Every coefficient that is not zero has so many significant digits. SF405 when they cannot be decided.
     """
-    if isinstance(bound, BoundNested):
+    if not bound.is_reduced:
         return _network_at_zero(NetworkSides(bound, 0.0), last, digits)
     named = any(law.wavenumbers for law in bound.kernels.dispersions)
     branches = BRANCHES if named else 1
@@ -466,7 +465,7 @@ def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> 
     """Return the principal parts at known poles; see :func:`find_residues`."""
     parts: list[PrincipalPart] = []
     source: BoundTransferFunction | NetworkSides
-    if isinstance(bound, BoundNested):
+    if not bound.is_reduced:
         source = NetworkSides(bound, max((2 * pi * root.frequency_hz() for root in poles), default=0.0))
     else:
         source = bound

@@ -49,7 +49,6 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer import BoundNested
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.equations_at import EquationsAt
@@ -386,7 +385,7 @@ def sensitivities(
     chosen = [p for p in model.settable if p.name in real and (not names or p.name in names)]
     pair = (bound.source.output.name, bound.source.input.name)
     if (
-        isinstance(bound, BoundNested)
+        not bound.is_reduced
         or model.imaginary
         or (not model.is_distributed and len(model.elements) > NEVER_LARGE)
     ):
