@@ -52,8 +52,8 @@ from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
 from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
 from symflex.roots.sheets import locate_on_sheet
-from symflex.transfer import BoundNested, bind
-from symflex.transfer.of_model import assemble, assemble_sparse, derive_all, derive_bound, is_large_network
+from symflex.transfer import BoundNested
+from symflex.transfer.of_model import assemble, assemble_sparse, derive_bound, derive_if_small
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -181,16 +181,18 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     )
     if has_loss_factors(model):
         located = replace(located, verdict=NO_STABILITY)
-    is_open = not located.certificate.certified and located.certificate.code is None
-    if not is_open or is_large_network(model, pair):
+    certificate, is_judged = located.certificate, located.verdict.right is not None or has_loss_factors(model)
+    if certificate.code is not None or (certificate.certified and (is_judged or located.verdict.found)):
         return located
     # What resists the counts of a network may yield to those of its formula, where that is not too large.
     try:
-        (expanded,) = derive_all(source.model, [pair])
-        other = locate(bind(expanded, dict(bound.values)), region, digits)
+        expanded = derive_if_small(model, pair, is_quick=certificate.certified)
+        other = located if expanded is None else locate(expanded, region, digits)
     except BudgetError:
         return located
-    is_better = other.certificate.certified or other.certificate.found > located.certificate.found
+    if certificate.certified:
+        return replace(located, verdict=other.verdict)
+    is_better = other.certificate.certified or other.certificate.found > certificate.found
     return other if is_better else located
 
 

@@ -234,11 +234,11 @@ def _kernel_products(tf: TransferFunction) -> int:
     )
 
 
-def is_large_network(model: Model, pair: tuple[str, str] | None = None) -> bool:
-    """Tell whether a distributed model's expanded form, of its first pair by default, is too large."""
+def is_large_network(model: Model) -> bool:
+    """Tell whether a distributed model's expanded form is too large."""
     if not model.is_distributed or not _may_be_large(model):
         return False
-    return _expanded_terms(assemble_sparse(model), pair or model.transfer_functions[0]) > EXPANDED_PRODUCTS
+    return _expanded_terms(assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
 
 
 def _some(terms: float) -> str:
@@ -302,6 +302,20 @@ def derive_for_roots(
         if expanded is not None:
             return expanded
     return tuple(bind_nested(tf) for tf in nested_form.derive_nested(equations, pairs))
+
+
+def derive_if_small(
+    model: Model, pair: tuple[str, str], *, is_quick: bool = False
+) -> BoundTransferFunction | None:
+    """Return a distributed transfer function in expanded form; None where it is too large or not so quick.
+
+    Estimates say far too much where members are alike: those of a beam in four parts multiply out to one.
+    """
+    if _may_be_large(model) and _expanded_terms(assemble_sparse(model), pair) > MOST_PRODUCTS:
+        return None
+    (expanded,) = _expanded_unless_large(model, [pair], UNASKED) or (None,)
+    is_slow = expanded is not None and _kernel_products(expanded.source) > QUICK_PRODUCTS
+    return None if is_quick and is_slow else expanded
 
 
 def _with_wavenumbers(
