@@ -9,7 +9,7 @@ from random import Random
 import pytest
 
 from tests import random_models as made
-from tests.tools.spellings import compared
+from tests.tools.spellings import PHYSICS, compared
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
 CLASSICS = (
@@ -90,3 +90,28 @@ def test_worked_models_have_the_same_values_in_all_spellings():
 @pytest.mark.slow
 def test_a_beam_has_the_same_roots_and_verdict_in_all_spellings():
     assert not differences([(SECTIONS[0], beam(SECTIONS[0]))])
+
+
+BY_OTHER_ELEMENTS = {
+    "classics": (
+        "free_free kelvin_voigt_cantilever one_link_arm pinned_pinned quarter_car rod_tip_mass shaft_discs"
+    ),
+    "frames": "l_frame portal_frame two_link_arm",
+    "eppinger1988": "lumped_bending_beam robot_axis six_mass two_mass",
+    "eppinger1988/loops": "base_flexure_position sliding_free_beam_force two_mass_force",
+    "../symflex/templates": "motor_loop servo",
+}
+SLIDES = {"free_free", "robot_axis", "sliding_free_beam_force"}
+"""Beams that may slide; a frame in their place may move along x, too."""
+
+
+@pytest.mark.slow
+def test_models_of_other_elements_have_the_same_certificates_verdicts_and_words():
+    count, found = 0, {}
+    for folder, names in BY_OTHER_ELEMENTS.items():
+        for name in names.split():
+            ways = {k: v for k, v in PHYSICS.items() if k != "frames" or name not in SLIDES}
+            told = compared((DERIVATIONS / folder / f"{name}.toml").read_text("utf-8"), ways)
+            count, found = count + len(told), found | {(name, k): v for k, v in told.items() if v}
+    assert not found
+    assert count >= 60

@@ -1,7 +1,7 @@
 """The same physics in other words: one specification in at least twelve spellings, and what has to stay.
 
-Values at points, certificates, verdicts of stability and poles are the same in every spelling; where nothing
-else is a name, so is the length of the print.
+Values at points, certificates, verdicts of stability, poles, zeros, hidden modes and the words for them are
+the same in every spelling; where nothing else is a name, so is the length of the print.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.model import Model
+    from symflex.roots.pole_zero_map import PoleZeroMap
 
     Data = dict[str, object]
     Change = Callable[[str, bool], object]
@@ -298,6 +299,106 @@ def _without_values(data: Data) -> Data:
     return _with(data, others | free)
 
 
+LINES = dict.fromkeys(("beam", "frame", "rod", "shaft", "string"), "l")
+LUMPS = {
+    "spring": "k",
+    "torsion_spring": "k",
+    "damper": "b",
+    "rotary_damper": "b",
+    "mass": "m",
+    "inertia": "J",
+}
+SOURCES = {
+    "spring": ("force", "f", ""),
+    "torsion_spring": ("torque", "tau", ""),
+    "damper": ("force", "f", "*s"),
+}
+
+
+def _exchanged(data: Data, change: Callable[[str, dict, Data], Mapping[str, dict] | None]) -> Data:
+    """Put other elements in place of those of which nothing is asked by name; ``change`` may add signals."""
+    data = _named(data)
+    asked = _text({k: v for k, v in data.items() if k not in ("elements", "parameters")})
+    found: Data = data | {"signals": dict(data.get("signals", {})), "elements": {}}
+    for name, element in data.get("elements", {}).items():
+        others = None if f"{name}." in asked else change(name, element, found)
+        found["elements"] |= {name: element} if others is None else others
+    return found
+
+
+def _halves(name: str, element: dict, _: Data) -> Mapping[str, dict] | None:
+    """Return two elements of half the value in parallel, or two lengths of a uniform member in a row."""
+    key = (LUMPS | LINES).get(element["type"])
+    if key is None or any("x" in WORD.findall(str(value)) for value in element.values()):
+        return None
+    both = [element | {key: f"({element[key]})/2"} for _ in range(2)]
+    if key == "l":
+        start, end = element["between"]
+        both[0]["between"], both[1]["between"] = [start, f"{name}_mid"], [f"{name}_mid", end]
+    return {f"{name}_{n}": half for n, half in enumerate(both)}
+
+
+def _followed(name: str, element: dict, data: Data) -> Mapping[str, dict] | None:
+    """Return sources that follow a signal in place of a spring or damper."""
+    if element["type"] not in SOURCES or "eta_s" in element:
+        return None
+    (kind, key, rate), value = SOURCES[element["type"]], element[LUMPS[element["type"]]]
+    start, end = (None if node == "ground" else node for node in element["between"])
+    across = f"{start} - {end}" if start and end else start or f"-{end}"
+    data["signals"][f"{name}_by"] = f"({value}){rate}*({across})"
+    ends = {"a": (start, "-"), "b": (end, "")}
+    return {
+        f"{name}_{n}": {"type": f"{kind}_source", "at": node, key: f"{sign}{name}_by"}
+        for n, (node, sign) in ends.items()
+        if node
+    }
+
+
+def _levers(name: str, element: dict, _: Data) -> Mapping[str, dict] | None:
+    """Return a mass or an inertia of a quarter that a lever moves twice as far."""
+    if element["type"] not in ("mass", "inertia"):
+        return None
+    lever = {"type": "transformer", "from": element["at"], "to": f"{name}_end", "ratio": Decimal(2)}
+    key = LUMPS[element["type"]]
+    moved = element | {"at": f"{name}_end", key: f"({element[key]})/4"}
+    return {name: moved, f"{name}_lever": lever}
+
+
+def _as_frames(data: Data) -> Data:
+    """Make members of a plane frame, along x, of uniform beams."""
+    elements = data.get("elements", {})
+    beams = {name: element for name, element in elements.items() if element["type"] == "beam"}
+    planar = {node for beam in beams.values() for node in beam["between"]} - {"ground"}
+    if not planar or any("x" in WORD.findall(_written(beam)) for beam in beams.values()):
+        return data
+    node = re.compile(rf"(?<![\w.])({'|'.join(planar)})(?![\w.(])")
+
+    def along_y(value: object) -> object:
+        text = _written(value)
+        return value if "torque" in text else tomllib.loads("x = " + node.sub(r"\1.y", text))["x"]
+
+    kinds = ("mass", "spring", "damper", "force_source", "transformer")
+    found = {
+        name: element | {"type": "frame"}
+        if name in beams
+        else along_y(element)
+        if element["type"] in kinds
+        else element
+        for name, element in elements.items()
+    }
+    shown = {k: {n: along_y(v) for n, v in data.get(k, {}).items()} for k in ("inputs", "outputs", "signals")}
+    return data | shown | {"elements": found}
+
+
+PHYSICS: dict[str, Callable[[Data], Data]] = {
+    "halves": lambda data: _exchanged(data, _halves),
+    "quarters": lambda data: _exchanged(_exchanged(data, _halves), _halves),
+    "signals": lambda data: _exchanged(data, _followed),
+    "levers": lambda data: _exchanged(data, _levers),
+    "frames": _as_frames,
+}
+"""Spellings by other elements: they have other nodes, and where a beam may slide its frame may, too."""
+
 SPELLINGS: dict[str, Callable[[Data], Data]] = {
     "inlined": _inlined,
     "inlined in formulas": _in_formulas,
@@ -322,8 +423,8 @@ EQUALLY_LONG = {name: "numbers named" for name in ("other units", "renamed", "pa
 """Spellings in which the print has to be as long as in others."""
 
 
-def spellings(text: str) -> list[tuple[str, str]]:
-    """Return a specification in other words, each with a name.
+def spellings(text: str, ways: Mapping[str, Callable[[Data], Data]] = SPELLINGS) -> list[tuple[str, str]]:
+    """Return a specification in other words, each with a name, where they are others.
 
     Examples
     --------
@@ -347,14 +448,16 @@ def spellings(text: str) -> list[tuple[str, str]]:
     value_1_n = { value = 4 }
     """
     data = _read(text)
-    found = ((name, _text(respelt(data))) for name, respelt in SPELLINGS.items())
-    return [("plain", _text(data)), *found]
+    found = ((name, _text(respelt(data))) for name, respelt in ways.items())
+    same = (_text(data), _text(_named(data)))
+    return [("plain", same[0]), *(x for x in found if x[0] not in PHYSICS or x[1] not in same)]
 
 
 # ------------------------------------------------------------------------------------------------ answers
 
 POINTS = (0.05 + 0.7j, 0.9 + 13.3j, 21 + 317j)
 SECONDS = 20.0
+SAID = ("re", "im", "multiplicity", "on_imaginary_axis", "is_real", "certified", "cause")
 
 
 @dataclass(frozen=True)
@@ -362,9 +465,9 @@ class Answers:
     """What the program says of a specification."""
 
     values: tuple[complex, ...] = ()  # of all transfer functions at :data:`POINTS`
-    verdict: str = ""
-    certified: bool | None = None  # None where roots were not asked for
-    poles: tuple[complex, ...] = ()
+    said: Mapping[str, object] | None = (
+        None  # of poles and zeros, as JSON; None where they were not asked for
+    )
     length: int = 0  # terms of the print
     refused: str = ""  # the codes with which it was
 
@@ -399,9 +502,18 @@ def _answers(model: Model, given: Mapping[str, str], *, asks_roots: bool) -> Ans
     if free or not asks_roots:
         return Answers(tuple(values), length=length)
     (bound,) = pipeline.derive_for_roots(model, model.transfer_functions[:1])
-    plane = pipeline.roots(bound)
-    poles = tuple(complex(float(p.re.mid()), float(p.im.mid())) for p in plane.poles)
-    return Answers(tuple(values), plane.verdict.word, plane.certificate.certified, poles, length)
+    return Answers(tuple(values), _said(pipeline.roots(bound)), length)
+
+
+def _said(found: PoleZeroMap) -> dict[str, object]:
+    """Return what is said of roots, but for the engine, radii, and the names of what moves unseen."""
+    data = found.to_json_dict()
+    hidden_motion = data["stability"]["hidden_motion"].partition(":")[0]
+    words = data["stability"] | data["certificate"] | {"engine": "", "hidden_motion": hidden_motion}
+    return words | {
+        f"{side} listed": [{key: root.get(key) for key in SAID} for root in data[side]]
+        for side in ("poles", "zeros", "hidden", "right_half_plane")
+    }
 
 
 def values_of(text: str) -> dict[str, str]:
@@ -415,13 +527,10 @@ def difference(name: str, found: Answers, expected: Answers) -> str:
         return "" if found.refused == expected.refused else f"refused: {found.refused or 'no more'}"
     if not _agree(found.values, expected.values, 1e-9):
         return "values"
-    if None not in (found.certified, expected.certified):
-        if found.certified != expected.certified:
-            return f"certified: {found.certified}"
-        if found.verdict != expected.verdict:
-            return f"{found.verdict}, not {expected.verdict}"
-        if not _agree(found.poles, expected.poles, 1e-9):
-            return "poles"
+    if found.said is not None and expected.said is not None:
+        other = {k: (v, expected.said[k]) for k, v in found.said.items() if v != expected.said[k]}
+        if other:
+            return "; ".join(f"{k}: {a}, not {b}" for k, (a, b) in other.items())
     if name in EQUALLY_LONG and found.length != expected.length:
         return f"{found.length} terms, not {expected.length}"
     return ""
@@ -433,9 +542,11 @@ def _agree(found: Sequence[complex], expected: Sequence[complex], share: float) 
     return len(found) == len(expected) and all(abs(a - b) <= share * abs(b) + size for a, b in pairs)
 
 
-def compared(text: str, *, asks_roots: bool = True) -> dict[str, str]:
+def compared(
+    text: str, ways: Mapping[str, Callable[[Data], Data]] = SPELLINGS, *, asks_roots: bool = True
+) -> dict[str, str]:
     """Return per spelling in which way its answers differ from those of the plain one."""
-    (_, plain), *others = spellings(text)
+    (_, plain), *others = spellings(text, ways)
     given, known = values_of(plain), {"plain": answers(plain, asks_roots=asks_roots)}
     told: dict[str, str] = {}
     if known["plain"].refused.startswith("at loading"):
