@@ -8,7 +8,7 @@ and ``roots`` proves its poles; numpy and the winding of a function written by h
 from cmath import exp as turned
 from contextlib import suppress
 from fractions import Fraction
-from math import cosh, exp, inf, log, nan, sin, sqrt, tanh
+from math import inf, nan
 from random import Random
 
 import numpy as np
@@ -19,104 +19,12 @@ from symflex.errors import ModelError
 from symflex.loops.of_model import stability
 from symflex.options import StabilityOptions
 from tests.independent.nyquist import poles_right_of_axis
+from tests.random_models import random_loop
 
-FUNCTIONS = {
-    "{}": lambda x: x,
-    "sqrt({})": sqrt,
-    "({})^2": lambda x: x**2,
-    "({})^3": lambda x: x**3,
-    "({})^(-2)": lambda x: x**-2,
-    "1/({})": lambda x: 1 / x,
-    "log(1 + {})": lambda x: log(1 + x),
-    "log({})": log,
-    "exp(-({})/2)": lambda x: exp(-x / 2),
-    "exp({}) - 1": lambda x: exp(x) - 1,
-    "({0})/(2 + {0})": lambda x: x / (2 + x),
-    "(3 - ({0}))/(1 + ({0})^2)": lambda x: (3 - x) / (1 + x**2),
-    "sqrt(4 - ({}))": lambda x: sqrt(4 - x),
-    "sqrt(1 + ({})^2)": lambda x: sqrt(1 + x**2),
-    "tanh({})": tanh,
-    "sin({})": sin,
-    "1/cosh({})": lambda x: 1 / cosh(x),
-    "({0})*log({0})": lambda x: x * log(x),
-}
 CLEAR = 1e-6
 """Poles closer to the axis, relative to the largest, are not told by numpy."""
 BESIDE = Fraction(1, 10**5)
 """How far beside a boundary a gain is tried, relative to the interval."""
-BEAM = """[elements]
-drive = {{ type = "force_source", at = "x", f = "{}" }}
-guide = {{ type = "slider", at = "x" }}
-damper = {{ type = "damper", between = ["x", "ground"], b = "0.3 N*s/m" }}
-link = {{ type = "beam", between = ["x", "t"], EI = "2 N*m^2", rhoA = "0.5 kg/m", l = "1 m", eta = "5 ms" }}
-[outputs]
-Y = "x"
-[inputs]
-r = {{ unit = "m" }}"""
-SIGNALS = '[signals]\ny = "{}"\n[inputs]\nr = {{}}\n[outputs]\nY = "y"'
-
-
-def function_of_gain(random, names):
-    """Return a random function of K as an expression and to be called; definitions are added to names."""
-    text, steps = "K", []
-    scale = Fraction(random.choice((1, 2, 3, 5, 8, 20, -1)), random.choice((1, 1, 2, 4)))
-    for _ in range(random.choice((1, 1, 2, 3))):
-        form, function = random.choice(list(FUNCTIONS.items()))
-        steps.append(function)
-        text = form.format(text)
-        if random.random() < 0.5:
-            names[f"d_{len(names)}"] = text
-            text = list(names)[-1]
-
-    def value(gain):
-        try:
-            for step in steps:
-                gain = step(gain)
-        except (ArithmeticError, ValueError):  # beyond doubles, or where roots of squares are not real
-            return nan
-        return float(scale) * gain
-
-    return f"{scale}*({text})", value
-
-
-def polynomial(random, degree, lowest=-0.2):
-    """Return descending coefficients, most of whose roots lie left of the axis."""
-    found = np.ones(1)
-    while len(found) <= degree:
-        a, b = random.uniform(lowest, 3), random.uniform(0.2, 4)
-        found = np.polymul(found, [1, a] if len(found) == degree or random.random() < 0.5 else [1, a, b])
-    return found.round(3)
-
-
-def random_loop(seed, kind):
-    """Return the text of a loop, and of a gain the polynomials without and with a dead time of 0.3 s."""
-    random, names, places = Random(f"{kind} {seed}"), {}, []
-    for _ in range(2 if kind == "two places" or (kind == "dead time" and seed % 3 == 0) else 1):
-        degree = random.randint(*((2, 5) if kind == "lumped" else (1, 3)))
-        zeros = random.randint(0, max(0, degree - random.choice((1, 2, 2, int(kind == "dead time")))))
-        b = random.choice((1, 4)) * polynomial(random, zeros, -1)
-        places.append((*function_of_gain(random, names), polynomial(random, degree), b))
-    sign = "real" if kind == "lumped" and seed % 4 == 0 else "positive"
-    value = random.choice((0.3, 0.7, 1.2, 1.9))
-    head = f'symflex = 1\nparameters = {{ K = {{ value = {value}, assume = "{sign}" }}'
-    head += ', k = "1 N/m", c = "0.2 N*s/m" }\n[definitions]\n' if kind == "beam" else " }\n[definitions]\n"
-    head += "".join(f'{name} = "{text}"\n' for name, text in names.items())
-    if kind == "beam":
-        more = random.choice(("", f" - c*({places[0][0]})*s*x"))
-        return head + BEAM.format(f"k*({places[0][0]})*(r - x){more}"), None
-    paths = [
-        f"({f})*({'+'.join(f'({c:g})*s^{len(b) - 1 - i}' for i, c in enumerate(b))})"
-        f"/({'+'.join(f'({c:g})*s^{len(a) - 1 - i}' for i, c in enumerate(a))})"
-        for f, _, a, b in places
-    ]
-    paths[0] += "*exp(-0.3*s)*(r - y)" if kind == "dead time" else "*(r - y)"
-    one, other = places[0], places[-1] if len(places) > 1 else ("", lambda _: 0, np.ones(1), np.ones(1))
-
-    def characteristic(gain):
-        plain = np.polymul(one[2], np.polyadd(other[2], other[1](gain) * other[3]))
-        return plain, one[1](gain) * np.polymul(one[3], other[2])
-
-    return head + SIGNALS.format(f"{paths[0]}{''.join(f' - {p}*y' for p in paths[1:])}"), characteristic
 
 
 def wrong_counts(seed, kind, *, count=3, proved=inf):

@@ -1,13 +1,11 @@
 """Statistics of fits to data of every kind: complex, magnitude alone, records in time, exact, with coherence.
 
 Sums over one to three modes, made without symflex, are written as instruments and simulators write them,
-read, and fitted with the number of resonances chosen. ``python -m tests.unit.data.kinds 200`` prints the
-figures of ``docs/fit.md``.
+read, and fitted with the number of resonances chosen. ``python -m tests.tools.fits kinds 200``
+prints the figures of ``docs/fit.md``.
 """
 
-import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -109,11 +107,3 @@ def study(kind, count, seed=1, show=None):
         if show and (is_wrong or fit.poor or np.max(np.abs(off[-2:])) > 4):
             show(number, "wrong order" if is_wrong else np.round(off[-2:], 1).tolist(), fit.poor)
     return np.concatenate(off), wrong, phantoms
-
-
-if __name__ == "__main__":
-    for kind in sys.argv[2:] or KINDS:
-        begun = time.process_time()
-        off, wrong, phantoms = study(kind, int(sys.argv[1]), show=print)
-        rms, seconds = np.sqrt(np.mean(off**2)), (time.process_time() - begun) / int(sys.argv[1])
-        print(f"{kind}: rms {rms:.2f}, wrong {wrong}, phantoms {phantoms}, {seconds:.1f} s each", flush=True)

@@ -3,13 +3,12 @@
 Nothing here comes from symflex: responses are sums over modes or products of second-order factors, zeros are
 roots of their numerators, and the statistics compare plain numbers. There is no coherence and no base.
 
-``python -m tests.unit.data.laboratory 500`` runs the study whose figures stand in ``docs/fit.md``; with ``500
+``python -m tests.tools.fits lines 500`` runs the study whose figures stand in ``docs/fit.md``; with ``500
 1 wild`` that with modes outside the band, wild lines and real poles.
 """
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from dataclasses import dataclass
 from math import erf, sqrt
@@ -333,30 +332,3 @@ def summary(results):
             Counter(shape for (shape, _, _), j in zip(results, joint, strict=True) if not j)
         ),
     }
-
-
-def main(arguments):
-    """Run the study and print its figures."""
-    count, seed = int(arguments[0]), int(arguments[1]) if len(arguments) > 1 else 1
-
-    def show(number, case, off, poor, words):
-        if off.max() > limit_for(off.size) or poor:
-            kind = "logarithmic" if case.is_logarithmic else "linear"
-            worst = " ".join(f"{x:.1f}" for x in off)
-            noise = f"{case.noise_percent} % {'of the mean' if case.is_additive else 'of each line'}"
-            shape = case.shape + (", mode outside" if case.has_mode_outside else "")
-            shape += ", real pole" if case.real_pole else ""
-            shape += f", wild line {case.wild}" if case.wild is not None else ""
-            print(f"{number:4d} {shape}, {case.values.size} {kind} lines, {noise}: {worst}", end=" ")
-            print(f"poor: {words}" if poor else "", flush=True)
-
-    is_wild = arguments[2:] == ["wild"]
-    for given in (False,) if is_wild else (True, False):
-        print("number of resonances", "given" if given else "chosen")
-        draw = wild if is_wild else simulated
-        for name, value in summary(study(count, seed, modes_given=given, show=show, draw=draw)).items():
-            print(f"  {name}: {value}")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

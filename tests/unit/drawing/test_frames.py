@@ -8,8 +8,8 @@ from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
 from symflex.model.model import INPUT_KINDS
 from tests.house.repository import ROOT
+from tests.random_models import sound
 from tests.unit.drawing.geometry_checks import faults, place, wrongly_counted
-from tests.unit.drawing.random_models import models
 
 
 def test_members_stand_where_their_lengths_and_angles_put_them():
@@ -93,20 +93,20 @@ motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "q.theta", k_t
 
 @pytest.mark.parametrize(("first", "count"), [(2, 2), pytest.param(1000, 10, marks=pytest.mark.slow)])
 def test_random_models_are_drawn_with_everything_in_its_place(first, count):
-    for seed, model in models(first, count):
+    for seed, model in sound(first, count):
         assert faults(model, drawing_of(model)) == [], seed
 
 
 @pytest.mark.slow
 def test_random_models_give_the_same_bytes_twice():
-    for seed, model in models(7000, 3):
+    for seed, model in sound(7000, 3):
         one, other = (render_drawing(drawing_of(model), "svg") for _ in range(2))
         assert one == other, seed
 
 
 @pytest.mark.slow
 def test_random_models_are_of_all_kinds():
-    found = [model for _, model in models(1000, 180)]
+    found = [model for _, model in sound(1000, 180)]
     blocks = {b.block.type_name for m in found for b in m.blocks}
     # Heat is in no random model: it is drawn like acoustics, and other tests have its elements.
     heat = {e.type_name for e in ELEMENTS.values() if any(p.domain == "thermal" for p in e.ports)}

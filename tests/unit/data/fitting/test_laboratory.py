@@ -84,7 +84,7 @@ def test_a_result_without_a_resonance_is_never_counted_as_right():
 def test_of_many_data_sets_nearly_all_are_right_or_poor(count, modes_given):
     figures = summary(study(count, seed=12, modes_given=modes_given))
     # With a share of 97 % fewer than 19 of 20 are right once in eight times, and not with this seed;
-    # ``python -m tests.unit.data.laboratory 500`` repeats the whole study.
+    # ``python -m tests.tools.fits lines 500`` repeats the whole study.
     assert figures["data sets right, jointly"] >= 0.92
     assert figures["parameters within three standard errors"] >= 0.985
     assert figures["wrong and not called poor"] <= count // 20
