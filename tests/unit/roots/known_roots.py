@@ -99,6 +99,8 @@ def assert_are(found, wanted, digits):
     both = (in_order(pairs, min(15, digits - 3)) for pairs in (numbers, wanted))
     for (one, times), (other, often) in zip(*both, strict=True):
         assert abs(one - other) <= mpf(10) ** (1 - digits) * abs(other), (one, other)
+        # A part that is 0 is printed as 0 where it is known to be.
+        assert [x == 0 for x in (one.real, one.imag)] == [x == 0 for x in (other.real, other.imag)], one
         assert times == often, (one, other)
 
 

@@ -267,7 +267,8 @@ CASES = {
 @pytest.mark.parametrize("case", cases(CASES))
 def test_poles_zeros_and_verdicts_are_those_of_the_formula(case):
     for part in check(case).excluded:
-        assert abs(mpc(part.re, part.im) + 10) < part.radius < 2
+        assert (part.re, part.im) == pytest.approx((-10, 0)), part
+        assert part.radius < 2
         assert part.reason == "infinitely many roots accumulate there"
 
 
@@ -583,8 +584,6 @@ def test_roots_that_are_not_told_apart_are_enclosed_together_and_not_certified()
 def test_what_does_not_depend_on_s_has_no_poles_and_without_length_there_is_no_function():
     static = along("100*w'''' + 5*w = 0", "w''(0) = 0", "100*w'''(0) = F", "w''(1) = 0", "w'''(1) = 0")
     assert locate(bound(static)).all_poles == ()
-    with pytest.raises(ModelError, match="SF231"):
-        locate(bound(late("u/(1 - D)", '"T"', NO_TIME)))
     beam = 'arm = { type = "beam", between = ["y", "x"], EI = "1 N*m^2", rhoA = "1 kg/m", l = "l - g" }'
     (tf,) = pipeline.derive_all(
         pipeline.loads(elements(beam, more='parameters = { l = "1 m", g = "0.5 m" }'))

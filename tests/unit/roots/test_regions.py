@@ -11,12 +11,10 @@ from symflex.roots import (
     Mode,
     Modes,
     PolynomialInS,
-    Position,
     Rectangle,
     Root,
     RootProblem,
     find_pole_zero_map,
-    find_polynomial_roots,
 )
 from tests.unit.roots.root_problems import from_roots, problem, with_pi
 
@@ -36,11 +34,6 @@ def axis_pairs(*frequencies):
     """Undamped pairs at these angular frequencies."""
     factors = tuple((PolynomialInS.from_integers([w * w, 0, 1]), 1) for w in frequencies)
     return RootProblem(factors)
-
-
-def test_everything_is_inside_the_plane():
-    roots = find_polynomial_roots(problem(1, 2, 3), 10)
-    assert set(Everything().classify(roots)) == {Position.INSIDE}
 
 
 def pair(omega, on_boundary=False):
@@ -87,13 +80,6 @@ def test_a_root_1e_40_from_a_bands_end_is_decided():
         )
         found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)), digits=15)
         assert [flag for *_, flag in found] == [False] * count, shift
-
-
-def test_an_irrational_root_at_no_representable_distance_is_inside():
-    # sqrt(2) against 1.4142135623730950488016887242 (rounded up in the last place)
-    edge = Fraction("1.4142135623730950488016887243")
-    assert len(poles_in(rectangle(0, edge, -1, 1), problem(-2, 0, 1), 10)) == 1
-    assert len(poles_in(rectangle(edge, 2, -1, 1), problem(-2, 0, 1), 10)) == 0
 
 
 def test_modes_count_multiplicity_and_apply_to_zeros_as_well():

@@ -1,6 +1,5 @@
 """One root: frequency and damping, mirror images, decimals with a rigorous radius, and precision."""
 
-from dataclasses import replace
 from fractions import Fraction
 from math import hypot, pi
 
@@ -11,8 +10,8 @@ from flint import arb, fmpz_poly
 from hypothesis import strategies as st
 
 from symflex.balls import precision
-from symflex.roots import Modes, Root, find_pole_zero_map, find_polynomial_roots
-from symflex.roots.root import FLOAT_BITS, decimals, exact_fraction, mirror_images, overlap
+from symflex.roots import Root, find_polynomial_roots
+from symflex.roots.root import decimals, exact_fraction, mirror_images, overlap
 from tests.unit.roots.root_problems import problem, problem_of
 from tests.unit.roots.stand_ins import root
 
@@ -46,17 +45,6 @@ def test_a_frequency_is_known_as_well_as_both_parts():
     assert float(root(-3, 4).natural_frequency()) == hypot(3, 4)
 
 
-def test_arithmetic_with_a_root_loses_nothing():
-    with precision(600):
-        third = arb(1) / 3
-    for re, im in ((third, arb(1)), (arb(1), third)):
-        bits = Root(re, im, 1, on_imaginary_axis=False, is_real=False).working_bits()
-        assert bits > 600
-        with precision(bits):
-            assert (+re).rel_accuracy_bits() >= re.rel_accuracy_bits()
-    assert root(1, 1).working_bits() > FLOAT_BITS
-
-
 def test_roots_come_with_their_mirror_images():
     for given, even, images in [
         (root(-3, 4), False, [(-3, 4), (-3, -4)]),
@@ -71,15 +59,6 @@ def test_roots_come_with_their_mirror_images():
         assert all(
             (r.is_real, r.on_imaginary_axis) == (given.is_real, given.on_imaginary_axis) for r in found
         ), (given, even)
-
-
-def test_a_mirror_image_is_as_certain_as_the_root():
-    given = replace(root(-3, 4, 2, 0.1), certified=False, on_boundary=True)
-    for image in mirror_images([given, root(5, 6)], even=True)[:4]:
-        assert (image.multiplicity, image.certified, image.on_boundary) == (2, False, True)
-        assert float(image.re.rad()) == pytest.approx(0.1)
-        assert float(image.im.rad()) == pytest.approx(0.1)
-    assert mirror_images([], even=True) == []
 
 
 def test_roots_may_be_the_same_where_both_parts_may():
@@ -173,16 +152,6 @@ def test_precision_holds_inside_a_block_and_is_restored():
         assert flint.ctx.prec == 100
     with pytest.raises(RuntimeError), precision(777):
         raise RuntimeError
-    assert flint.ctx.prec == before
-
-
-def test_finding_roots_and_asking_them_leaves_the_precision_as_it_was():
-    before = flint.ctx.prec
-    (root, *_) = find_polynomial_roots(problem(5, 1, 3, 2, 7), 200)
-    assert flint.ctx.prec == before
-    root.natural_frequency(), root.frequency_hz(), root.damping_ratio(), root.decimal(40)
-    assert flint.ctx.prec == before
-    find_pole_zero_map("a/b", problem(4, 0, 1), problem(1), Modes(1)).to_json_dict()
     assert flint.ctx.prec == before
 
 

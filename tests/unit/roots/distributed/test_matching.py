@@ -12,6 +12,7 @@ import pytest
 from symflex import pipeline
 from symflex.roots import Band, Modes
 from symflex.roots.counting.winding import Cell
+from symflex.roots.distributed.proof import holes_about
 from symflex.roots.locate import (
     _exclusion,
     default_region,
@@ -53,3 +54,13 @@ def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point():
         # All of the neighbourhood is in it, its farthest corner on its edge.
         farthest = abs(point) * abs(cexp(0.05 + 0.05j) - 1)
         assert found.radius == pytest.approx(farthest), (point, re)
+
+
+def test_neighbourhoods_that_meet_are_left_out_as_one():
+    # Each reaches 0.05 in ln(s).
+    for points, count in [
+        ([2, 2 * 1.1], 1), ([2, 2 * 1.11], 2), ([2, 2 * cexp(0.099j)], 1), ([2, 2 * cexp(0.101j)], 2),
+        # the third joins two that do not meet each other
+        ([2, 2 * cexp(0.15j), 2 * cexp(0.07j)], 1), ([2, 3, 4, 3.05], 3),
+    ]:  # fmt: skip
+        assert len(holes_about([complex(p) for p in points])) == count, points

@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 from itertools import product
-from math import log, pi, prod, sqrt
+from math import log, pi, prod
 
 import mpmath
 import pytest
@@ -44,29 +44,6 @@ outputs.y = "u/({denominator})"
 
 def tail(function, start=1e-3):
     return right_tail(function, [prod(f**e for f, e in function.den.factors if e > 0)], [acb(1)], start)
-
-
-LARGER_THAN_THE_REST = {
-    "s^2 + 1*s + 3*D": (1 + sqrt(13)) / 2,
-    "s + 10*D": 10,
-    "s + 10*D^3": 10,
-    "s + s*D/2 + 2": 4,
-    "4*s^2 + 3*s^2*E + s*D + 2": 2,
-    "s^2 + 2*D*s - 5*E": 1 + sqrt(6),
-    "s^3 - 5*D*s^2 + 7": float(mpmath.findroot(lambda r: r**3 - 5 * r**2 - 7, 5)),
-}
-
-
-@pytest.mark.slow
-def test_delays_end_where_the_highest_power_outweighs_the_rest():
-    # On the imaginary axis exponentials are as large as one: no smaller radius is a bound for all dead times.
-    for denominator, radius in LARGER_THAN_THE_REST.items():
-        function = delayed(denominator)
-        found = tail(function)
-        assert isinstance(found, float), denominator
-        assert radius <= found <= radius * NARROW * 1.001, denominator
-        assert tail(function, 1.01 * radius) == 1.01 * radius
-        assert radius <= tail(function, 0.99 * radius) <= radius * NARROW * 1.001, denominator
 
 
 def test_a_root_on_the_axis_is_never_left_outside():
@@ -172,43 +149,6 @@ def test_fields_with_poles_along_the_positive_axis_have_no_end():
         assert found == reason, (equation, conditions)
 
 
-def plus(function, number, start=1e-3):
-    """Return the tail of cosh(wavenumber) and a number."""
-    cosh = function.ratio.ring.generator(function.kernels.kernels[0].generator)
-    return right_tail(function, [cosh, cosh**0], [acb(1), acb(number)], start)
-
-
-def diffusion(length=1):
-    return field("w'' - s*w = 0", "w(0) = 0", f"w'({length}) = F", length=length)
-
-
-@pytest.mark.slow
-def test_diffusion_ends_where_its_exponential_outweighs_a_number():
-    for number, length in ((100, 1), (3000, 3), (100, 0.5)):
-        # Of cosh(sqrt(s)) + c the last root right of the axis is (acosh(c) + j pi)^2; on the imaginary axis,
-        # where exponentials are smallest, sinh(sqrt(R/2)) is c.
-        last = abs((mpmath.acosh(number) + 1j * pi) ** 2) / length**2
-        edge = 2 * float(mpmath.asinh(number)) ** 2 / length**2
-        function = diffusion(length)
-        assert last < edge <= plus(function, number) <= edge * 1.1, (number, length)
-        assert plus(function, number, 0.9 * edge) >= edge, (number, length)
-
-
-def test_transport_with_diffusion_ends_where_its_exponential_outweighs_the_rest():
-    # cosh(g) - 1.5 sinh(g)/g + 3000 exp(-1.5), g^2 = s + 9/4.
-    def is_larger(r):
-        sizes = []
-        for k in range(101):
-            g = mpmath.sqrt(r * mpmath.expj(pi / 2 * k / 100) + 2.25)
-            rest = abs(mpmath.exp(-g) * (1 + 1.5 / g)) + 6000 * mpmath.exp(-1.5)
-            sizes.append(abs(mpmath.exp(g) * (1 - 1.5 / g)) - rest)
-        return min(sizes) > 0
-
-    found = tail(field("w'' + 3*w' - s*w = 0", "w(0) + 3000*w(1) = F", "w'(1) = 0"))
-    assert is_larger(found)
-    assert not is_larger(found / 1.25)
-
-
 def test_transport_that_grows_on_its_way_is_not_taken_for_a_delay():
     # 2 + exp(1 - s): abs(exp(-s)) = 2/e, at s = 1 - log(2) + j (2n + 1) pi.
     function = field("w' + (s - 1)*w = 0", "w(0) = F")
@@ -227,24 +167,6 @@ def lossy_rod(modulus, eta):
     return bound(ELEMENT.format(kind="rod", values=f'E = "{modulus} Pa", rho = 1, A = 1, eta = "{eta} s"'))
 
 
-def test_a_lossy_rod_ends_where_its_exponential_outweighs_a_number():
-    # gamma^2 = rho s^2/(E (1 + eta s)), its smallest real part on the imaginary axis.
-    number = 100
-
-    def excess(r, modulus, eta):
-        return mpmath.sinh(mpmath.re(1j * r / mpmath.sqrt(modulus * (1 + 1j * r * eta)))) - number
-
-    for modulus, value, loss, eta in (
-        ("1", 1.0, "10", 10.0),
-        ("2*pi", 2 * pi, "10", 10.0),
-        ("1", 1.0, "pi^2", pi**2),
-    ):
-        low, high = 100 * value, 10000 * value
-        edge = mpmath.findroot(lambda r, v=value, e=eta: excess(r, v, e), (low, high), solver="anderson")
-        found = plus(lossy_rod(modulus, loss), number)
-        assert edge * 0.999 <= found <= edge * 1.1, (modulus, loss)
-
-
 def test_beyond_a_radius_a_rational_function_is_a_power_of_s_times_what_is_in_the_ball():
     for eta, radius in product([10.0, 0.5], [5.0, 40.0]):
         function = lossy_rod("2*pi", eta)
@@ -261,16 +183,6 @@ def test_beyond_a_radius_a_rational_function_is_a_power_of_s_times_what_is_in_th
             assert ball.contains(acb(limit.mid())), (eta, radius)
             share = 1 / (eta * radius)
             assert abs(ball - limit).upper() < (abs(limit) * 2 * share / (1 - 2 * share)).lower(), eta
-
-
-def test_a_factor_that_may_vanish_beyond_a_radius_is_no_power_of_s():
-    # eta + 1/s is 0 for s = -1/eta.
-    function = lossy_rod("1", 10.0)
-    with precision(64):
-        kernels = function.kernel_values()
-        law = function.kernels.dispersions[0].characteristic[0]
-        assert _at_infinity(kernels, law, 0.0999) is None
-        assert _at_infinity(kernels, law, 0.2) is not None
 
 
 # ------------------------------------------------------------------- sums of a few exponentials, by hand

@@ -6,7 +6,6 @@ from math import pi
 
 import pytest
 
-from symflex import pipeline
 from symflex.roots.distributed.right_half_plane import (
     RightHalfPlane,
     gaps_text,
@@ -135,31 +134,6 @@ def test_gaps_of_several_functions_say_every_reason_once_and_how_far_all_are_kno
         RightHalfPlane((), *gap) for gap in [("", 0.0), ("no end", 40 * pi), ("no end", 20 * pi), ("lost", 0)]
     ]
     assert gaps_text(found) == "known up to 10 Hz only: no end; lost"
-
-
-def test_distributed_parts_that_nothing_sees_are_not_said_to_be_stable():
-    text = """symflex = 1
-inputs = {{ F = {{ force = "y" }} }}
-outputs = {{ Y = "tip" }}
-[elements.arm]
-type = "beam"
-between = ["ground", "tip"]
-E = "2 Pa"
-I = "3 m^4"
-rho = "5 kg/m^3"
-A = "7 m^2"
-l = "1 m"
-[elements]
-m = {{ type = "mass", at = "y", m = "1 kg" }}
-k = {{ type = "spring", between = ["y", "ground"], k = "{k} N/m" }}
-"""
-    words = {}
-    for k in ("1", "-1"):
-        model = pipeline.loads(text.format(k=k))
-        (bound,) = pipeline.derive_bound(model, [("Y", "F")])
-        words[k] = pipeline.roots(bound).verdict.word
-    # The mass on the negative spring falls away, and the function, which is 0, holds nothing of it.
-    assert words == {"1": "stable", "-1": "unknown"}
 
 
 def test_hidden_motion_is_a_line_that_names_what_moves():

@@ -79,7 +79,6 @@ CLOSED = {
     "free": (FREE, free),
     "on a foundation": (ON_A_FOUNDATION, on_a_foundation),
 }
-PLACES = [0.7, 2 + 3j, -1 + 4j, 0.5 - 2j]
 
 
 def function_of(text):
@@ -91,10 +90,6 @@ def function_of(text):
 def models():
     """Return every function with its name and its closed form."""
     return [(name, function_of(text), closed) for name, (text, closed) in CLOSED.items()]
-
-
-def number(value):
-    return mpc(value.real.mid().str(40, radius=False), value.imag.mid().str(40, radius=False))
 
 
 def test_about_a_ball_values_are_of_its_middle_and_slopes_of_all_of_it():
@@ -155,30 +150,3 @@ def test_what_is_0_everywhere_or_depends_on_the_branch_of_a_wavenumber_is_no_fun
         (diagnostic,) = failed.value.diagnostics
         assert diagnostic.code == "SF404"
         assert diagnostic.message == f"a part of {source.name} has no value of its own for every s"
-
-
-def test_powers_of_wavenumbers_that_change_with_the_branch_are_divided_by():
-    cosh, sinh, cos, sin, sqrt = mpmath.cosh, mpmath.sinh, mpmath.cos, mpmath.sin, mpmath.sqrt
-
-    def of_rods(ch, sh):
-        return [sh, ch * sh**3, ch * sh**2]
-
-    def of_beams(ch, sh, co, si):
-        # of q = sqrt(s/2), which may be turned by 90 degrees
-        return [sh * si, ch * si + sh * co, ch * co]
-
-    for text, make, wavenumber, powers in (
-        (ROD, of_rods, lambda s: s, (1, 1, 0)),
-        (SLIDING_FREE, of_beams, lambda s: sqrt(s / 2), (2, 1, 0)),
-    ):
-        source, made, names = kernels_of(text)
-        values = {"cosh": cosh, "sinh": sinh, "cos": cos, "sin": sin}
-        order = [name for name in values if name in names]
-        for i, power in enumerate(powers):
-            function = KernelFunction(source, made(make(*(names[n] for n in order))[i]))
-            assert function.power == 1
-            with mp.workdps(50):
-                for s in PLACES:
-                    q = wavenumber(mpmath.mpmathify(s))
-                    expected = make(*(values[n](q) for n in order))[i] / q**power
-                    assert abs(number(function.value(acb(s), BITS)) - expected) < 1e-25 * abs(expected), i

@@ -55,17 +55,6 @@ def test_close_roots_are_enclosed_together_unless_they_have_to_agree():
     assert together(beside(0, 1e-30), 2, is_close=True) is not None
 
 
-def test_another_number_of_roots_or_roots_too_far_apart_are_not_proved():
-    for count in [1, 3]:
-        assert together(beside(0, 0), count) is None
-    assert together(beside(1e-4, -1e-4), 2, within=1e-5) is None
-    assert together(beside(1e-4, -1e-4), 2, within=1e-2) is not None
-    assert together((), 1) is None
-    # 1e-11 away: a disc of 12 digits holds one alone, the next one too.
-    found = together(beside(0, 1e-11), 1)
-    assert found is None
-
-
 def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other():
     for even, on_axis in [(True, True), (False, False)]:
         with precision(BITS):

@@ -14,16 +14,6 @@ from symflex.roots.polynomials.discs import (
 )
 
 
-def relative(z):
-    return z.abs_lower() / 10**10
-
-
-def test_a_polished_disc_holds_the_root():
-    level = LevelPolynomial.of(acb_poly([-2, 0, 1]))
-    disc = level.polish(acb(1.4), relative)
-    assert abs(disc.centre - acb(2).sqrt()) < disc.radius + arb(2) ** -50
-
-
 def test_discs_a_hair_apart_are_told_apart_beyond_double_precision():
     for scale in [0, 1, 10**6]:
         for hair in [-70, -40]:
@@ -77,16 +67,6 @@ def test_pellets_disc_holds_exactly_as_many_roots_as_asked_for():
                 ] * 3, scale
                 assert disc.radius < abs(exact[0]) * 1e-3, (scale, count)
                 assert disc.is_real, (scale, count)
-
-
-def test_pellets_disc_leaves_the_third_of_three_close_roots_out_or_gives_up():
-    with precision(200):
-        roots = [acb(1), acb(1 + arb(10) ** -9), acb(1 + 2 * arb(10) ** -9)]
-        disc = monic(*roots).surround(acb(1), 2)
-        assert [bool(abs(root - disc.centre) < disc.radius) for root in roots] == [True, True, False]
-    with precision(200):
-        # The second derivative of s^3 - s vanishes in the middle of the three.
-        assert monic(1, 0, -1).surround(acb(0), 2) is None
 
 
 def test_pellets_disc_is_for_every_polynomial_in_the_balls_of_its_coefficients():

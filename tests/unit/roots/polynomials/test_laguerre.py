@@ -49,9 +49,3 @@ def test_every_root_of_the_upper_half_plane_is_guessed_once():
                     leading
                 )
             assert [z.imag == 0 for z in found] == [z.imag == 0 for z in wanted], (leading, roots)
-
-
-def test_of_a_double_root_both_are_guessed():
-    found = numbers(propose_by_laguerre(made_of(2.0, 2.0, -5.0)))
-    assert sum(1 if z.imag == 0 else 2 for z in found) == 3
-    assert [z.real for z in found] == pytest.approx([2.0] * (len(found) - 1) + [-5.0], rel=1e-6)

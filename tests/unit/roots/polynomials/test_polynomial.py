@@ -8,7 +8,6 @@ from flint import acb, arb, fmpq
 from symflex.balls import precision
 from symflex.roots import PolynomialInS, Root, RootProblem
 from symflex.roots.polynomial_roots import (
-    _hull,
     _square_roots,
     find_polynomial_roots,
     in_order,
@@ -56,27 +55,6 @@ def points_of(disc):
             point = disc.centre + acb(x, y) / size * disc.radius * arb("0.999999")
             found += [point.mid(), point.mid().conjugate()]
         return found
-
-
-def test_a_hull_holds_every_ball_and_little_else():
-    for order, balls in product(
-        list(permutations(range(3))),
-        [
-            [(0, 1), (5, 2), (-4, Fraction(1, 8))],
-            [(1, 10), (2, 1), (3, 1)],
-            [(1, Fraction(1, 10**30)), (1 + Fraction(1, 10**29), Fraction(1, 10**40)), (1, 0)],
-            [(-7, 0), (-7, 0), (-7, 0)],
-            [(Fraction(1, 3), 0), (Fraction(-1, 3), 0), (0, Fraction(1, 10))],
-        ],
-    ):
-        with precision(400):
-            each = [arb(exact(balls[i][0]), exact(balls[i][1])) for i in order]
-            hull = _hull(each)
-            low, high = min(Fraction(c) - r for c, r in balls), max(Fraction(c) + r for c, r in balls)
-            assert all(hull.contains(ball) for ball in each), (order, balls)
-            width = exact(high - low)
-            most = width * exact("1.00001") + exact(Fraction(1, 10**100))
-            assert hull.upper() - hull.lower() <= most, (order, balls)
 
 
 def disc(re, im, radius, count=1):
@@ -138,17 +116,6 @@ def test_roots_whose_frequencies_are_not_told_apart_stand_by_their_real_parts():
 
 def product_of(*factors):
     return RootProblem(tuple((part(*roots).polynomial, exponent) for roots, exponent in factors))
-
-
-def test_roots_of_two_factors_closer_than_the_digits_asked_for_are_told_apart():
-    for exponent in [20, 40, 90]:
-        near = 1 + Fraction(1, 10**exponent)
-        found = find_polynomial_roots(product_of(((1, 5), 1), ((near,), 2)), 5)
-        assert [(r.multiplicity, r.certified) for r in found] == [(1, True), (2, True), (1, True)], exponent
-        with precision(2000):
-            assert encloses(found[:1], acb(1)), exponent
-            assert not encloses(found[:1], acb(exact(near))), exponent
-            assert encloses(found[1:2], acb(exact(near))), exponent
 
 
 def test_roots_at_zero_are_one_root_with_both_marks():

@@ -3,9 +3,8 @@
 import math
 from fractions import Fraction
 
-import mpmath
 import pytest
-from flint import acb, acb_poly, arb, fmpz_poly
+from flint import acb_poly, arb, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -22,87 +21,6 @@ from tests.unit.roots.root_problems import (
     with_pi,
     with_root_of_two,
 )
-
-DIGITS = 40
-
-
-def holds(root, value):
-    return bool(root.re.overlaps(value.real)) and bool(root.im.overlaps(value.imag))
-
-
-def in_tight_boxes(roots, values, digits=DIGITS):
-    """Each value, computed by a formula in balls, lies in exactly one box, and the boxes are tight."""
-    assert len(roots) == len(values)
-    for value in values:
-        (root,) = [each for each in roots if holds(each, value)]
-        size = root.enclosure().abs_lower()
-        assert root.re.rad() <= size * arb(10) ** -digits
-        assert root.im.rad() <= size * arb(10) ** -digits
-    return True
-
-
-def chain_frequency(j, masses, m, k):
-    """Fixed-free chain: omega_j = 2 sqrt(k/m) sin((2 j - 1) pi / (2 (2 N + 1))), any textbook on lattices."""
-    return 2 * (arb(k) / m).sqrt() * (arb(2 * j - 1) / (2 * (2 * masses + 1))).sin_pi()
-
-
-def damped_pair(omega, m, k, b):
-    """Stiffness-proportional damping: s^2 + (b/k) omega^2 s + omega^2 = 0."""
-    half = omega**2 * b / (2 * k)
-    root = acb(half**2 - omega**2).sqrt()
-    return [-half + root, -half - root]
-
-
-def test_cyclotomic_roots_are_primitive_roots_of_unity():
-    for order in (5, 12, 105):
-        with precision(300):
-            angles = [arb(2 * k) / order for k in range(order) if math.gcd(k, order) == 1]
-            values = [acb(t.cos_pi(), t.sin_pi()) for t in angles]
-        roots = find_polynomial_roots(problem_of(fmpz_poly.cyclotomic(order)), DIGITS)
-        with precision(300):
-            assert in_tight_boxes(roots, values), order
-
-
-def test_wilkinson_roots_are_the_integers():
-    for degree in (20, 60):
-        roots = find_polynomial_roots(problem(*from_roots(range(1, degree + 1))), DIGITS)
-        assert len(roots) == degree
-        assert all(root.re.contains(k) for k, root in enumerate(roots, 1)), degree
-
-
-def test_undamped_chain_has_the_lattice_frequencies_exactly_on_the_axis():
-    for masses in (1, 2, 7, 40):
-        roots = find_polynomial_roots(problem_of(chain(masses, 60, 95000, 0)), 50)
-        assert all(root.on_imaginary_axis and root.re == 0 for root in roots), masses
-        with precision(400):
-            values = [chain_frequency(j, masses, 60, 95000) for j in range(1, masses + 1)]
-            assert in_tight_boxes(roots, [acb(0, sign * v) for v in values for sign in (1, -1)], 50), masses
-
-
-def test_damped_chain_has_the_roots_of_its_modal_quadratics():
-    for masses, b in ((3, 40), (40, 1), (25, 9000)):
-        roots = find_polynomial_roots(problem_of(chain(masses, 60, 95000, b)), 50)
-        assert all(root.re < 0 for root in roots), (masses, b)
-        with precision(400):
-            frequencies = [chain_frequency(j, masses, 60, 95000) for j in range(1, masses + 1)]
-            values = [s for omega in frequencies for s in damped_pair(omega, 60, 95000, b)]
-            assert in_tight_boxes(roots, values, 50), (masses, b)
-
-
-def test_a_free_chain_has_a_double_root_at_zero():
-    # two free masses joined by a spring: s^2 (m_1 m_2 s^2 + (m_1 + m_2) k)
-    roots = find_polynomial_roots(problem(0, 0, 80 * 95000, 0, 1200), 30)
-    assert (roots[0].is_zero, roots[0].multiplicity) == (True, 2)
-    with precision(200):
-        assert roots[1].im.overlaps((arb(80 * 95000) / 1200).sqrt())
-
-
-def test_repeated_roots_carry_their_multiplicity():
-    roots = find_polynomial_roots(problem(*from_roots([-1, -1, -1, -2, -2, 5])), 20)
-    assert [(int(r.re.unique_fmpz()), r.multiplicity) for r in roots] == [(-1, 3), (-2, 2), (5, 1)]
-    pair = find_polynomial_roots(problem(16, 0, 8, 0, 1), 20)  # (s^2 + 4)^2
-    assert [(int(r.im.unique_fmpz()), r.multiplicity) for r in pair] == [(2, 2), (-2, 2)]
-    assert find_polynomial_roots(problem(5), 10) == ()
 
 
 def test_frequencies_in_hz_are_exact_and_keep_their_damping_ratio():
@@ -138,40 +56,6 @@ def test_coefficients_and_roots_beyond_the_range_of_doubles_are_solved():
     assert (upper.decimal(20).im, lower.decimal(20).im) == (f"1.{'0' * 19}e450", f"-1.{'0' * 19}e450")
 
 
-@pytest.mark.slow
-def test_all_roots_of_dense_integer_coefficients_are_those_of_mpmath():
-    coefficients = [(7919 * k * k + 104729) % 2003 - 1001 for k in range(25)]
-    roots = find_polynomial_roots(problem(*coefficients), 20)
-    assert len(roots) == 24
-    with mpmath.workdps(60):
-        for value in mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=500):
-            box = acb(arb(mpmath.nstr(value.real, 50)), arb(mpmath.nstr(value.imag, 50)))
-            assert sum(holds(root, box) for root in roots) == 1, value
-
-
-def test_a_mirrored_quadruple_is_exactly_symmetric():
-    roots = find_polynomial_roots(problem(1, 0, 0, 0, 1), 30)  # s^4 = -1
-    left, right = find_polynomial_roots(problem(-7, 0, 1), 30)
-    assert (left.is_real, right.is_real, left.im == 0) == (True, True, True)
-    with precision(300):
-        assert left.re.mid() == -right.re.mid()
-        assert len({str(abs(root.re.mid()).man_exp()) for root in roots}) == 1
-        assert len({str(abs(root.im.mid()).man_exp()) for root in roots}) == 1
-        assert in_tight_boxes(roots, [acb(x, y) / arb(2).sqrt() for x in (1, -1) for y in (1, -1)], 30)
-
-
-def test_roots_very_close_to_an_axis_are_told_from_those_on_it():
-    # s^2 + 1e-300 s + 1
-    upper, _ = find_polynomial_roots(problem(10**300, 1, 10**300), 15)
-    assert not upper.on_imaginary_axis
-    assert upper.re < 0
-    assert upper.damping_ratio() == pytest.approx(5e-301, rel=1e-14)
-    # (s - 1)^2 + 1e-80
-    roots = find_polynomial_roots(problem(10**80 + 1, -2 * 10**80, 10**80), 10)
-    assert [root.is_real for root in roots] == [False, False]
-    assert contains(roots[0].im, Fraction(1, 10**40))
-
-
 # ---------------------------------- roots that lie close together, and roots that constants make equal
 
 
@@ -181,19 +65,6 @@ TINY = Fraction(1, 10**30)
 def contains(ball, value):
     with precision(2000):
         return bool(ball.overlaps(arb(value.numerator) / value.denominator))
-
-
-def test_three_roots_1e_30_apart_are_told_apart():
-    for centre, others in (
-        (Fraction(1), ()),
-        (Fraction(1, 3), range(40, 43)),
-        (Fraction(-22, 7), range(40, 80)),
-    ):
-        close = [centre, centre + TINY, centre + 2 * TINY]
-        roots = find_polynomial_roots(problem(*from_roots([*close, *others])), 10)
-        assert all(root.certified and root.multiplicity == 1 for root in roots), centre
-        for value in close:
-            assert sum(contains(root.re, value) for root in roots) == 1, value
 
 
 @pytest.mark.slow
@@ -290,11 +161,6 @@ def test_every_engine_finds_as_many_roots_as_the_degree_and_all_agree():
 
 SMALL = st.integers(min_value=-20, max_value=20)
 COEFFICIENTS = st.lists(SMALL, min_size=2, max_size=12).filter(lambda c: c[-1] != 0)
-FACTORS = st.lists(
-    st.tuples(st.lists(SMALL, min_size=2, max_size=4).filter(lambda c: c[-1] != 0), st.integers(1, 3)),
-    min_size=1,
-    max_size=4,
-)
 
 
 @settings(max_examples=40)
@@ -313,19 +179,6 @@ def test_linear_factors_multiply_to_the_polynomial_conjugates_come_together_and_
         assert points == {(str(r.re.mid().man_exp()), str((-r.im).mid().man_exp())) for r in roots}
     for ball in (part for root in roots for part in (root.re, root.im)):
         assert ball == 0 or ball.rad() <= ball.abs_lower() * arb(10) ** -digits
-
-
-@settings(max_examples=40)
-@given(FACTORS)
-def test_roots_of_a_product_are_disjoint_and_as_multiple_as_in_its_square_free_factorisation(factors):
-    product = fmpz_poly([1])
-    for coefficients, exponent in factors:
-        product *= fmpz_poly(coefficients) ** exponent
-    expected = sorted(m for factor, m in product.factor_squarefree()[1] for _ in range(factor.degree()))
-    roots = find_polynomial_roots(problem_of(product), 10)
-    assert sorted(root.multiplicity for root in roots) == expected
-    boxes = [root.enclosure() for root in roots]
-    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
 def test_constants_with_a_hidden_relation_need_an_engine_that_bears_double_roots():
