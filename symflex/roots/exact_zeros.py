@@ -17,7 +17,7 @@ from symflex.algebra import LAPLACE, Factored, by_powers
 from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.roots.functions.kernel_function import has_kernels
 from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.problem import problem_of
+from symflex.roots.problem import is_complex, problem_of
 from symflex.roots.root import Root, overlap
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 def is_shared_exactly(bound: BoundTransferFunction, root: Root, digits: int) -> bool:
     """Tell whether a root of ``s^2 + w^2`` on one side is proved to be one of the other, so many times."""
     for part, other in ((bound.den, bound.num), (bound.num, bound.den)):
+        if is_complex(part):
+            continue
         for factor, _ in part.factors:
             powers, value = by_powers(part.ring, factor), Factored.polynomial(part.ring, factor)
             if powers.keys() != {0, 2} or has_kernels(value, bound.kernels):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import exp as cexp
 from dataclasses import replace
-from fractions import Fraction
 from functools import cached_property
 from itertools import chain
 from math import exp, inf, isfinite, pi
@@ -18,7 +17,7 @@ from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal, has_loss_factors
 from symflex.model.model import IMAGINARY
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
-from symflex.roots.distributed.proof import TOUCHING, limits
+from symflex.roots.distributed.proof import limits
 from symflex.roots.distributed.right_half_plane import (
     DEGENERATE,
     RightHalfPlane,
@@ -34,23 +33,25 @@ from symflex.roots.loss_modes import NO_STABILITY, check_searched, locate_lossy
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
+    COINCIDE,
     NONE_ON_AXIS,
-    Certificate,
     Exclusion,
     HiddenRoot,
     PoleZeroMap,
     StabilityVerdict,
     chosen,
     find_pole_zero_map,
+    hidden_region,
     is_right,
     judge,
     right_beyond,
+    search_modes,
     take_out_shared,
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
-from symflex.roots.root import ROUNDING, Root, count_roots, overlap, root_at_zero
+from symflex.roots.root import ROUNDING, TOUCHING, Root, overlap, root_at_zero
 from symflex.roots.sheets import locate_on_sheet
 from symflex.transfer import BoundNested
 from symflex.transfer.of_model import assemble, assemble_sparse, derive_bound, derive_if_small
@@ -99,7 +100,7 @@ def locate(
         return replace(locate_on_sheet(bound, where, digits, locate), is_default_region=is_default)
     if IMAGINARY in bound.ratio.ring.index:
         where = region or Everything() if bound.is_rational else _region_of(bound, region)[0]
-        return locate_lossy(bound, where, digits, locate)
+        return locate_lossy(bound, where, digits, locate_distributed)
     if not bound.is_rational:
         located = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
         if located.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
@@ -200,8 +201,6 @@ UNSEEN_WAVES = "a distributed part that input and output do not see may have pol
 UNSEEN_ON_AXIS = "a distributed part that input and output do not see may have poles on the imaginary axis"
 DEFAULT_MODES = 5
 """Number of modes if neither the model nor the user gives it."""
-MATCHING_ROUNDS = 4
-"""Searches that go further because poles and zeros took each other out."""
 
 
 def default_region(bound: AnyBoundFunction) -> Region:
@@ -253,14 +252,8 @@ def locate_distributed(
             raise
         with Budget().entered():  # what is known is told also when the time is over
             searched.settle()
-    chosen = searched.chosen()
-    every = list(chain(*chosen))
-    count = count_roots(every)
-    if reason is None and not all(root.certified for root in every):
+    if reason is None and not all(root.certified for root in chain(*searched.chosen())):
         reason = TOUCHING
-    missing = sum(side.missing for side in searched.sides)
-    engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL]
-    excluded = {hole for side in searched.sides for hole in side.excluded()}
     try:
         if code is not None:
             raise BudgetError(Diagnostic(code, reason or ""))
@@ -268,26 +261,23 @@ def locate_distributed(
     except BudgetError as error:
         with Budget().entered():
             verdict, right, hidden = searched.judged(error.diagnostics[0].message, judged, is_over=True)
-    known = [h.root for h in searched.hidden]
-    beyond = in_order(right_beyond(right, [*chosen[0], *known]))
-    hidden = in_order(right_beyond(hidden, known))
-    # Nobody asked for these modes and no others.
-    is_free = is_default and isinstance(where, Modes)
-    count += count_roots((*beyond, *hidden))
-    return PoleZeroMap(
+    poles, zeros, known = searched.chosen()
+    beyond = in_order(right_beyond(hidden, known))
+    located = PoleZeroMap.of(
         bound.name,
         where,
-        (*chosen[0], *(beyond if is_free else ())),
-        tuple(chosen[1]),
-        (*searched.hidden, *map(HiddenRoot, hidden)),
-        Certificate(", ".join(engines), count + missing, count, reason, code),
         digits,
-        tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
-        is_default and not all(side.is_finite for side in searched.sides[:1]),
-        is_infinite=True,
-        verdict=verdict,
-        unstable=() if is_free else beyond,
+        ", ".join(sorted({side.engine for side in searched.sides if not side.is_finite})) or POLYNOMIAL,
+        (poles, zeros, (*searched.hidden, *map(HiddenRoot, beyond))),
+        verdict,
+        growing=right_beyond(right, known),
+        missing=sum(side.missing for side in searched.sides),
+        reasons=[reason],
+        code=code,
+        excluded=searched.excluded(),
+        is_default=is_default,
     )
+    return replace(located, is_default_region=is_default and not all(s.is_finite for s in searched.sides[:1]))
 
 
 class _Searched:
@@ -324,14 +314,11 @@ class _Searched:
         if any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate):
             self.sides[1] = Side(bound, bound.num, digits)
             shared = _find(self.sides, where)
-        # A little more, so that what lies at the highest pole itself is in.
-        highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0) * (1 + 4 * ROUNDING)
         # Modes are of the poles; what cancelled has none of its own.
-        within = Band(Fraction(0), Fraction(highest)) if isinstance(where, Modes) and highest else where
+        self._within = hidden_region(where, self.chosen()[0])
         hidden = Side(bound, cancelled(bound), digits, is_hidden=True)
-        self._within = within
         self.sides.append(hidden)
-        _find((hidden,), within)
+        _find((hidden,), self._within)
         self._hide(shared)
 
     @cached_property
@@ -388,7 +375,7 @@ class _Searched:
             side.restore()
         self._hide(_match(*pair) if pair else [])
         if isinstance(self.region, Modes) and pair and pair[0].modes < self.region.count:
-            return ["too many poles and zeros coincide to identify the modes"]
+            return [COINCIDE]
         return []
 
     def settle(self) -> None:
@@ -502,6 +489,11 @@ class _Searched:
         poles, zeros = pair or ([], [])
         return poles, zeros, [h.root for h in self.hidden]
 
+    def excluded(self) -> list[Exclusion]:
+        """Return what was left out of the region."""
+        holes = {hole for side in self.sides for hole in side.excluded()}
+        return [_exclusion(hole) for hole in sorted(holes, key=lambda hole: hole.low)]
+
     def extent(self) -> str:
         """Say how far a search came that was broken off."""
         if not isinstance(self.region, Modes) or not self._pair or not isfinite(self._pair[0].reached):
@@ -533,35 +525,29 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
             side.search(region)
         return _match(*sides) if len(sides) > 1 else []
     shared: list[Root] = []
-    wanted = region.count
-    for _ in range(MATCHING_ROUNDS):
+
+    def search(modes: int) -> int:
+        nonlocal shared
         for side in sides:
-            side.extend(wanted)
+            side.extend(modes)
         reached = max((side.reached for side in sides), default=-inf)
         for side in sides:
             side.extend(0, reached)
         shared = _match(*sides) if len(sides) > 1 else []
-        if not shared:
-            break
-        lacking = max(region.count - side.modes for side in sides)
-        if lacking <= 0:
-            break
-        wanted += lacking
+        return max(region.count - side.modes for side in sides) if shared else 0
+
+    search_modes(region.count, search)
     if shared and sides[0].modes < region.count:
         # Of zeros there may be none that no pole takes with it; poles are what was asked for.
-        message = "too many poles and zeros coincide to identify the modes"
-        raise BudgetError(Diagnostic("SF505", message, None, "ask for a band, which shows those that do not"))
+        raise BudgetError(
+            Diagnostic("SF505", COINCIDE, None, "ask for a band, which shows those that do not")
+        )
     return shared
 
 
 def _match(poles: Side, zeros: Side) -> list[Root]:
     """Take out and return what poles and zeros share to more than twice the digits asked for."""
-
-    def coincide(pole: Root, zero: Root) -> bool:
-        closer = poles.refined(pole)
-        return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
-
-    poles.roots, zeros.roots, shared = take_out_shared(poles.roots, zeros.roots, coincide)
+    poles.roots, zeros.roots, shared = take_out_shared(poles.roots, zeros.roots, poles.refined, zeros.refined)
     return shared
 
 

@@ -6,17 +6,19 @@ What the poles say of stability, as far as they are known, is a :class:`Stabilit
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import pi
 from typing import TYPE_CHECKING, Literal, Self
 
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
-from symflex.roots.region import Everything, Mode, Modes, Position, Region
-from symflex.roots.root import Root, count_roots, groups, overlap
+from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
+from symflex.roots.root import ROUNDING, TOUCHING, Root, count_roots, groups, overlap
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from symflex.roots.problem import RootProblem
 
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
 SCHEMA = "symflex.roots/1"
 REFINEMENTS = 4
 """Doublings of the digits before a root counts as on the boundary."""
-
+ROUNDS = 20
+"""Searches that go further, because poles and zeros that coincide are hidden, until enough modes are left."""
 
 AT_REST = "at s = 0"
 MOST_NAMES = 3
@@ -347,6 +350,55 @@ class PoleZeroMap:
         status = "certified" if self.certificate.certified else "not certified"
         return f"<PoleZeroMap {self.tf}: {counts}, {status}, {self.verdict.headline}>"
 
+    @classmethod
+    def of(
+        cls,
+        tf: str,
+        region: Region,
+        digits: int,
+        engine: str,
+        shown: tuple[Sequence[Root], Sequence[Root], Sequence[HiddenRoot]],
+        verdict: StabilityVerdict,
+        *,
+        growing: Sequence[Root] = (),
+        found: int | None = None,
+        missing: int = 0,
+        reasons: Iterable[str | None] = (),
+        code: str | None = None,
+        excluded: Sequence[Exclusion] = (),
+        is_default: bool = False,
+        is_infinite: bool = True,
+    ) -> Self:
+        """Assemble what a search delivers: poles, zeros and hidden modes of the region.
+
+        ``growing`` are poles known wherever they lie, of which those in the right half plane that are not
+        shown become ``unstable``. Where nobody asked for this number of modes, they are shown among the
+        poles. ``found`` is the number of roots enclosed, if they are more than those shown; so many are
+        ``missing``. ``reasons`` say what is not proved.
+        """
+        poles, zeros, hidden = shown
+        beyond = in_order(right_beyond(growing, poles))
+        every = (*poles, *zeros, *(h.root for h in hidden), *beyond)
+        said = dict.fromkeys(filter(None, reasons))
+        if not all(root.certified for root in every):
+            said |= {TOUCHING: None}
+        count = count_roots(every) if found is None else found
+        is_free = is_default and isinstance(region, Modes)
+        return cls(
+            tf,
+            region,
+            (*poles, *(beyond if is_free else ())),
+            tuple(zeros),
+            tuple(hidden),
+            Certificate(engine, count + missing, count, "; ".join(said) or None, code),
+            digits,
+            tuple(excluded),
+            is_default,
+            is_infinite,
+            verdict,
+            () if is_free else beyond,
+        )
+
     @property
     def all_poles(self) -> tuple[Root, ...]:
         """The poles in the region, and those in the right half plane outside of it."""
@@ -440,30 +492,65 @@ def find_pole_zero_map(
     concealed = [
         HiddenRoot(root, cause) for (_, cause), roots in zip(hidden, others, strict=True) for root in roots
     ]
-    reason = None if exceeded is None else exceeded.message
-    if reason is None and counted != count:
-        reason = f"{counted} roots exist, {count} were found"
-    elif reason is None and not all(root.certified for roots in every for root in roots):
-        reason = "some roots could not be told apart; each such group is enclosed as one"
-    code = None if exceeded is None else exceeded.code
     concealed += [
         HiddenRoot(root, cause)
         for (_, cause), known, whole_roots in zip(hidden, others, every[2:], strict=False)
         for root in right_beyond(whole_roots, known)
     ]
+    reason = None if exceeded is None else exceeded.message
+    if reason is None and counted != count:
+        reason = f"{counted} roots exist, {count} were found"
+    elif reason is None and not all(root.certified for roots in every for root in roots):
+        reason = TOUCHING
     missing = "" if counted == count else reason or "not all poles were found"
-    verdict = judge(every[0], missing, hidden=[root for roots in every[2:] for root in roots])
-    return PoleZeroMap(
+    return PoleZeroMap.of(
         tf,
         where,
-        pole_roots,
-        zero_roots,
-        tuple(concealed),
-        Certificate(POLYNOMIAL, counted, count, reason, code),
         digits,
-        verdict=verdict,
-        unstable=right_beyond(every[0], pole_roots),
+        POLYNOMIAL,
+        (pole_roots, zero_roots, concealed),
+        judge(every[0], missing, hidden=[root for roots in every[2:] for root in roots]),
+        growing=every[0],
+        found=count,
+        missing=counted - count,
+        reasons=[reason],
+        code=None if exceeded is None else exceeded.code,
+        is_infinite=False,
     )
+
+
+COINCIDE = "too many poles and zeros coincide to identify the modes"
+
+
+def search_modes(wanted: int, search: Callable[[int], int]) -> bool:
+    """Search for so many modes, and for more as poles and zeros that coincide are hidden.
+
+    ``search`` finds a number of modes and returns how many of those wanted are lacking; whether none is in
+    the end is returned.
+
+    Examples
+    --------
+    >>> asked = []
+    >>> search_modes(3, lambda modes: asked.append(modes) or 3 - modes // 2), asked
+    (True, [3, 5, 6])
+    """
+    modes = wanted
+    for _ in range(ROUNDS):
+        if (lacking := search(modes)) <= 0:
+            return True
+        modes += lacking
+    return False
+
+
+def hidden_region(region: Region, poles: Sequence[Root]) -> Region:
+    """Return where hidden modes are shown: of a number of modes those up to the highest pole shown."""
+    if not isinstance(region, Modes | Mode):
+        return region
+    # A little more, so that what lies at the highest pole itself is in.
+    highest = max((float(root.size().mid()) for root in poles), default=0.0) / (2 * pi) * (1 + 4 * ROUNDING)
+    if highest:
+        return Band(Fraction(0), Fraction(highest))
+    return region if isinstance(region, Modes) else Everything()
 
 
 def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
@@ -489,12 +576,21 @@ def chosen(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
 
 
 def take_out_shared(
-    poles: Sequence[Root], zeros: Sequence[Root], coincide: Callable[[Root, Root], bool]
+    poles: Sequence[Root], zeros: Sequence[Root], *closer: Callable[[Root], Root]
 ) -> tuple[list[Root], list[Root], list[Root]]:
-    """Return poles and zeros without what both share, and that: modes without a visible common factor."""
+    """Return poles and zeros without what both share, and that: modes without a visible common factor.
+
+    A pole and a zero are the same if they still overlap to twice the digits, which ``closer`` returns of
+    poles and of zeros.
+    """
+    of_pole, of_zero = closer
+
+    def coincide(pole: Root, zero: Root) -> bool:
+        return overlap(pole, zero) and overlap(of_pole(pole), of_zero(zero))
+
     left, kept, shared = list(zeros), list[Root](), list[Root]()
     for pole in poles:
-        i = next((i for i, zero in enumerate(left) if overlap(pole, zero) and coincide(pole, zero)), None)
+        i = next((i for i, zero in enumerate(left) if coincide(pole, zero)), None)
         if i is None:
             kept.append(pole)
             continue

@@ -20,6 +20,7 @@ from symflex.algebra import Factored, Ring, degree_in, square_free_factors
 from symflex.balls import precision, value_at
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.model.model import IMAGINARY
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
@@ -149,6 +150,11 @@ def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> Polynom
     coefficients = Ring(small.names[1:])
     polynomial = small.context.from_dict(terms)
     return PolynomialInS(coefficients_in_s(polynomial, coefficients), coefficients.context, used)
+
+
+def is_complex(value: Factored) -> bool:
+    """Tell whether j is in a product."""
+    return IMAGINARY in value.ring.index and value.depends_on(IMAGINARY)
 
 
 def problem_of(bound: BoundTransferFunction, factors: Iterable[tuple[fmpz_mpoly, int]]) -> RootProblem:

@@ -29,6 +29,8 @@ FEWEST_ALONE = 3
 """Digits below which a number that stands alone says how far it may be off."""
 HUNDRED = 100
 """Two digits are fewer."""
+TOUCHING = "some roots could not be told apart"
+"""Reason why roots that are all enclosed are not all certified."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,8 +164,7 @@ class LossyRoot(Root):
     @staticmethod
     def of(root: Root) -> LossyRoot:
         """Return the same root."""
-        on_axis, is_real, certified = root.on_imaginary_axis, root.is_real, root.certified
-        return LossyRoot(root.re, root.im, root.multiplicity, on_axis, is_real, certified)
+        return LossyRoot(*(getattr(root, name) for name in Root.__slots__))
 
     def natural_frequency(self) -> arb:
         """Return omega_r [rad/s], abs(s) where s^2 has no negative real part."""
@@ -303,8 +304,10 @@ def _mirrored(a: Root, b: Root) -> bool:
     return all(bool(x.overlaps(y)) or bool(x.overlaps(opposite(y))) for x, y in parts)
 
 
-def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
+def mirror_images(roots: Sequence[Root], *, even: bool, real: bool = True) -> list[Root]:
     """Return roots and their images in the real axis, for even functions in the imaginary axis too.
+
+    If the function is not ``real``, none are images in the real axis, and for even functions -s is one of s.
 
     Examples
     --------
@@ -316,10 +319,10 @@ def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
     with precision(max((root.working_bits() for root in roots), default=FLOAT_BITS)):
         for root in roots:
             images = [root]
-            if not root.is_real:
+            if real and not root.is_real:
                 images.append(replace(root, im=-root.im))
             if even and not root.on_imaginary_axis:
-                images += [replace(image, re=-image.re) for image in images]
+                images += [replace(r, re=-r.re, im=r.im if real else -r.im) for r in images]
             mirrored += images
     return mirrored
 

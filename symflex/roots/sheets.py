@@ -28,8 +28,8 @@ from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.right_half_plane import MARGIN, NOT_COUNTED
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import has_kernels
+from symflex.roots.loss_modes import UNJUDGED
 from symflex.roots.pole_zero_map import (
-    Certificate,
     PoleZeroMap,
     StabilityVerdict,
     chosen,
@@ -56,8 +56,6 @@ WIDER = 1 + 1e-9
 """Factor by which a radius exceeds that of the last root."""
 MORE = 3
 """How many times as many modes are searched on all sheets as are wanted on one."""
-UNJUDGED = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))
-"""With which stability is not asked for in r, where it means nothing."""
 
 
 def locate_on_sheet(

@@ -117,11 +117,13 @@ class CertifiedWinding(Winding):
         """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.
 
         ``left`` is pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry
-        an arc from the positive real axis tells what the circle does. RootOnPathError where a root lies on
-        the circle, or too close to it.
+        an arc from the positive real axis tells what the circle does, unless nothing is paired.
+        RootOnPathError where a root lies on the circle, or too close to it.
         """
         turn = self.certified_turn(complex(z, 0.0), complex(z, left))
         with precision(BITS):
+            if not self.function.is_paired:
+                turn = (turn + self.certified_turn(complex(z, -left), complex(z, 0.0))) / 2
             return _whole(turn / _angle(left))
 
     def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:

@@ -26,7 +26,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.region import Band, Rectangle, Region
-from symflex.roots.root import FLOAT_BITS, Root, are_apart, count_roots, root_at_zero
+from symflex.roots.root import FLOAT_BITS, TOUCHING, Root, are_apart, count_roots, root_at_zero
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 
 UNPROVED = "the number of roots could not be proved"
-TOUCHING = "some roots could not be told apart"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +60,11 @@ class Count:
     left: float  # pi, or pi/2 where roots mirror each other in the imaginary axis
     lossless: LosslessSearch | None = None  # counts on arcs more quickly
 
+    @property
+    def whole(self) -> float:
+        """Up to which arg(s) a domain reaches that mirror images make a ring; none does without."""
+        return self.left if self.winding.function.is_paired else inf
+
     def within(self, z: float) -> int:
         """Return how many roots lie within exp(z), those at 0 included.
 
@@ -79,8 +83,8 @@ class Count:
 
     def turns(self, domain: Cell) -> int:
         """Return how often the function winds about 0 on the boundary of a domain without its holes."""
-        cells, holes = parts(domain, self.left, self.holes)
-        if not is_whole_ring(domain, self.left, self.holes):
+        cells, holes = parts(domain, self.whole, self.holes)
+        if not is_whole_ring(domain, self.whole, self.holes):
             return sum(self.winding.count(cell) for cell in cells)
         turns = self.within(domain.high)
         if domain.low > -inf:
@@ -97,7 +101,7 @@ class Count:
         if not are_apart(located):
             count = count_roots(located)
             return Proof(count, count, TOUCHING)
-        cells, holes = parts(domain, self.left, self.holes)
+        cells, holes = parts(domain, self.whole, self.holes)
         count, unsure = 0, False
         deciders, hole_deciders = [decider(cell) for cell in cells], [decider(hole) for hole in holes]
         for root in located:

@@ -20,7 +20,6 @@ from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.distributed.proof import (
-    TOUCHING,
     UNPROVED,
     WIDER,
     Count,
@@ -38,12 +37,13 @@ from symflex.roots.functions.kernel_function import (
     split_off_kernels,
 )
 from symflex.roots.functions.simplified import without_reflections, without_squares
+from symflex.roots.loss_modes import complex_roots
 from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
-from symflex.roots.problem import problem_of
+from symflex.roots.problem import is_complex, problem_of
 from symflex.roots.region import Modes, Region
-from symflex.roots.root import Root, are_apart, count_roots, groups, mirror_images, overlap
+from symflex.roots.root import TOUCHING, Root, are_apart, count_roots, groups, mirror_images, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -185,7 +185,9 @@ class Side:
 
     def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
-        self._domain = Cell(-inf, min(search.reached, HIGHEST), 0.0, pi)
+        # What is known of the upper half plane alone makes no disc.
+        low = -inf if self.function.is_paired or self._innermost is None else self._innermost
+        self._domain = Cell(low, min(search.reached, HIGHEST), 0.0, pi)
         self._set(search.roots)
 
     def search(self, region: Region) -> None:
@@ -221,7 +223,9 @@ class Side:
         self._scans = False
         ring = self._search.ring(low, high, right, left)
         self.missing, cell = ring.missing, ring.cell
-        if cell is not None and low <= smallest and is_whole_ring(cell, self._search.left, self.holes):
+        if cell is not None and not self.function.is_paired:
+            cell = replace(cell, right=max(cell.right, 0.0), left=min(cell.left, pi))
+        elif cell is not None and low <= smallest and is_whole_ring(cell, self._search.left, self.holes):
             # A whole disc is easier to count than a ring whose inner circle is very small.
             cell = replace(cell, low=-inf)
         self._domain = cell
@@ -319,9 +323,10 @@ class Side:
         return tuple(hole for hole in self.holes if hole in met)
 
     def _set(self, located: Sequence[Root]) -> None:
-        even = self._search is not None and self._search.is_even
+        function = self.function
+        images = mirror_images(located, even=function.is_central, real=function.is_real)
         distinct: list[Root] = []
-        for root in self._proved(mirror_images(located, even=even)):
+        for root in self._proved(images):
             # What could not be told apart may have been met more than once.
             if root.certified or not any(overlap(root, other) for other in distinct if not other.certified):
                 distinct.append(root)
@@ -378,8 +383,11 @@ def _without_laplace(value: Factored) -> Factored:
 
 
 def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) -> list[Root]:
-    """Return the roots of the factors with positive exponents."""
-    problem = problem_of(bound, [(f, e) for f, e in part.factors if e > 0])
+    """Return the roots of the factors with positive exponents, of those with j in the upper half plane."""
+    factors = [(f, e) for f, e in part.factors if e > 0]
+    if is_complex(part):
+        return [root for root in complex_roots(bound, factors, digits) if not root.im < 0]
+    problem = problem_of(bound, factors)
     return list(find_polynomial_roots(problem, digits)) if problem.degree else []
 
 

@@ -31,6 +31,7 @@ from symflex.roots.functions.exponential_values import (
     Summed,
     exponential_sums,
 )
+from symflex.roots.problem import is_complex
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -100,20 +101,39 @@ class KernelFunction:
     @cached_property
     def is_even(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
+        return self.is_real and self.is_central
+
+    @cached_property
+    def is_central(self) -> bool:
+        """Proved: F(-s) is F(s) or -F(s), so that -s is a root if s is."""
         used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
-        return self.is_mirrored and not any(kernel.function == "exp" for kernel in used)
+        return self._turns_round and not any(kernel.function == "exp" for kernel in used)
+
+    @property
+    def is_paired(self) -> bool:
+        """Whether the roots of one half plane follow from those of the other."""
+        return self.is_real or self.is_central
 
     @cached_property
     def is_mirrored(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s) times an exponential, as of ``1 + exp(-2 s)``, so that roots do."""
+        return self.is_real and self._turns_round
+
+    @cached_property
+    def is_real(self) -> bool:
+        """F is real on the real axis, so that roots mirror each other in it: no coefficient holds j."""
+        laws = [law for law in self.bound.kernels.dispersions if self._uses(law)]
+        return not any(map(is_complex, (self.part, *(c for law in laws for c in law.coefficients))))
+
+    def _uses(self, law: Dispersion) -> bool:
+        names = (*law.wavenumbers, *(k.generator for k in self.bound.kernels.kernels_of(law)))
+        return any(self.part.depends_on(name) for name in names)
+
+    @cached_property
+    def _turns_round(self) -> bool:
         kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
         # Another part's dispersion relation may be lopsided.
-        laws = [
-            law
-            for law in self.bound.kernels.dispersions
-            if any(kernel.dispersion is law for kernel in kernels)
-            or any(self.part.depends_on(name) for name in law.wavenumbers)
-        ]
+        laws = [law for law in self.bound.kernels.dispersions if self._uses(law)]
         decays = [k for k in kernels if k.function == "exp"]
         odd = [k.dispersion.shift for k in decays if not (k.wavenumber or k.length.depends_on("s"))]
         even = [value for law in laws for value in law.coefficients if value is not law.shift]

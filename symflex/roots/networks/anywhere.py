@@ -7,15 +7,15 @@ numerator and denominator share, to twice the digits, is hidden.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from math import hypot, pi
 from typing import TYPE_CHECKING
 
 from symflex.budget import entered_budget
 from symflex.model.loss_factors import has_loss_factors
 from symflex.roots.networks.blocks import most_zeros
-from symflex.roots.networks.disc_search import DiscSearch
-from symflex.roots.pole_zero_map import take_out_shared
+from symflex.roots.networks.disc_search import DiscSearch, DiscSide
+from symflex.roots.pole_zero_map import search_modes, take_out_shared
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import LossyRoot, Root, count_modes, overlap, root_at_zero
@@ -27,7 +27,6 @@ CRAMER = "cramer"
 """What stands in a certificate: the determinants of Cramer's rule, in discs."""
 WIDER = 1.01
 """How far beyond the region the disc reaches."""
-ROUNDS = 8
 GROWTH = 1.4
 SPARE = 1
 """Roots beyond those asked for that a disc is to hold, so that its circle passes between two."""
@@ -65,12 +64,16 @@ def roots_in_disc(
             return _roots(search, hypot(across, along) * WIDER, digits)
     wanted = wanted_modes(region)
     entered_budget().progress.report(0.0, "sizing the disc")
-    radius = search.radius_of(2 * wanted + SPARE)
-    for _ in range(ROUNDS):
-        in_disc = _roots(search, radius, digits)
-        if in_disc.holds(wanted) or not search.may_grow(radius * GROWTH, wanted):
-            break
+    radius = search.radius_of(2 * wanted + SPARE) / GROWTH
+    in_disc: DiscRoots
+
+    def search_wider(_modes: int) -> int:
+        nonlocal in_disc, radius
         radius *= GROWTH
+        in_disc = _roots(search, radius, digits)
+        return int(not in_disc.holds(wanted) and search.may_grow(radius * GROWTH, wanted))
+
+    search_modes(wanted, search_wider)
     return in_disc
 
 
@@ -83,14 +86,13 @@ def _roots(search: DiscSearch, radius: float, digits: int) -> DiscRoots:
     entered_budget().progress.report(0.3, "evaluating determinants on a circle")
     den, num = search.sides(radius)
     entered_budget().progress.report(0.7, "enclosing roots")
-    closer = cache(lambda side: side.all_roots(2 * digits))
+    finer = cache(lambda side: side.all_roots(2 * digits))
 
-    def coincide(pole: Root, zero: Root) -> bool:
-        """Tell whether a pole and a zero are among those that still overlap to twice the digits."""
-        near = [[r for r in closer(side) if overlap(r, own)] for side, own in ((den, pole), (num, zero))]
-        return any(overlap(a, b) for a in near[0] for b in near[1])
+    def closer(side: DiscSide, root: Root) -> Root:
+        return next((r for r in finer(side) if overlap(r, root)), root)
 
-    poles, zeros, shared = take_out_shared(den.all_roots(digits), num.all_roots(digits), coincide)
+    own = (den.all_roots(digits), num.all_roots(digits))
+    poles, zeros, shared = take_out_shared(*own, partial(closer, den), partial(closer, num))
     if has_loss_factors(search.equations.equations.model):  # which belong to omega > 0
         for side in (poles, zeros, shared):
             side[:] = [LossyRoot.of(root) for root in side if not root.im < 0]

@@ -26,22 +26,22 @@ from symflex.roots.networks.network import OtherNetworkError, network_of
 from symflex.roots.networks.parity import mirrored
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
+    COINCIDE,
     NONE_ON_AXIS,
-    Certificate,
     HiddenRoot,
     PoleZeroMap,
-    StabilityVerdict,
     chosen,
+    hidden_region,
     judge,
-    right_beyond,
+    search_modes,
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
-from symflex.roots.root import Root, count_modes, count_roots, root_at_zero
+from symflex.roots.root import TOUCHING, Root, count_modes, root_at_zero
 from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.equations import Equations
     from symflex.roots.networks.network import Network
@@ -51,15 +51,12 @@ WITTRICK_WILLIAMS = "wittrick-williams"
 """What stands in a certificate: the count of Wittrick and Williams."""
 WIDER = 1e-3
 """How far beyond the limits of a band is searched, relative to them."""
-MATCHING_ROUNDS = 20
-"""Searches that go further because input or output do not see some of the modes."""
 NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"
 NOT_COUNTED = "the roots could not be counted"
 REACHED = "poles are known up to {:.4g} Hz only"
 ZERO = "the transfer function is zero: its modes, which are all hidden, were not searched"
 TOO_FEW = "the part that could be searched has fewer modes than asked for"
-UNTOLD = "some roots could not be told apart"
 UNDECIDED_AT_REST = "the multiplicity of the root at 0 could not be determined"
 
 
@@ -109,37 +106,15 @@ class _Sought:
     proof: str = ""  # why no pole lies right of the imaginary axis
     unsure: str = NONE_ON_AXIS  # what is not known with that proof
 
-    def found(
-        self,
-        engine: str,
-        roots: tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]],
-        verdict: StabilityVerdict,
-        reasons: Sequence[str] = (),
-        unstable: tuple[Root, ...] = (),
-        code: str | None = None,
-    ) -> PoleZeroMap:
-        """Return poles, zeros and hidden modes, what is not proved, and the code of what was exceeded."""
-        poles, zeros, hidden = roots
-        every = (*poles, *zeros, *(h.root for h in hidden))
-        untold = () if all(root.certified for root in every) else (UNTOLD,)
-        count = count_roots((*every, *unstable))
-        reason = "; ".join(dict.fromkeys((*reasons, *untold))) or None
-        return PoleZeroMap(
-            self.name,
-            self.region,
-            *roots,
-            Certificate(engine, count, count, reason, code),
-            self.digits,
-            is_default_region=self.is_default,
-            is_infinite=True,
-            verdict=verdict,
-            unstable=unstable,
-        )
+    @property
+    def located(self) -> Callable[..., PoleZeroMap]:
+        """What makes a map of the region from the rest of what :meth:`PoleZeroMap.of` asks for."""
+        return partial(PoleZeroMap.of, self.name, self.region, self.digits, is_default=self.is_default)
 
     def nothing(self, reason: str, code: str | None = None) -> PoleZeroMap:
         """Return that no root was found: of a passive network some may still lie on the imaginary axis."""
         said = f"{self.proof}, but it may vibrate forever; {reason}" if self.proof else reason
-        return self.found(CRAMER, ((), (), ()), judge([], said), [reason], code=code)
+        return self.located(CRAMER, ((), (), ()), judge([], said), reasons=[reason], code=code)
 
     def without_losses(self, search: _NetworkSearch) -> PoleZeroMap:
         """Count the poles, and the zeros where the output is what the input drives.
@@ -147,7 +122,7 @@ class _Sought:
         Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
         """
         in_disc = None if search.network.is_colocated else self.in_disc(search.cramer)
-        if in_disc is not None and in_disc.certificate.reason in (None, UNTOLD):
+        if in_disc is not None and in_disc.certificate.reason in (None, TOUCHING):
             return in_disc
         reasons: list[str] = []
         code: str | None = None
@@ -166,7 +141,9 @@ class _Sought:
         known = [*poles, *(h.root for h in hidden if not h.is_proved)]
         unseen = [h.root for h in hidden if h.is_proved]
         verdict = judge(known, self.unsure if self.proof else NOT_PASSIVE, self.proof, unseen)
-        return self.found(engine, (poles, zeros, hidden), verdict, reasons + search.reasons, code=code)
+        return self.located(
+            engine, (poles, zeros, hidden), verdict, reasons=reasons + search.reasons, code=code
+        )
 
     def in_disc(self, cramer: CramerEquations) -> PoleZeroMap:
         """Find all roots in a disc that holds the region."""
@@ -184,19 +161,14 @@ class _Sought:
         beyond = REACHED.format(in_disc.radius / (2 * pi))
         at_rest = [r for r in in_disc.shared if r.is_zero]
         verdict = judge(known, self.unsure if self.proof else beyond, self.proof, at_rest)
-        roots = (poles, zeros, _hidden(in_disc.shared, poles, region))
-        reasons = () if in_disc.holds(wanted_modes(region)) else (TOO_FEW,)
-        return self.found(CRAMER, roots, verdict, reasons, right_beyond(in_disc.poles, poles))
+        shown = (poles, zeros, _hidden(in_disc.shared, poles, region))
+        reasons = [] if in_disc.holds(wanted_modes(region)) else [TOO_FEW]
+        return self.located(CRAMER, shown, verdict, reasons=reasons, growing=in_disc.poles)
 
 
 def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tuple[HiddenRoot, ...]:
-    """Return the hidden modes that are shown: of a number of modes those up to the highest pole shown."""
-    if isinstance(region, Modes):
-        highest = max((root.natural_frequency() for root in poles), default=arb(0))
-        shared = in_order([r for r in shared if r.is_zero or not r.natural_frequency() > highest])
-    elif not isinstance(region, Mode):
-        shared = chosen(shared, region)
-    return tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
+    shown = chosen(shared, hidden_region(region, poles))
+    return tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shown)
 
 
 class _NetworkSearch:
@@ -217,19 +189,17 @@ class _NetworkSearch:
     def find(self) -> None:
         """Find the roots the region asks for, and perhaps more; zeros where they are eigenvalues."""
         if isinstance(self.region, Modes):
-            wanted = self.region.count
-            for _ in range(MATCHING_ROUNDS):
-                self._find(1, wanted, None)
-                sides = [self.visible, self.held] if self.network.is_colocated else [self.visible]
-                lacking = max(self.region.count - count_modes(roots) for roots in sides)
-                if lacking <= 0:
-                    return
-                wanted += lacking
-            self.reasons.append("too many modes are hidden to identify those that are not")
+            if not search_modes(self.region.count, self._find_modes):
+                self.reasons.append(COINCIDE)
         elif isinstance(self.region, Mode):
             self._find(self.region.number, self.region.number, None)
         else:
             self._find(1, None, self._limits())
+
+    def _find_modes(self, modes: int) -> int:
+        self._find(1, modes, None)
+        sides = [self.visible, self.held] if self.network.is_colocated else [self.visible]
+        return max(wanted_modes(self.region) - count_modes(roots) for roots in sides)
 
     def _limits(self) -> tuple[float, float]:
         """Return between which omega [rad/s] the region reaches along the imaginary axis."""

@@ -132,7 +132,7 @@ def _box(
         middle, chosen = approached
         reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
         on_axis = even and bool(abs(middle.real) < reach / SMALLER)
-        is_real = bool(abs(middle.imag) < reach / SMALLER)
+        is_real = function.is_real and bool(abs(middle.imag) < reach / SMALLER)
         middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
         reach = reach.mid()
         box = acb(arb(middle.real, reach), arb(middle.imag, reach))
@@ -258,7 +258,7 @@ def prove_together(
     for last in reversed(range(centrings)):
         with precision(bits):
             size = (centre.abs_upper() * arb(10) ** -digits).mid()
-            centre = snapped(centre, size, even=even)
+            centre = snapped(centre, size, even=even, real=function.is_real)
         # Like Newton's, the first step need not be as accurate as the last.
         points = (SERIES_POINTS + most) // 2 if last == centrings - 1 else most
         series = local_series(function, centre, reach, bits, points)
@@ -268,15 +268,15 @@ def prove_together(
             for _ in range(SHRINKINGS):
                 # No other root next to the disc either: what is close to it has a disc of its own.
                 if series.count(size) == count == series.count(size * GROWTH):
-                    return in_disc(centre, size, count // function.power, even=even)
+                    return in_disc(centre, size, count // function.power, even=even, real=function.is_real)
                 size = (size / GROWTH).mid()
             while not (last or is_close) and size < within:
                 if series.count(size) == count:
-                    place = snapped(centre, size, even=even)
+                    place = snapped(centre, size, even=even, real=function.is_real)
                     if place != centre and series.count(WIDER * size) == count:
                         # About a point of the axis: it holds the disc, and is held by the wider one.
                         centre, size = place, (2 * size).mid()
-                    return in_disc(centre, size, count // function.power, even=even)
+                    return in_disc(centre, size, count // function.power, even=even, real=function.is_real)
                 size = (size * GROWTH).mid()
             centre = series.middle(count) or centre
     return None
@@ -289,17 +289,17 @@ def is_branched(function: KernelFunction, s: acb, within: arb) -> bool:
     return not all(value.is_finite() for value, _, _ in function.enclosed(disc, BRANCH_BITS))
 
 
-def snapped(s: acb, close: arb, *, even: bool) -> acb:
+def snapped(s: acb, close: arb, *, even: bool, real: bool = True) -> acb:
     """Return a point, on an axis of symmetry if it is closer to that than a distance."""
     on_axis = even and bool(abs(s.real) < close)
-    return acb(arb(0) if on_axis else s.real, arb(0) if abs(s.imag) < close else s.imag)
+    return acb(arb(0) if on_axis else s.real, arb(0) if real and abs(s.imag) < close else s.imag)
 
 
-def in_disc(centre: acb, size: arb, multiplicity: int, *, even: bool) -> Root:
+def in_disc(centre: acb, size: arb, multiplicity: int, *, even: bool, real: bool = True) -> Root:
     """Return all roots in a disc that holds so many as one."""
     # One root alone in a disc that mirrors itself is its own mirror image.
     on_axis, is_real = (multiplicity == 1 and bool(part == 0) for part in (centre.real, centre.imag))
-    on_axis = on_axis and even
+    on_axis, is_real = on_axis and even, is_real and real
     return Root(
         arb(0) if on_axis else arb(centre.real, size),
         arb(0) if is_real else arb(centre.imag, size),

@@ -193,6 +193,44 @@ def test_what_losses_do_not_touch_stays_on_the_axis():
     assert all(pole.re < 0 for pole in found.poles)
 
 
+def test_modes_with_a_damper_beside_a_loss_factor_are_those_of_its_equation():
+    damper = 'd = { type = "damper", between = ["b.y", "ground"], b = "3 N*s/m" }\n[inputs]'
+    found = symflex.loads(CANTILEVER.replace("[inputs]", damper)).transfer_function("Y", "F").bind()
+    located = found.pole_zero_map(modes=4)
+    assert located.certificate.certified
+
+    def equation(s):
+        rigidity = 56 * (1 + 0.02j)
+        q = (-0.162 * np.asarray(s, complex) ** 2 / rigidity) ** 0.25 * 0.5
+        tip = np.cosh(q) * np.sin(q) - np.sinh(q) * np.cos(q)
+        return rigidity * (1 + np.cosh(q) * np.cos(q)) + 3 * s * tip * (0.5 / q) ** 3
+
+    poles = np.array([complex(p.re.mid(), p.im.mid()) for p in located.poles])
+    assert max(abs(equation(poles))) < 1e-9 * min(abs(equation(1.01 * poles)))
+    # The equation winds about 0 once per pole, on the upper half of a disc whose edge lies behind the last.
+    size = abs(poles[-1]) * 1.2
+    path = np.r_[np.linspace(-size, size, 400), size * np.exp(1j * np.linspace(0, np.pi, 2000))]
+    values = equation(path)
+    turns = np.angle(np.roll(values, -1) / values)
+    assert max(abs(turns)) < 1
+    assert round(sum(turns) / (2 * np.pi)) == len(poles) == 4
+
+
+def test_no_mode_of_two_equal_beams_that_a_spring_joins_is_missing():
+    other = CANTILEVER[CANTILEVER.index("wall") : CANTILEVER.index("[inputs]")]
+    for old, new in (('"b"', '"d"'), ('"a"', '"c"'), ("wall", "wall_2"), ("arm", "arm_2")):
+        other = other.replace(old, new)
+    joint = 's = { type = "spring", between = ["b.y", "d.y"], k = "500 N/m", eta_s = 0.3 }\n[inputs]'
+    located = symflex.loads(CANTILEVER.replace("[inputs]", other + joint)).transfer_function("Y", "F").bind()
+    located = located.pole_zero_map(modes=5)
+    assert located.certificate.certified
+    poles = [complex(p.re.mid(), p.im.mid()) for p in located.poles]
+    # Where both move alike, the spring does nothing.
+    for root in (1.8751040687119611, 4.6940911329741746, 7.8547574382376126):
+        alike = 1j * root**2 * np.sqrt(56 * (1 + 0.02j) / 0.162) / 0.5**2
+        assert min(abs(pole - alike) for pole in poles) < 1e-9 * abs(alike)
+
+
 @pytest.mark.parametrize(("mark", "loss"), [("", 0.1), ("j*", 0.1j)])
 def test_a_viscoelastic_stiffness_may_stand_in_a_definition(mark, loss):
     text = ONE_MASS.format("", "x").replace('"100 N/m"', '"k_v"')

@@ -34,6 +34,8 @@ class KnownFunction:
     is_mirrored: bool = False
     scale: int = 3
     power: int = 1
+    is_real: bool = True
+    is_paired: bool = True
 
     @cached_property
     def roots(self):
