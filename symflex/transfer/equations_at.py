@@ -83,6 +83,10 @@ class EquationsAt:
     # By bits, parameter and id of a value, which is kept so that no other has its id.
     _plans: dict[tuple[int, str], dict[int, tuple[Factored, Plan]]] = field(default_factory=dict)
 
+    def __reduce__(self) -> tuple[type[EquationsAt], tuple[object, ...]]:
+        """Leave out what is kept of earlier evaluations: ids mean nothing in another process."""
+        return EquationsAt, (self.equations, self.values)
+
     def on(self, s: Arithmetic, along: str = "") -> NamedValues:
         """Return the values on a ball of s [rad/s]; to first order ``along`` ``"s"`` or a parameter.
 

@@ -24,7 +24,7 @@ from math import prod
 from operator import truediv
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from flint import acb, acb_series, arb
+from flint import acb, acb_series
 
 from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable
 from symflex.algebra.straight_line import Operation, Step, StraightLine
@@ -37,7 +37,6 @@ from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.direct_solve import Point
 from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, double_value
-from symflex.transfer.enclose import enclosure, later
 from symflex.transfer.transfer_function import (
     HiddenFactor,
     TransferFunction,
@@ -104,9 +103,8 @@ class NestedTransferFunction:
     unit: str  # SI unit, empty when unknown
     constants: tuple[ConstantFunction, ...]  # what generators such as ``sqrt(k*m)`` stand for
     model: Model  # where it comes from
-    # The equations it solves, and the fundamental functions in them, of all members; of a distributed model.
-    equations: Equations | None = None
-    every_wave: tuple[Waves, ...] = ()
+    equations: Equations  # those it solves
+    every_wave: tuple[Waves, ...] = ()  # the fundamental functions in them, of all members
     cut: CutModel | None = None  # the same for double precision; functions of a model share it
 
     def __repr__(self) -> str:
@@ -208,14 +206,13 @@ def derive_nested(
     elimination = eliminate(equations, pairs)
     outputs, inputs = {o.name: o for o in model.outputs}, {i.name: i for i in model.inputs}
     known = dict(model.quotients)
-    origin = None if cut is None else equations
     made = []
     for (output, source), (num, den) in zip(pairs, elimination.quotients, strict=True):
         ends = outputs[output], inputs[source]
         dimension = known.get((output, source))
         named = name_quantity(*ends, dimension), unit_of_quotient(*ends, dimension)
         quotient = (*ends, elimination.program, num, den, *named, equations.constants, model)
-        made.append(NestedTransferFunction(*quotient, origin, elimination.waves, cut))
+        made.append(NestedTransferFunction(*quotient, equations, elimination.waves, cut))
     compare(solve, [Agreement((tf.output.name, tf.input.name), partial(_only_value, tf)) for tf in made])
     return tuple(made)
 
@@ -253,33 +250,25 @@ class BoundNested:
         """True when the function is a quotient of polynomials in s."""
         return self.source.is_rational
 
-    @cached_property
-    def _enclosures(self) -> dict[str, Callable[[], arb]]:
-        """Per generator other than s, how to enclose it at the current precision."""
-        values = {name: enclosure(value) for name, value in self.values}
-        enclosures = {**values, "pi": arb.pi}
-        for constant in self.source.constants:
-            if constant.generator in self.source.generators:
-                enclosures[constant.generator] = later(constant.expression, values)
-        return enclosures
-
     def enclosed(self, bits: int) -> EnclosedNested:
         """Return the function, evaluated in balls at the given precision."""
         with precision(bits):
             used = self.source.generators - {LAPLACE}
-            return EnclosedNested(bits, self.source, {n: acb(self._enclosures[n]()) for n in used})
+            return EnclosedNested(bits, self.source, {name: self.numeric.constant(name) for name in used})
 
     def solved(self, s: acb, bits: int) -> acb:
         """Return a ball around the value from the equations; not finite where they are singular."""
-        source = self.source
         with precision(bits), suppress(UndecidedError):
-            if source.equations is not None:
-                return self._numeric(source.equations).value(source.output.name, source.input.name, s)
+            return self.numeric.value(self.source.output.name, self.source.input.name, s)
         return acb("nan")
 
-    def _numeric(self, equations: Equations) -> EquationsAt:
-        """Return equations of the model with numbers."""
-        from symflex.transfer.equations_at import EquationsAt  # only with beams
+    @cached_property
+    def numeric(self) -> EquationsAt:
+        """The equations with numbers."""
+        return self._with_numbers(self.source.equations)
+
+    def _with_numbers(self, equations: Equations) -> EquationsAt:
+        from symflex.transfer.equations_at import EquationsAt  # few models are so large
 
         # A function does not depend on a parameter without value, though its network may.
         declared = ((p.name, p.value or ExactValue(Fraction(1))) for p in self.source.model.parameters)
@@ -340,7 +329,7 @@ class BoundNested:
             return self._solved(self.source.cut, points)
         with precision(CONSTANT_BITS):
             known: dict[str, Any] = {
-                n: float(self._enclosures[n]().mid()) for n in self.source.generators - {LAPLACE}
+                n: float(self.numeric.constant(n).real.mid()) for n in self.source.generators - {LAPLACE}
             }
         known[LAPLACE] = points
         with np.errstate(all="ignore"):
@@ -355,7 +344,7 @@ class BoundNested:
         from symflex.algebra.line_networks import network_value  # few functions are of so many members
 
         network = cut.network
-        known = self._numeric(network.equations).constant
+        known = self._with_numbers(network.equations).constant
         with precision(CONSTANT_BITS), np.errstate(all="ignore"):
             entries = network.values(
                 name=lambda name: points if name == LAPLACE else float(known(name).real.mid()),
@@ -384,21 +373,6 @@ class EnclosedNested:
         with precision(self.bits):
             num, den = _values(self.source, {**self.constants, LAPLACE: s}, ball)
             return acb(num) / acb(den)
-
-    def wave_arguments(self, s: acb) -> list[tuple[list[acb], acb, acb]]:
-        """Return the coefficients, shift and length of each group of fundamental functions."""
-        program, waves = self.source.program, self.source.waves
-        names = program.names
-        known = {**self.constants, LAPLACE: s}
-        wanted = program.steps_of(*(i for w in waves for i in w.arguments))
-        with precision(self.bits):
-            values = program.values(
-                program.operations(wanted), name=lambda position: known[names[position]], number=ball
-            )
-            return [
-                ([acb(values[i]) for i in w.coefficients], acb(values[w.shift]), acb(values[w.length]))
-                for w in waves
-            ]
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around the value and around ``G'(s)/G(s)``."""

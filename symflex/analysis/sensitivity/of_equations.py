@@ -25,11 +25,9 @@ from symflex.algebra import LAPLACE
 from symflex.analysis.modes.bound_equations import BESIDE, SingularPair, singular_pair
 from symflex.balls import bits_for_digits, precision, precisions
 from symflex.budget import spend
-from symflex.model import with_numbers
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.transfer.equations_at import holds
-from symflex.transfer.of_model import assemble_sparse
 
 if TYPE_CHECKING:
     from symflex.library.elements import LinearForm, Variable
@@ -155,9 +153,8 @@ def is_fixed_at_zero(at: EquationsAt, pair: tuple[str, str], root: Root, *, is_p
     values: one is mistaken with odds of about 1 in 2^61.
     """
     orders = []
-    numeric = assemble_sparse(with_numbers(at.equations.model, (), dict(at.values), in_kernels=True))
-    for equations in (at.equations, numeric):
-        cramer = CramerEquations.of(equations, *pair)
+    for values in ((), at.values):
+        cramer = CramerEquations.of(at.equations, *pair, values)
         size = len(cramer.entries) - is_pole
         orders.append(order_at_zero(cramer, size, root.multiplicity))
     return orders[0] is not None and orders[0] == orders[1]

@@ -60,10 +60,11 @@ class NestedFunction:
         """Return how many radians all members together hold of their waves at a positive ``s``."""
         self.work += self.bound.source.size
         with precision(FIRST_BITS):
-            total = 0.0
-            for coefficients, shift, length in self.bound.enclosed(FIRST_BITS).wave_arguments(acb(s)):
-                sizes = [float(abs(x).mid()) for x in acb_poly([*coefficients, acb(1)]).roots()]
-                total += max([*sizes, float(abs(shift).mid())]) * abs(float(length.real.mid()))
+            number, total = self.bound.numeric.on(acb(s)), 0.0
+            for waves in self.bound.numeric.waves:
+                characteristic = acb_poly([*map(number, waves.law.characteristic), acb(1)])
+                exponents = [*characteristic.roots(), number(waves.law.shift)]
+                total += float((max(abs(x).mid() for x in exponents) * abs(number(waves.length)).mid()).mid())
             return total
 
     def _settled(self, point: Callable[[], acb]) -> Sample | None:

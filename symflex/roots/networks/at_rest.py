@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from flint import nmod_poly
 
-    from symflex.equations import Equations
     from symflex.expressions import Expression
     from symflex.roots.networks.cramer import CramerEquations
 
@@ -31,20 +30,25 @@ FEWEST = 4
 """Columns with fewest entries that are looked at for a pivot."""
 
 
-def _place_constants(equations: Equations, point: dict[str, int]) -> bool:
+def _place_constants(cramer: CramerEquations, point: dict[str, int]) -> bool:
     """Put functions of constants where what relates them holds; False where that cannot be done."""
     tangents: dict[Expression, int] = {}
-    for constant in equations.constants:
+    values = dict(cramer.values)
+    for name, value in values.items():
+        if name in point and not value.is_imaginary:
+            point[name] = value.rational.numerator * pow(value.rational.denominator, -1, PRIME) % PRIME
+            point[name] = point[name] * pow(point["pi"], value.pi_power, PRIME) % PRIME
+    for constant in cramer.equations.constants:
         function, argument = constant.expression.name, constant.expression.argument
         if function in ("cos", "sin"):
             t = tangents.setdefault(argument, point[constant.generator])  # of half the angle, at random
             above = 1 - t * t if function == "cos" else 2 * t
             point[constant.generator] = above * pow(1 + t * t, -1, PRIME) % PRIME
-        square = rational_value(argument, {}) if function == "sqrt" else None
+        square = rational_value(argument, values) if function == "sqrt" else None
         if square is not None:
-            value = square.numerator * pow(square.denominator, -1, PRIME) % PRIME
-            point[constant.generator] = root = pow(value, (PRIME + 1) // 4, PRIME)  # as PRIME is 3 modulo 4
-            if root * root % PRIME != value:
+            residue = square.numerator * pow(square.denominator, -1, PRIME) % PRIME
+            point[constant.generator] = root = pow(residue, (PRIME + 1) // 4, PRIME)  # as PRIME is 3 modulo 4
+            if root * root % PRIME != residue:
                 return False
     return True
 
@@ -74,9 +78,9 @@ def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
 
 
 def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly] | None:
-    """Return every generator as a power series in s, constants at random."""
-    equations, point = cramer.equations, random_point(cramer.equations.ring.names)
-    if not _place_constants(equations, point):
+    """Return every generator as a power series in s, constants without values at random."""
+    equations, point = cramer.equations, random_point((*cramer.equations.ring.names, "pi"))
+    if not _place_constants(cramer, point):
         return None
     values = {name: field.constant(x) for name, x in point.items()} | {LAPLACE: field.power(1)}
     for name, value in equations.definitions:

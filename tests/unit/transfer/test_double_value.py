@@ -3,7 +3,6 @@
 from itertools import product
 from math import inf, isnan, nan
 
-import pytest
 from flint import acb, arb, ctx
 
 from symflex.transfer.double_value import DOUBLE_BITS, FIRST_BITS, LAST_BITS, NEAR, double_value, order_near
@@ -102,31 +101,6 @@ def test_orders_are_read_off_beside_a_point():
         assert error < arb(2) ** -DOUBLE_BITS, (order, s)
 
 
-def test_beside_a_point_the_precision_is_raised_as_far():
-    for least, found in [(768, 768), (1536, 1536), (6144, 6144), (6145, None)]:
-        function = Levels(lambda bits, s, least=least: acb(2) if bits >= least else FAIL)
-        order, value = order_near(function.enclosed, 1j)
-        assert (order, value is None) == (0, found is None), least
-        assert function.asked[0] == 768, least
-        assert max(function.asked) == (found or LAST_BITS), least
-
-
 def test_values_beside_a_point_that_are_finite_and_of_few_bits_do_not_count():
     assert order_near(lambda bits: lambda s: accurate(0.75, DOUBLE_BITS - 1), 1j) == (0, None)
     assert order_near(lambda bits: lambda s: accurate(0.75, DOUBLE_BITS), 1j)[1] is not None
-
-
-@pytest.mark.parametrize("fails_at", NEAR)
-def test_both_points_are_needed(fails_at):
-    def function(bits):
-        def at(s):
-            with ctx.workprec(bits):
-                return (
-                    FAIL
-                    if abs(s) < arb(2) ** (0.5 - fails_at) and abs(s) > arb(2) ** (-0.5 - fails_at)
-                    else s
-                )
-
-        return at
-
-    assert order_near(function, 0j) == (0, None)

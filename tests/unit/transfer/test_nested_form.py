@@ -78,15 +78,6 @@ def test_the_values_are_those_of_the_matrix():
         assert H.at(points.reshape(2, 3)).shape == (2, 3), name
 
 
-def test_slopes_are_those_of_a_central_difference():
-    H = bind_nested(nested(CHAIN)["X_3/F"])
-    s, step = 3 + 7j, 1e-6
-    value, slope = H.enclosed(200).value_and_slope(acb(s.real, s.imag))
-    difference = (H(s + step) - H(s - step)) / (2 * step) / H(s)
-    assert complex(value) == pytest.approx(H(s), rel=1e-12)
-    assert complex(slope) == pytest.approx(difference, rel=1e-7)
-
-
 def test_a_pole_at_the_origin_is_not_finite():
     H = bind_nested(nested(CHAIN)["X_1/F"])
     assert not np.isfinite(H(0j))

@@ -1,11 +1,15 @@
 """Determinants at points and their bounds in discs, against closed forms."""
 
+from fractions import Fraction
 from math import log
 
 import numpy as np
 import pytest
 from flint import acb, arb, ctx
 
+from symflex import pipeline
+from symflex.model import ExactValue
+from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.transfer.equations_at import EssentialSingularityError
 from tests.unit.roots.networks.network_models import equations_of, specification
@@ -76,3 +80,15 @@ def test_bounds_hold_where_a_constant_is_negative():
     equations = rod(turned + 'm = { type = "mass", at = "b", m = "1 kg" }')
     value = equations.at(acb(0.5), 64)
     assert equations.bounds(0.5)[0] >= log(float(abs(value.den).mid()))
+
+
+def test_parameters_take_values_where_they_have_names():
+    # m s^2 + k with m = 2 kg: at s = 3 it is 18 + k, and 0 is twice a root where k = 0.
+    elements = """m = { type = "mass", at = "a", m = "2 kg" }
+    s = { type = "spring", between = ["a", "ground"], k = "k" }"""
+    text = specification(elements, outputs='X = "a"\n[parameters]\nk = { value = "1 N/m", assume = "real" }')
+    equations = pipeline.assemble_sparse(pipeline.loads(text))
+    for k, order in ((5, 0), (0, 2), (-18, 0)):
+        cramer = CramerEquations.of(equations, "X", "F", (("k", ExactValue(Fraction(k))),))
+        assert complex(cramer.alone(acb(3), 100, is_num=False)) == 18 + k, k
+        assert order_at_zero(cramer, 1, 2) == order, k
