@@ -24,6 +24,7 @@ from symflex.expressions import (
 )
 from symflex.print.forms.nested import nested_form
 from symflex.print.json_format import derive_json
+from symflex.roots.locate import as_quotient
 from symflex.transfer import bind, bind_nested
 from tests.property.networks import networks, to_toml
 from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference
@@ -218,6 +219,27 @@ def test_nested_and_expanded_forms_of_distributed_models_have_equal_values(name)
     for one, other in zip(pipeline.derive_all(model), pipeline.derive_nested(model), strict=True):
         for s in (3 + 100j, -20 + 4000j):
             assert bind_nested(other)(s) == pytest.approx(bind(one)(s), rel=1e-13)
+
+
+def test_both_representations_answer_the_same_questions():
+    beam = pipeline.load("derivations/classics/rod_tip_mass.toml")
+    body = 'elements.m = { type = "mass", at = "x", m = 2 }'
+    mass = pipeline.loads(f'symflex = 1\n{body}\ninputs.F = {{ force = "x" }}\noutputs.X = "x"')
+    for model, is_rational in ((beam, False), (mass, True)):
+        pairs = model.transfer_functions[:1]
+        (expanded,), (nested,) = pipeline.derive_all(model, pairs), pipeline.derive_nested(model, pairs)
+        assert expanded.is_rational == nested.is_rational == is_rational
+        assert (expanded.is_reduced, nested.is_reduced) == (True, False)
+        # A formula has its values by itself; of a network of waves they are solved for.
+        assert (expanded.solves_network, nested.solves_network) == (False, not is_rational)
+        points = [1j, 2 + 3j]
+        values = bind(expanded).each(points)
+        assert bind_nested(nested).each(points) == pytest.approx(values, rel=1e-13)
+        assert values == [bind(expanded)(s) for s in points]
+        quotient = as_quotient(bind_nested(nested))
+        assert (quotient.is_reduced, quotient(1j)) == (True, pytest.approx(values[0], rel=1e-13))
+    assert values == [-0.5, pytest.approx(1 / (2 * (2 + 3j) ** 2))]  # 1/(m s^2)
+    assert bind_nested(nested).each([]) == []
 
 
 def test_the_slope_of_a_nested_beam_is_the_limit_of_differences():
