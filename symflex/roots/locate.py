@@ -182,8 +182,10 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     )
     if has_loss_factors(model):
         located = replace(located, verdict=NO_STABILITY)
-    certificate, is_judged = located.certificate, located.verdict.right is not None or has_loss_factors(model)
-    if certificate.code is not None or (certificate.certified and (is_judged or located.verdict.found)):
+    certificate, verdict = located.certificate, located.verdict
+    is_judged = verdict.right is not None or bool(verdict.found) or has_loss_factors(model)
+    is_whole = certificate.certified and is_judged and all(h.is_proved for h in located.hidden)
+    if is_whole or certificate.code is not None:
         return located
     # What resists the counts of a network may yield to those of its formula, where that is not too large.
     try:
@@ -191,8 +193,8 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
         other = located if expanded is None else locate(expanded, region, digits)
     except BudgetError:
         return located
-    if certificate.certified:
-        return replace(located, verdict=other.verdict)
+    if certificate.certified and not other.certificate.certified:
+        return located if is_judged else replace(located, verdict=other.verdict)
     is_better = other.certificate.certified or other.certificate.found > certificate.found
     return other if is_better else located
 
@@ -426,6 +428,7 @@ class _Searched:
         sides: list[tuple[Root, ...]] = []
         gaps = [RightHalfPlane((), self._points.unproved)]
         has_more = bool(self._points.unproved)  # poles than those that are known
+        is_endless = False
         for place, part in (*poles, (2 * len(poles), product)):
             is_hidden, is_searched, known = part is product, place < len(self.sides), list[Root]()
             try:
@@ -436,6 +439,7 @@ class _Searched:
                 is_plain = rests or is_over or side.is_finite
                 end = limit if not proof else None if is_plain else last_on_axis(bound, part, side)
                 has_more = has_more or not (side.is_finite or (proof and end is not None))
+                is_endless = not side.is_finite and end is None  # of what cancelled, which is last
                 if is_over or (proof and end is None):
                     more = side.all_roots if side.is_finite else side.at_origin if rests else ()
                     known += [
@@ -471,7 +475,7 @@ class _Searched:
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
         unseen = [r for r in sides[-1] if not r.is_zero] + root_at_zero(at_rest)
-        verdict = judge(seen, unsure, proof, unseen)
+        verdict = judge(seen, unsure, proof, unseen, is_endless=is_endless)
         return verdict, sides[0] if poles else (), sides[-1]
 
     def _reached(self, side: Side) -> float:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Literal, Self
 
 from symflex.budget import entered_budget, spend
@@ -158,13 +158,19 @@ def is_right(root: Root) -> bool:
 
 
 def judge(
-    roots: Sequence[Root], unproved: str = "", proof: str = "", hidden: Sequence[Root] = ()
+    roots: Sequence[Root],
+    unproved: str = "",
+    proof: str = "",
+    hidden: Sequence[Root] = (),
+    *,
+    is_endless: bool = False,
 ) -> StabilityVerdict:
     """Return the verdict that known poles allow.
 
     ``roots`` are the poles that input and output see, ``hidden`` the others: all that are not in the open
     left half plane, unless ``unproved`` says why there may be more right of the imaginary axis or on it.
     ``proof`` says what proves that there are none in the open right half plane, but maybe on the axis.
+    With ``is_endless``, more hidden poles may lie on the axis.
 
     Examples
     --------
@@ -179,7 +185,8 @@ def judge(
     """
     on_axis = [root for root in hidden if root.on_imaginary_axis]
     at_rest = count_roots(root for root in on_axis if root.is_zero)
-    named = hidden_poles(at_rest, count_roots(on_axis) - at_rest, count_right(hidden))
+    beside = count_roots(on_axis) - at_rest
+    named = hidden_poles(at_rest, inf if beside and is_endless else beside, count_right(hidden))
     return replace(_judged(roots, hidden, unproved, proof), hidden=named)
 
 
@@ -212,8 +219,10 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
     return StabilityVerdict("stable", 0, True)
 
 
-def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
+def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
     """Return in words how many hidden poles lie at s = 0, elsewhere on the axis, and right of it.
+
+    Where more may lie on the axis, their number is infinite and is not said.
 
     Examples
     --------
@@ -221,13 +230,16 @@ def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
     'a hidden pole at s = 0 and 2 on the imaginary axis'
     >>> hidden_poles(0, 0, 2), hidden_poles(0, 0, 0)
     ('2 hidden poles in the right half plane', '')
+    >>> hidden_poles(0, inf, 0), hidden_poles(1, inf, 0)
+    ('hidden poles on the imaginary axis', 'a hidden pole at s = 0 and others on the imaginary axis')
     """
     places = ((at_rest, AT_REST), (on_axis, "on the imaginary axis"), (right, "in the right half plane"))
     said: list[str] = []
     for count, where in places:
         if count:
             kind = "" if said else " hidden pole" if count == 1 else " hidden poles"
-            said.append(f"{'a' if count == 1 and not said else count}{kind} {where}")
+            number = "a" if count == 1 and not said else f"{count}".replace("inf", "others" if said else "")
+            said.append(f"{number}{kind} {where}".strip())
     return " and ".join(said)
 
 

@@ -6,6 +6,7 @@ from math import pi
 
 import pytest
 
+from symflex import pipeline
 from symflex.roots.distributed.right_half_plane import (
     RightHalfPlane,
     gaps_text,
@@ -145,3 +146,20 @@ def test_hidden_motion_is_a_line_that_names_what_moves():
     ]:
         verdict = StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=tuple(moving))
         assert verdict.hidden_motion == f"a hidden pole at s = 0{said}"
+
+
+def test_a_string_held_at_both_ends_has_hidden_poles_without_number_and_none_that_is_seen():
+    # Two equal rods meet where a damper is driven: modes that leave that point at rest are sin(q l) = 0.
+    rods = "".join(
+        f'rod_{n} = {{ type = "rod", between = ["ground", "x"], E = 1, A = 1, rho = 1, l = 1 }}\n'
+        for n in "ab"
+    )
+    text = (
+        f'symflex = 1\n[elements]\n{rods}loss = {{ type = "damper", between = ["x", "ground"], b = 1 }}\n'
+        '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n'
+    )
+    (bound,) = pipeline.derive_for_roots(pipeline.loads(text), [("X", "F")])
+    found = pipeline.roots(bound)
+    assert found.verdict.hidden == "hidden poles on the imaginary axis"
+    assert [float(h.root.im.mid()) / pi for h in found.hidden[::2]] == pytest.approx([1, 2, 3, 4])
+    assert not any(pole.on_imaginary_axis for pole in found.poles)
