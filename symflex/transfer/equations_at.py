@@ -28,6 +28,7 @@ from symflex.algebra.propagators import EXPONENTIAL
 from symflex.along.law import BoundLaw
 from symflex.balls import Arithmetic, Value, at_centre, current_bits, eliminate, raised
 from symflex.expressions import names_among
+from symflex.library.elements import LinearForm
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.model.model import IMAGINARY, J
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion
     from symflex.equations import Equations
     from symflex.expressions import Call
-    from symflex.library.elements import LinearForm, Variable
     from symflex.model import ExactValue
 
 Powers = Sequence[tuple[str, int]]
@@ -80,6 +80,7 @@ class EquationsAt:
     values: tuple[tuple[str, ExactValue], ...] = ()  # of every parameter that occurs
     _constants: dict[int, dict[str, acb]] = field(default_factory=dict)  # by bits
     _moving: dict[str, frozenset[str]] = field(default_factory=dict)
+    _entries: dict[tuple[str, str], list[dict[int, Factored]]] = field(default_factory=dict)
     # By bits, parameter and id of a value, which is kept so that no other has its id.
     _plans: dict[tuple[int, str], dict[int, tuple[Factored, Plan]]] = field(default_factory=dict)
 
@@ -94,15 +95,26 @@ class EquationsAt:
         """
         return NamedValues(self, acb_series([s, 1], 2) if along == LAPLACE else s, along)
 
+    def entries(self, output: str = "", source: str = "") -> list[dict[int, Factored]]:
+        """Return A row by row, its entries by column; ``[A b; c d]`` with an output and an input."""
+        equations, pair = self.equations, (output, source)
+        if pair in self._entries:
+            return self._entries[pair]
+        forms, columns = [row.form for row in equations.rows], [*equations.unknowns]
+        if output:
+            forms.append(next(o for o in equations.outputs if o.name == output).form)
+            columns.append(next(v for v in equations.inputs if v.owner == source))
+        places = {v: j for j, v in enumerate(columns)}
+        totals = (LinearForm.total([form]).terms for form in forms)
+        self._entries[pair] = [{places[v]: c for v, c in terms if v in places} for terms in totals]
+        return self._entries[pair]
+
     def value(self, output: str, source: str, s: acb) -> acb:
         """Return the value of a transfer function on a ball of s; UndecidedError where A may be singular."""
-        equations, number = self.equations, self.on(s)
-        given = next(v for v in equations.inputs if v.owner == source)
-        read = next(o for o in equations.outputs if o.name == output)
-        columns = {v: j for j, v in enumerate((*equations.unknowns, given))}
-        forms, size = [*(row.form for row in equations.rows), read.form], len(equations.unknowns)
-        left = eliminate([number.row(form, columns) for form in forms], size).rows[size]
-        return acb(left.get(size, ZERO) / number(read.divisor))
+        number, entries, size = self.on(s), self.entries(output, source), len(self.equations.unknowns)
+        left = eliminate([{j: number(c) for j, c in row.items()} for row in entries], size).rows[size]
+        divisor = next(o for o in self.equations.outputs if o.name == output).divisor
+        return acb(left.get(size, ZERO) / number(divisor))
 
     def moving(self, along: str) -> frozenset[str]:
         """Return the names whose values depend on s or a parameter, that itself among them."""
@@ -274,22 +286,12 @@ class NamedValues(dict[str, Arithmetic]):
             result = result * (known if exponent == 1 else raised(known, exponent))
         return result
 
-    def row(self, form: LinearForm, columns: Mapping[Variable, int]) -> dict[int, Arithmetic]:
-        """Return the coefficients of a linear form by column; what belongs to no column is left out."""
-        entries: dict[int, Arithmetic] = {}
-        for variable, coefficient in form.terms:
-            if variable in columns:
-                j, entry = columns[variable], self(coefficient)
-                entries[j] = entries[j] + entry if j in entries else entry
-        return entries
-
-    def matrix(self, forms: Sequence[LinearForm], columns: Sequence[Variable]) -> acb_mat:
-        """Return the values of linear forms as rows."""
-        places = {variable: j for j, variable in enumerate(columns)}
-        matrix = acb_mat(len(forms), len(columns))
-        for i, form in enumerate(forms):
-            for j, entry in self.row(form, places).items():
-                matrix[i, j] = at_centre(entry)
+    def matrix(self, entries: Sequence[Mapping[int, Factored]]) -> acb_mat:
+        """Return the values of a square matrix."""
+        matrix = acb_mat(len(entries), len(entries))
+        for i, row in enumerate(entries):
+            for j, entry in row.items():
+                matrix[i, j] = at_centre(self(entry))
         return matrix
 
     def _tangent(self, name: str) -> acb_series:

@@ -164,7 +164,7 @@ class _ModeSearch:
         missing = tuple(p for p in model.parameters if p.name not in given)
         self.equations = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
         domains = {n.name: n.domain for n in model.nodes}
-        self._rows = [row.form for row in equations.rows]
+        self._entries = self.equations.entries()
         self._units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
 
     def map(self, region: Region | None, digits: int) -> PoleZeroMap:
@@ -245,7 +245,7 @@ class _ModeSearch:
             s = acb(root.re, root.im)
             number, unknowns = self.equations.on(s), self.equations.equations.unknowns
             beside = self.equations.on(s.mid() * BESIDE if s.mid() != 0 else acb(1))
-            matrix, typical = (x.matrix(self._rows, unknowns) for x in (number, beside))
+            matrix, typical = (x.matrix(self._entries) for x in (number, beside))
             for dimension in range(1, DIMENSIONS + 1):
                 space = null_space(matrix, dimension, typical)
                 if space is None:

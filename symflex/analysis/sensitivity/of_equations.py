@@ -30,7 +30,9 @@ from symflex.roots.networks.cramer import CramerEquations
 from symflex.transfer.equations_at import holds
 
 if TYPE_CHECKING:
-    from symflex.library.elements import LinearForm, Variable
+    from collections.abc import Mapping, Sequence
+
+    from symflex.algebra import Factored
     from symflex.roots import Root
     from symflex.transfer.equations_at import EquationsAt
 
@@ -44,40 +46,21 @@ class SingularMatrix:
     """``A(s)``, or ``[A b; c d]`` with an input and an output."""
 
     at: EquationsAt
-    rows: tuple[LinearForm, ...]
-    columns: tuple[Variable, ...]  # what its columns multiply
-    _moving: dict[str, list[tuple[int, LinearForm]]] = field(default_factory=dict)
-
-    @staticmethod
-    def of(at: EquationsAt, output: str = "", source: str = "") -> SingularMatrix:
-        """Return the matrix whose singular points are the poles, or with names the zeros."""
-        equations = at.equations
-        rows = tuple(row.form for row in equations.rows)
-        if not output:
-            return SingularMatrix(at, rows, equations.unknowns)
-        read = next(o for o in equations.outputs if o.name == output)
-        given = next(v for v in equations.inputs if v.owner == source)
-        return SingularMatrix(at, (*rows, read.form), (*equations.unknowns, given))
+    entries: Sequence[Mapping[int, Factored]]
+    _moving: dict[str, list[tuple[int, int, Factored]]] = field(default_factory=dict)
 
     def value(self, s: acb) -> acb_mat:
         """Return the matrix on a ball of s."""
-        return self.at.on(s).matrix(self.rows, self.columns)
+        return self.at.on(s).matrix(self.entries)
 
     def slope(self, s: acb, along: str) -> Entries:
         """Return the derivatives of the entries in s or a parameter on a ball of s; zeros are left out."""
         if along not in self._moving:
-            names = self.at.moving(along)
-            self._moving[along] = [
-                (i, form) for i, form in enumerate(self.rows) if any(holds(c, names) for _, c in form.terms)
-            ]
+            names, rows = self.at.moving(along), enumerate(self.entries)
+            self._moving[along] = [(i, j, c) for i, row in rows for j, c in row.items() if holds(c, names)]
         number = self.at.on(s, along)
-        places = {v: j for j, v in enumerate(self.columns)}
-        slopes: Entries = {}
-        for i, form in self._moving[along]:
-            for j, entry in number.row(form, places).items():
-                if isinstance(entry, acb_series) and entry[1] != 0:
-                    slopes[i, j] = entry[1]
-        return slopes
+        values = ((i, j, number(c)) for i, j, c in self._moving[along])
+        return {(i, j): x[1] for i, j, x in values if isinstance(x, acb_series) and x[1] != 0}
 
 
 @dataclass(eq=False)

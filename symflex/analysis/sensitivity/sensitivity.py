@@ -411,8 +411,8 @@ def _of_equations(
     """Return how roots of a function move whose closed form is large; see :func:`sensitivities`."""
     at, names = EquationsAt(assemble_sparse(model), tuple(values.items())), tuple(p.name for p in parameters)
     sides: tuple[tuple[Kind, SingularMatrix, Sequence[Root]], ...] = (
-        ("pole", SingularMatrix.of(at), located.poles),
-        ("zero", SingularMatrix.of(at, *pair), located.zeros),
+        ("pole", SingularMatrix(at, at.entries()), located.poles),
+        ("zero", SingularMatrix(at, at.entries(*pair)), located.zeros),
     )
     moved: list[RootDerivative] = []
     is_real = model.imaginary is None

@@ -28,6 +28,6 @@ def test_functions_of_two_parameters_move_along_one(along, slope):
     # m s^2 + sqrt(k m) s + k at s = 3: d/ds 2 m s + 4, d/dm s^2 + s sqrt(k/m)/2, d/dk 1 + s sqrt(m/k)/2.
     equations = pipeline.assemble(pipeline.loads(OSCILLATOR))
     at = EquationsAt(equations, read_values(equations.model.parameters, {}))
-    entry = at.on(acb(3), along).row(equations.rows[0].form, {equations.unknowns[0]: 0})[0]
+    entry = at.on(acb(3), along)(at.entries()[0][0])
     assert (complex(entry[0]), complex(entry[1])) == pytest.approx((18 + 12 + 8, slope), rel=1e-15)
     assert complex(at.value("X", "F", acb(3))) == pytest.approx(1 / (18 + 12 + 8), rel=1e-15)
