@@ -51,26 +51,8 @@ class FilterSection:
     above: tuple[float, ...]
     below: tuple[float, ...]
 
-    def assignments(self, first: int, state: str, number: Callable[[float], str]) -> list[tuple[str, str]]:
-        """Return targets and values of one step, of x and the states from number ``first`` on."""
-        count = len(self.below)
-        states = [state.format(first + i) for i in range(count)]
-
-        def total(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
-            signed = [
-                (c < 0, name if abs(c) == 1 else f"{number(abs(c))} * {name}") for c, name in products if c
-            ]
-            signed += [(False, name) for name in names]
-            text = "".join(f" {'-' if minus else '+'} {term}" for minus, term in signed) or " + 0.0"
-            return text[3:] if text[1] == "+" else f"-{text[3:]}"
-
-        steps = [("y", total([(self.above[0], "x")], states[:1]))]
-        for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
-            steps.append((states[i], total([(b, "x"), (-a, "y")], states[i + 1 : i + 2])))
-        return steps
-
     def step(self, x: float, w: list[float], first: int) -> float:
-        """Do what :meth:`assignments` say, in doubles."""
+        """Do one step in doubles, with the states from number ``first`` on."""
         count = len(self.below)
         y = self.above[0] * x + (w[first] if count else 0.0)
         for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
@@ -96,16 +78,33 @@ class DifferenceEquation:
         """How many states the sections have."""
         return sum(len(section.below) for section in self.sections)
 
-    def assignments(
-        self, state: str = "w[{}]", number: Callable[[float], str] = repr
-    ) -> list[tuple[str, str]]:
-        """Return targets and values of one step, of the input x; x and y are the output after it.
+    def assignments(self, number: Callable[[float], str] = repr) -> list[tuple[str, str]]:
+        """Return targets and values of one step, of the input x and states w; x and y are the output then.
 
-        ``state`` is a template of the number of a state.
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> lag = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s + 2)"')
+        >>> sampled = lag.transfer_function("y", "u").bind().discretise("1", "tustin")
+        >>> difference_equation(sampled).assignments()
+        [('y', '0.25 * x + w[0]'), ('w[0]', '0.25 * x'), ('x', 'y')]
         """
+
+        def total(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
+            signed = [
+                (c < 0, name if abs(c) == 1 else f"{number(abs(c))} * {name}") for c, name in products if c
+            ]
+            signed += [(False, name) for name in names]
+            text = "".join(f" {'-' if minus else '+'} {term}" for minus, term in signed) or " + 0.0"
+            return text[3:] if text[1] == "+" else f"-{text[3:]}"
+
         first, steps = 0, []
         for section in self.sections:
-            steps += [*section.assignments(first, state, number), ("x", "y")]
+            states = [f"w[{first + i}]" for i in range(len(section.below))]
+            steps.append(("y", total([(section.above[0], "x")], states[:1])))
+            for i, (b, a) in enumerate(zip(section.above[1:], section.below, strict=True)):
+                steps.append((states[i], total([(b, "x"), (-a, "y")], states[i + 1 : i + 2])))
+            steps.append(("x", "y"))
             first += len(section.below)
         return steps
 
@@ -150,19 +149,19 @@ class DifferenceEquation:
                 worst = max(worst, error) if isfinite(error) else worst
         return worst
 
-    def measured(self) -> tuple[str, str | None]:
-        """Return a sentence on both errors, and a warning where they are large."""
+    def measured(self) -> tuple[str, str]:
+        """Return a sentence on both errors, and a warning, empty unless they are large."""
         output, response = self.error_of_output(), self.error_of_response()
         said = (
             f"Over {SAMPLES} samples of +1 or -1 at random the output is off by at most {output:.2g} of its "
+            f"largest value; its frequency response is off by at most {response:.2g} of its value, at "
+            f"{FREQUENCIES} frequencies below half of the sampling frequency."
         )
-        said += f"largest value; its frequency response is off by at most {response:.2g} of its value, at "
-        said += f"{FREQUENCIES} frequencies below half of the sampling frequency."
         name = self.sampled.tf
         if all(c == 0 for c in self.sampled.numerator):
             return said, f"{name} is zero at every sample"
         if max(output, response) <= LARGE:
-            return said, None
+            return said, ""
         return said, f"{name}: rounding costs {max(output, response):.2g}, more than {LARGE:g}"
 
 

@@ -20,7 +20,15 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import formula_of, identifiers, inert
+from symflex.codegen.module_text import (
+    default_value,
+    described,
+    formula_of,
+    identifiers,
+    inert,
+    origin_lines,
+    wrapped,
+)
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
 from symflex.model.loss_factors import check_causal
@@ -138,6 +146,71 @@ class Contents:
 
 
 @dataclass(frozen=True, slots=True)
+class Outline:
+    """How a language spells what every file says."""
+
+    room: int  # columns of text in a comment
+    string: Callable[[str], str] = str  # a literal
+    # The value of a parameter that has none: in tables, and in comments.
+    missing: str = ""
+    unset: str = ""
+    # Inert text without what those obey who read the language's comments.
+    disarmed: Callable[[str], str] = str
+    formula: str = "    "  # begins the lines of a formula
+    # argument and more: what the first line about an argument begins with, and what the others do.
+    argument: str = ""
+    more: str = "    "
+    # parameter and function: templates of their rows in tables.
+    parameter: str = ""
+    function: str = "    {}: {},"
+
+    def heading(
+        self, first: str, model: Model, paragraphs: Sequence[str], verified: Iterable[Verification] = ()
+    ) -> list[str]:
+        """Return what a file says at its head: what it is, of which model, prose, accuracies."""
+        lines = [first, "", *map(self.disarmed, origin_lines(model, self.room))]
+        said = (self.disarmed(inert(f"{v.name}: {v.text()}")) for v in verified)
+        for i, paragraph in enumerate((*paragraphs, *said)):
+            lines += [*([""] if i else []), *wrapped(paragraph, self.room)]
+        return lines
+
+    def about(self, member: Member) -> list[str]:
+        """Return what a function computes, and its formula, each followed by an empty line."""
+        lines = (
+            line
+            for x in member.formula
+            for line in wrapped(x, self.room, self.formula, f"{self.formula}    ")
+        )
+        return [self.disarmed(member.headline), "", *map(self.disarmed, lines), ""]
+
+    def verified(self, member: Member, end: str = "") -> list[str]:
+        """Return how accurate a function is."""
+        return wrapped(self.disarmed(inert(f"{member.verification.text()}{end}")), self.room)
+
+    def arguments(self, parameters: Iterable[ModelParameter], names: Mapping[str, str]) -> list[str]:
+        """Return what parameters are called, their values and what they are."""
+        lines: list[str] = []
+        for p in parameters:
+            name, value = names[p.name], default_value(p) or self.unset
+            text = f"{name}{f' = {value}' if value else ''}: {self.disarmed(described(p, name))}"
+            lines += wrapped(f"{self.argument}{text}", self.room, "", self.more)
+        return lines
+
+    def parameter_rows(self, model: Model, names: Mapping[str, str]) -> list[str]:
+        """Return the rows of the table of parameters."""
+        return [
+            self.parameter.format(
+                names[p.name], default_value(p) or self.missing, self.string(p.unit), self.string(p.doc)
+            )
+            for p in model.parameters
+        ]
+
+    def function_rows(self, functions: Mapping[str, str]) -> list[str]:
+        """Return the rows of a table of functions by the names of what they compute."""
+        return [self.function.format(self.string(name), own) for name, own in functions.items()]
+
+
+@dataclass(frozen=True, slots=True)
 class Language:
     """A language that numeric code is exported to: the exporter that prints verified programs.
 
@@ -234,20 +307,16 @@ def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:
     for v in verified:
         if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
             worst[v.name] = v
-    return tuple(w for v in worst.values() if (w := _shortfall(v)))
-
-
-def _shortfall(verification: Verification) -> str:
-    """Return what the user should know about an accuracy, empty when it is as it should be."""
-    name, error = verification.name, verification.error
-    if error is None:
-        return f"{name} is not verified: {verification.reason}"
-    if error <= ACCURACY:
-        return ""
-    low, high = (float(f) for f in verification.band)
-    if not isfinite(error):
-        return f"{name} overflows somewhere over {low:g} Hz to {high:g} Hz"
-    return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
+    warnings = []
+    for v in worst.values():
+        over = "over {:g} Hz to {:g} Hz".format(*map(float, v.band))
+        if v.error is None:
+            warnings.append(f"{v.name} is not verified: {v.reason}")
+        elif not isfinite(v.error):
+            warnings.append(f"{v.name} overflows somewhere {over}")
+        elif v.error > ACCURACY:
+            warnings.append(f"{v.name} is accurate to {v.error:.1e} only, {over}")
+    return tuple(warnings)
 
 
 _MARK = re.compile(r"^(?:#|%|//): (.+)\n", re.MULTILINE)

@@ -22,16 +22,8 @@ from itertools import count
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
-from symflex.codegen.export import Export, Language, called_parts, parts_of
-from symflex.codegen.module_text import (
-    default_value,
-    described,
-    formula_lines,
-    identifiers,
-    inert,
-    origin_lines,
-    wrapped,
-)
+from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
+from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.derivative import differentiated
 from symflex.codegen.program.evaluate import nearest_double
@@ -40,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
-    from symflex.model import Model
 
 WIDTH = 100
 """Columns of generated JavaScript."""
@@ -106,19 +97,19 @@ def _negative(x: Part) -> Part:
 
 
 def _total(x: Part, y: Part) -> Part:
-    if x is None or y is None:
-        return y if x is None else x
-    if y.binding == _SIGN:
-        return _difference(x, _negative(y))
-    return Real(f"{x.within(_SUM)} + {y.within(_PRODUCT)}", _SUM)
+    return _added(x, "+", y)
 
 
 def _difference(x: Part, y: Part) -> Part:
+    return _added(x, "-", y)
+
+
+def _added(x: Part, sign: str, y: Part) -> Part:
     if x is None or y is None:
-        return _negative(y) if x is None else x
+        return x if y is None else y if sign == "+" else _negative(y)
     if y.binding == _SIGN:
-        return _total(x, _negative(y))
-    return Real(f"{x.within(_SUM)} - {y.within(_PRODUCT)}", _SUM)
+        return _added(x, "-" if sign == "+" else "+", _negative(y))
+    return Real(f"{x.within(_SUM)} {sign} {y.within(_PRODUCT)}", _SUM)
 
 
 def _product(x: Part, y: Part) -> Part:
@@ -142,7 +133,6 @@ class ComplexParts:
     im: Part = None
 
 
-_ONE = ComplexParts(Real("1.0"))
 _S = ComplexParts(Real("s_re"), Real("s_im"))
 
 
@@ -165,12 +155,12 @@ class PairBody:
     taken: set[str]  # identifiers that a constant cannot have
     depth: int = 1  # how far statements are indented
     lines: list[str] = field(default_factory=list)
-    known: dict[str, ComplexParts | str] = field(default_factory=dict)  # assigned values; of lists, the array
+    values: dict[str, ComplexParts | str] = field(default_factory=dict)  # assigned ones; of lists, the array
     shared: dict[str, str] = field(default_factory=dict)  # constants by what they were made of
 
     def within(self, depth: int) -> PairBody:
         """Return the body of a block that sees these constants."""
-        return replace(self, depth=depth, lines=[], known=dict(self.known), shared=dict(self.shared))
+        return replace(self, depth=depth, lines=[], values=dict(self.values), shared=dict(self.shared))
 
     def name(self, wanted: str) -> str:
         """Return an identifier that nothing else in the function has; so are those of its parts."""
@@ -219,17 +209,13 @@ class PairBody:
     def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make constants."""
         for a in assignments:
-            if isinstance(a.value, tree.Solutions | tree.SolutionSlopes):
-                self.known[a.name] = self._list(a.name, a.value)
-            else:
-                self.known[a.name] = self.pair(_short(a.name), self.value(a.value))
-
-    def _list(self, wanted: str, node: tree.Solutions | tree.SolutionSlopes) -> str:
-        given = [self._array(node.coefficients), str(node.terms)]
-        given += [self._array(node.slopes)] if isinstance(node, tree.SolutionSlopes) else []
-        name = self.name(_short(wanted))
-        self.say(f"const {name} = solutions({', '.join(given)});")
-        return name
+            if not isinstance(a.value, tree.Solutions | tree.SolutionSlopes):
+                self.values[a.name] = self.pair(_short(a.name), self.value(a.value))
+                continue
+            given = [self._array(a.value.coefficients), str(a.value.terms)]
+            given += [self._array(a.value.slopes)] if isinstance(a.value, tree.SolutionSlopes) else []
+            name = self.values[a.name] = self.name(_short(a.name))
+            self.say(f"const {name} = solutions({', '.join(given)});")
 
     def _array(self, nodes: Sequence[tree.CodeNode]) -> str:
         parts = [_text(x) for z in map(self.value, nodes) for x in (z.re, z.im)]
@@ -251,16 +237,16 @@ class PairBody:
             case tree.ParameterValue(name):
                 return ComplexParts(Real(self.parameters[name]))
             case tree.Assigned(name):
-                known = self.known[name]
-                assert isinstance(known, ComplexParts)
-                return known
+                assigned = self.values[name]
+                assert isinstance(assigned, ComplexParts)
+                return assigned
             case tree.Item(tree.Assigned(name), position):
-                array = self.known[name]
+                array = self.values[name]
                 return ComplexParts(Real(f"{array}[{2 * position}]"), Real(f"{array}[{2 * position + 1}]"))
             case tree.Laplace():
                 return _S
             case tree.InverseLaplace():
-                return self.divide(_ONE, _S)
+                return self.divide(ComplexParts(Real("1.0")), _S)
         return self._operation(node)
 
     def _operation(self, node: tree.CodeNode) -> ComplexParts:
@@ -493,19 +479,33 @@ def javascript_module(contents: Contents) -> Export:
     """Return an ES module with one function ``OUT_over_IN(s, values)`` per transfer function."""
     model, members = contents.model, [m for m in contents.members if not m.is_response]
     public, parameters = contents.names(RESERVED)
-    blocks, code = [_parameter_table(contents, parameters)], ""
+    rows = JAVASCRIPT_OUTLINE.parameter_rows(model, parameters)
+    docs = "/** Values in SI units, units and descriptions of the model's parameters. */"
+    blocks = ["\n".join([docs, "export const PARAMETERS = Object.freeze({", *rows, "});", ""])]
+    code = ""
     for m in members:
         functions = PairFunctions(m.program, public[m.key], parameters)
         private = functions.blocks()
         blocks += [*private, _public(m, functions)]
         code += "\n".join(private)
-    called = called_parts(code, PARTS, ["imaginary", "offered"])
-    rows = [f"    {string(m.tf.name)}: {public[m.key]}," for m in members]
-    blocks += called
+    blocks += called_parts(code, PARTS, ["imaginary", "offered"])
+    rows = JAVASCRIPT_OUTLINE.function_rows({m.tf.name: public[m.key] for m in members})
     table = ["export const TRANSFER_FUNCTIONS = Object.freeze({", *rows, "});", ""]
-    header = comment(_header(model, members))
-    text = "\n".join([*header, "", "\n".join(blocks), *table])
-    return Export(text)
+    verified = [m.verification for m in members]
+    heading = JAVASCRIPT_OUTLINE.heading(
+        "Transfer functions of a linear system.", model, [INTRODUCTION], verified
+    )
+    return Export("\n".join([*comment(heading), "", "\n".join(blocks), *table]))
+
+
+INTRODUCTION = (
+    "Written by symflex. A complex number is [re, im]. Each function evaluates OUT/IN at the Laplace "
+    "variable s [rad/s]: a real number, [re, im], or two Float64Arrays [re, im], which give two such "
+    "arrays. Its second argument is an object of parameters in SI units; those left out have the model's "
+    "values. .numerator, .denominator, .numeratorDerivative and .denominatorDerivative take the same "
+    "arguments: the parts of the quotient, up to a common factor without zeros, and their derivatives "
+    "in s."
+)
 
 
 def string(text: str) -> str:
@@ -525,44 +525,25 @@ def comment(lines: Sequence[str]) -> list[str]:
     return ["/**", *(f" * {line}".rstrip() for line in inner), " */"]
 
 
-def _header(model: Model, members: Sequence[Member]) -> list[str]:
-    lines = ["Transfer functions of a linear system.", "", *origin_lines(model, WIDTH - 3)]
-    lines += wrapped(
-        "Written by symflex. A complex number is [re, im]. Each function evaluates OUT/IN at the Laplace "
-        "variable s [rad/s]: a real number, [re, im], or two Float64Arrays [re, im], which give two such "
-        "arrays. Its second argument is an object of parameters in SI units; those left out have the model's "
-        "values. .numerator, .denominator, .numeratorDerivative and .denominatorDerivative take the same "
-        "arguments: the parts of the quotient, up to a common factor without zeros, and their derivatives "
-        "in s.",
-        WIDTH - 3,
-    )
-    for m in members:
-        lines += ["", *wrapped(inert(f"{m.tf.name}: {m.verification.text()}"), WIDTH - 3)]
-    return lines
-
-
-def _parameter_table(contents: Contents, names: Mapping[str, str]) -> str:
-    lines = ["/** Values in SI units, units and descriptions of the model's parameters. */"]
-    lines.append("export const PARAMETERS = Object.freeze({")
-    for p in contents.model.parameters:
-        entries = f"value: {default_value(p) or 'null'}, unit: {string(p.unit)}, doc: {string(p.doc)}"
-        lines.append(f"    {names[p.name]}: Object.freeze({{ {entries} }}),")
-    return "\n".join([*lines, "});", ""])
+JAVASCRIPT_OUTLINE = Outline(
+    WIDTH - 3,
+    string,
+    "null",
+    argument="    ",
+    parameter="    {}: Object.freeze({{ value: {}, unit: {}, doc: {} }}),",
+)
 
 
 def _public(member: Member, functions: PairFunctions) -> str:
-    width = WIDTH - 3
-    lines = [member.headline, "", *(f"    {line}" for line in formula_lines(member.formula, width - 4)), ""]
-    lines += ["@param {number|number[]|Float64Array[]} s Laplace variable [rad/s]"]
-    lines += ["@param {Object} [values] parameters by name:"]
-    for p in member.parameters:
-        name = functions.parameters[p.name]
-        value = default_value(p)
-        lines += wrapped(
-            f"  {name}{f' = {value}' if value else ''}: {described(p, name)}", width, "  ", "    "
-        )
-    lines += ["@returns {number[]|Float64Array[]} [re, im]; not finite at poles"]
-    lines += ["", *wrapped(inert(f"{member.verification.text()}."), width)]
+    lines = [
+        *JAVASCRIPT_OUTLINE.about(member),
+        "@param {number|number[]|Float64Array[]} s Laplace variable [rad/s]",
+        "@param {Object} [values] parameters by name:",
+        *JAVASCRIPT_OUTLINE.arguments(member.parameters, functions.parameters),
+        "@returns {number[]|Float64Array[]} [re, im]; not finite at poles",
+        "",
+        *JAVASCRIPT_OUTLINE.verified(member, "."),
+    ]
     used = f"[{', '.join(map(string, functions.used))}]"
     name = functions.name
     call = [f"export const {name} = offered("]

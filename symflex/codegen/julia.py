@@ -10,23 +10,16 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.codegen.export import Export, Language, called_parts, parts_of
-from symflex.codegen.infix import InfixPrinter, NumberFunctions, in_lines
-from symflex.codegen.module_text import (
-    default_value,
-    described,
-    formula_lines,
-    identifiers,
-    inert,
-    origin_lines,
-    wrapped,
-)
+from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
+from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
+from symflex.codegen.module_text import default_value, identifiers
+from symflex.codegen.program.nodes import ONE, Laplace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from symflex.codegen.export import Contents, Member
-    from symflex.model import Model
+    from symflex.codegen.program.nodes import CodePiece, Piecewise
 
 WIDTH = 92
 """Columns, as Julia's own style has it."""
@@ -71,24 +64,10 @@ class JuliaPrinter(InfixPrinter):
         return f"complex({real!r}, {imaginary!r})"
 
 
-def head(name: str, arguments: Sequence[str]) -> list[str]:
-    """Return the first lines of a function.
-
-    Examples
-    --------
-    >>> head("f", ["s", "l"])
-    ['function f(s, l)']
-    """
-    line = f"function {name}({', '.join(arguments)})"
-    if len(line) <= WIDTH:
-        return [line]
-    return [f"function {name}(", *(f"    {a}," for a in arguments[:-1]), f"    {arguments[-1]}", ")"]
-
-
 # ---------------------------------------------------------------------------- private functions
 
 
-class JuliaFunctions(NumberFunctions):
+class JuliaFunctions(PrivateFunctions):
     """Prints the functions that compute, of positional arguments; all begin with an underscore."""
 
     printer: ClassVar = JuliaPrinter
@@ -102,13 +81,63 @@ class JuliaFunctions(NumberFunctions):
         lines = in_lines(value, WIDTH - len(indent) - 4)
         return [f"{opening}(", *(f"{indent}    {line}" for line in lines), f"{indent})"]
 
-    def branch(self, test: str, body: Sequence[str]) -> list[str]:
-        """Return statements that are executed where a test holds."""
-        return [f"    if {test}", *body, "    end"]
+    def _function(self, kind: str, variable: str, body: Sequence[str]) -> str:
+        given = self.arguments(variable)
+        head = [f"function _{kind}_of_{self.name}({', '.join(given)})"]
+        if len(head[0]) > WIDTH:
+            head = [
+                f"function _{kind}_of_{self.name}(",
+                *(f"    {x}," for x in given[:-1]),
+                f"    {given[-1]}",
+                ")",
+            ]
+        return "\n".join([*head, *body, "end", ""])
 
-    def function(self, name: str, arguments: Sequence[str], body: Sequence[str]) -> str:
-        """Return a function."""
-        return "\n".join([*head(name, arguments), *body, "end", ""])
+    def _call(self, kind: str, variable: str) -> str:
+        return f"_{kind}_of_{self.name}({', '.join(self.arguments(variable))})"
+
+    def _lumped(self, program: Piecewise) -> str:
+        near, far, late = program.near, program.far, program.late
+        printer, (s, inverse) = self.scope((*near.every, *late), "s", "inverse")
+        lines = self.assigned(near.every, printer)
+        if far is not None:
+            one = printer.quotient(ONE, Laplace())
+            body = [
+                *self.statement(inverse, one, 2),
+                *self.assigned(late, printer, 2),
+                *self.statement("return", printer.print(far.values[0]), 2),
+            ]
+            lines += [f"    if abs({s}) > {program.limit!r}", *body, "    end"]
+        return self._function("value", s, [*lines, *self.statement("return", printer.print(near.values[0]))])
+
+    def _choice(self, program: Piecewise) -> str:
+        """Return the function that finds the piece that serves."""
+        printer, (s, number) = self.scope(program.tests.every, "s", "number")
+        lines = self.assigned(program.tests.every, printer)
+        if program.conditions:
+            lines += self.statement(number, printer.piece_number(program))
+        served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
+        *others, last = sorted(served)
+        for k in others:
+            test = " || ".join(f"{number} == {n}" for n in served[k])
+            lines += [f"    if {test}", *self.statement("return", self._call(f"piece_{k}", s), 2), "    end"]
+        return self._function("value", s, [*lines, *self.statement("return", self._call(f"piece_{last}", s))])
+
+    def _piece(self, number: int, piece: CodePiece) -> list[str]:
+        printer, (s,) = self.scope(piece.code.every, "s")
+        lines = self.assigned(piece.code.every, printer)
+        if piece.circle:
+            values = f"({', '.join(printer.print(v) for v in piece.code.values)})"
+            parts = self._function(f"parts_{number}", s, [*lines, *self.statement("return", values)])
+            return [parts, self._mean(number, piece.circle)]
+        lines += self.statement("return", printer.quotient(*piece.code.values))
+        return [self._function(f"piece_{number}", s, lines)]
+
+    def _mean(self, number: int, points: int) -> str:
+        _, (s, z) = self.scope((), "s", "z")
+        parts = f"{z} -> {self._call(f'parts_{number}', z)}"
+        whole = f"_mean_over_circle({parts}, {s}, {points})"
+        return self._function(f"piece_{number}", s, self.statement("return", whole))
 
 
 # -------------------------------------------------------------------------------------- the module
@@ -123,7 +152,11 @@ def julia_module(contents: Contents) -> Export:
     main = module_name(contents.stem or model.title)
     public, parameters = contents.names(RESERVED | {main})
     taken = {*RESERVED, main, *public.values()}
-    blocks, code = [_parameter_table(model, parameters)], ""
+    outline = JULIA_OUTLINE
+    rows = outline.parameter_rows(model, parameters)
+    table = ["const PARAMETERS = (", *rows, ")"] if rows else ["const PARAMETERS = NamedTuple()"]
+    docs = "Values in SI units, units and descriptions of the model's parameters."
+    blocks, code = ["\n".join([*_docstring([docs]), *table, ""])], ""
     for m in members:
         functions = JuliaFunctions(m.program, public[m.key], parameters, taken - {"s"})
         of_s = public[f"of {m.tf.name}"]
@@ -131,9 +164,19 @@ def julia_module(contents: Contents) -> Export:
         blocks += [_public(m, functions, of_s), *private]
         code += "\n".join(private)
     blocks += called_parts(code, parts_of("julia.jl"))
-    for table, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
-        blocks.append(_function_table(table, [m for m in members if m.is_response == is_response], public))
-    header = [*_docstring(_header(model, members)), f"module {main}", ""]
+    for name, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
+        rows = outline.function_rows(
+            {m.tf.name: public[m.key] for m in members if m.is_response == is_response}
+        )
+        opening = f"const {name} = Dict{{String, Function}}("
+        blocks.append("\n".join([opening, *rows, ")", ""] if rows else [f"{opening})", ""]))
+    written = (
+        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
+        "with a dot, as in OUT_over_IN.(s), it takes arrays."
+    )
+    verified = [m.verification for m in members if not m.is_response]
+    heading = outline.heading("Transfer functions of a linear system.", model, [written], verified)
+    header = [*_docstring(heading), f"module {main}", ""]
     if public:
         first, *others = in_lines(", ".join(public.values()), WIDTH - len("export "))
         header += [f"export {first}", *(f"    {line}" for line in others), ""]
@@ -179,36 +222,16 @@ def _character(c: str) -> str:
     return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
 
 
-def _header(model: Model, members: Sequence[Member]) -> list[str]:
-    lines = ["Transfer functions of a linear system.", ""]
-    lines += [_disarmed(line) for line in origin_lines(model, WIDTH)]
-    lines += wrapped(
-        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
-        "with a dot, as in OUT_over_IN.(s), it takes arrays.",
-        WIDTH,
-    )
-    for m in (m for m in members if not m.is_response):
-        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text()}"))
-        lines += ["", *wrapped(text, WIDTH)]
-    return lines
-
-
-def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
-    lines = ['"""', "Values in SI units, units and descriptions of the model's parameters.", '"""']
-    if not model.parameters:
-        return "\n".join([*lines, "const PARAMETERS = NamedTuple()", ""])
-    lines.append("const PARAMETERS = (")
-    for p in model.parameters:
-        value = default_value(p) or "nothing"
-        entries = f"value = {value}, unit = {_string(p.unit)}, doc = {_string(p.doc)}"
-        lines.append(f"    {names[p.name]} = ({entries}),")
-    return "\n".join([*lines, ")", ""])
-
-
-def _function_table(table: str, members: Sequence[Member], public: Mapping[str, str]) -> str:
-    lines = [f"    {_string(m.tf.name)} => {public[m.key]}," for m in members]
-    opening = f"const {table} = Dict{{String, Function}}("
-    return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
+JULIA_OUTLINE = Outline(
+    WIDTH,
+    _string,
+    "nothing",
+    disarmed=_disarmed,
+    argument="- ",
+    more="  ",
+    parameter="    {} = (value = {}, unit = {}, doc = {}),",
+    function="    {} => {},",
+)
 
 
 def _public(member: Member, functions: JuliaFunctions, of_s: str) -> str:
@@ -223,16 +246,11 @@ def _public(member: Member, functions: JuliaFunctions, of_s: str) -> str:
         arguments.append(f"float({name})")
     opening = f"{functions.name}({variable}::{kind}"
     lines = [f"    {functions.name}({variable}{'; ...' if parameters else ''})", ""]
-    lines += [_disarmed(member.headline), ""]
-    lines += [f"    {_disarmed(line)}" for line in formula_lines(member.formula, WIDTH - 4)]
+    lines += JULIA_OUTLINE.about(member)
     what = "angular frequency" if member.is_response else "Laplace variable"
-    lines += ["", "# Arguments", f"- {variable}: {what} [rad/s]."]
-    for p, name in parameters:
-        value = default_value(p)
-        text = f"- {name}{f' = {value}' if value else ''}: {_disarmed(described(p, name))}"
-        lines += wrapped(text, WIDTH, "", "  ")
-    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text()}.")), WIDTH)]
-    lines.append("Not finite at poles.")
+    lines += ["# Arguments", f"- {variable}: {what} [rad/s]."]
+    lines += [*JULIA_OUTLINE.arguments(member.parameters, functions.parameters), ""]
+    lines += [*JULIA_OUTLINE.verified(member, "."), "Not finite at poles."]
     whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
     first = [f"function {whole}"]
     if len(first[0]) > WIDTH:

@@ -74,16 +74,15 @@ class LatexExporter:
         bounds = [bound for bound in map(_bound, tfs) if bound is not None and not bound.is_zero]
         pictures: list[Picture] = []
         warnings: list[str] = []
-        for figure in model.figures if bounds else ():
+        titles = {**DEFAULT_FIGURES, **LOOP_TITLES}
+        for figure in model.figures:
             names = {"/".join(pair) for pair in figure.of}
-            of = [bound for bound in bounds if not names or bound.name in names]
-            if of:
-                named = {**DEFAULT_FIGURES, **LOOP_TITLES}
-                title = figure.title or named.get(figure.kind, figure.kind)
+            if of := [bound for bound in bounds if not names or bound.name in names]:
+                title = figure.title or titles.get(figure.kind, figure.kind)
                 self._add(pictures, warnings, figure, of, title)
         asked = {figure.kind for figure in model.figures}
-        for kind, title in DEFAULT_FIGURES.items() if bounds else ():
-            if kind not in asked:
+        for kind, title in DEFAULT_FIGURES.items():
+            if kind not in asked and bounds:
                 self._add(pictures, warnings, Asked(kind, kind, ()), bounds[:MOST_IN_A_FIGURE], title)
         return pictures, warnings
 
@@ -101,7 +100,6 @@ class LatexExporter:
 
         name, kind = asked.name, asked.kind
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
-        sources = [bound.source for bound in of]
         try:
             figure = self._drawn(asked, of)
         except SymflexError as error:
@@ -114,8 +112,8 @@ class LatexExporter:
         if height > TALLEST_MM:
             warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
             return
-        is_told = kind == "modes" or bool(asked.gain) or title not in DEFAULT_FIGURES.values()
-        shown = () if is_told else tuple(sources)
+        says_whose = kind == "modes" or bool(asked.gain) or title not in DEFAULT_FIGURES.values()
+        shown = () if says_whose else tuple(bound.source for bound in of)
         latex = render(figure, "pgf", font="latex").decode("ascii")
         pictures.append(Picture(name, latex, title, shown))
 
@@ -150,9 +148,9 @@ class LatexExporter:
 
 
 def _bound(tf: AnyTransferFunction) -> AnyBoundFunction | None:
-    """Return a function with numbers, ``None`` where a parameter has none.
+    """Return a function with numbers, ``None`` if it is symbolic or the nested form of a lumped model.
 
-    Of large lumped models, which are nested, there is none either: their roots take too long for a print.
+    Roots of the latter take too long for a print.
     """
     if tf.is_rational and not tf.is_reduced:
         return None

@@ -12,13 +12,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.codegen.export import Export, Language, called_parts, parts_of
+from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     FORMULA_TERMS,
     default_value,
-    described,
-    formula_lines,
     identifiers,
     inert,
     origin_lines,
@@ -31,8 +29,6 @@ from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
 
     from symflex.codegen.export import Contents, Member
     from symflex.codegen.program.nodes import CodeNode, CodePiece, Piecewise
@@ -171,27 +167,21 @@ class LocalFunctions(PrivateFunctions):
 
     def _lumped(self, program: Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
-        if far is None:
-            printer, (s, value) = self.scope(near.every, "s", "value")
-            lines = [
-                *self.assigned(near.every, printer),
-                *self.statement(value, printer.print(near.values[0])),
+        words = ("s", "value", "limit", "is_far", "far_value", "inverse")[: 2 if far is None else 6]
+        printer, (s, value, *others) = self.scope((*near.every, *late), *words)
+        lines = [*self.assigned(near.every, printer), *self.statement(value, printer.print(near.values[0]))]
+        if far is not None:
+            limit, is_far, far_value, inverse = others
+            lines += [
+                *self.statement(limit, repr(program.limit)),
+                *self.statement(is_far, f"abs({s}) > {limit}"),
+                f"  if any({is_far})",
+                *self.statement(inverse, f"1.0 ./ {s}", 2),
+                *self.assigned(late, printer, 2),
+                *self.statement(far_value, printer.print(far.values[0]), 2),
+                *self.statement(f"{value}({is_far})", f"{far_value}({is_far})", 2),
+                "  end",
             ]
-            return self._function(value, "value", s, lines)
-        words = ("s", "value", "limit", "is_far", "far_value", "inverse")
-        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*near.every, *late), *words)
-        lines = [
-            *self.assigned(near.every, printer),
-            *self.statement(value, printer.print(near.values[0])),
-            *self.statement(limit, repr(program.limit)),
-            *self.statement(is_far, f"abs({s}) > {limit}"),
-            f"  if any({is_far})",
-            *self.statement(inverse, f"1.0 ./ {s}", 2),
-            *self.assigned(late, printer, 2),
-            *self.statement(far_value, printer.print(far.values[0]), 2),
-            *self.statement(f"{value}({is_far})", f"{far_value}({is_far})", 2),
-            "  end",
-        ]
         return self._function(value, "value", s, lines)
 
     def _choice(self, program: Piecewise) -> str:
@@ -267,6 +257,9 @@ def _given(names: Iterable[str]) -> list[str]:
 
 def _function(*lines: str) -> str:
     return "\n".join([*lines, "end", ""])
+
+
+OUTLINE = Outline(ROOM, unset="no value", disarmed=_disarmed, formula="", argument="  ", more="      ")
 
 
 # -------------------------------------------------------------------------------------------------- file
@@ -370,9 +363,7 @@ class _File:
             lines += wrapped(f"{self.fields[m.key]}: {_disarmed(m.headline)}", ROOM, "  ", "      ")
             lines += wrapped(_text(m.verification.text()), ROOM, "      ")
         lines += ["", "Parameters"] if self.model.parameters else []
-        for p in self.model.parameters:
-            name, value = self.parameters[p.name], default_value(p) or "no value"
-            lines += wrapped(f"{name} = {value}: {_disarmed(described(p, name))}", ROOM, "  ", "      ")
+        lines += OUTLINE.arguments(self.model.parameters, self.parameters)
         if self.model.source.strip():
             lines += ["", *wrapped(f"Source: {_text(self.model.source)}", ROOM)]
         return [*lines, "", "Written by symflex."]
@@ -429,10 +420,10 @@ class _File:
     def _head(self, member: Member, variable: str) -> list[str]:
         """Return the first line of a function behind a handle, and its help text."""
         name = self.public[member.key]
-        help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
+        headline, *help_text = OUTLINE.about(member)
         help_text += [_disarmed(line) for line in origin_lines(member.tf.model, ROOM)]
-        help_text += wrapped(_text(member.verification.text()), ROOM)
-        first = f"{name.upper()}  {_disarmed(member.headline)}"
+        help_text += OUTLINE.verified(member)
+        first = f"{name.upper()}  {headline}"
         return [f"function value = {name}({variable}, varargin)", *_helped(first, help_text)]
 
     def _system_functions(self, system: RationalSystem, names: Mapping[str, str]) -> list[str]:
@@ -517,15 +508,12 @@ class RationalSystem:
             if exponent < 0 or delay.depends_on(LAPLACE):
                 return None
             delays.append(plain_printer(tf).quotient(delay))
-        num, den = (_descending(tf, side.expand()) for side in (rest.numerator(), rest.denominator()))
+        arranger = Arranger.plain(ring, constant_symbols(tf))
+        num, den = (
+            tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in coefficients)
+            for side in (rest.numerator(), rest.denominator())
+            for coefficients in (reversed(ring.coefficients(side.expand())),)
+        )
         if max(len(num), len(den)) > MOST_COEFFICIENTS:
             return None
         return RationalSystem(tf, num, den, sum_of(delays) if delays else number(0))
-
-
-def _descending(tf: TransferFunction, polynomial: fmpz_mpoly) -> tuple[Expression, ...]:
-    """Return the coefficients of all powers of s, the highest first."""
-    ring = tf.ratio.ring
-    arranger = Arranger.plain(ring, constant_symbols(tf))
-    coefficients = reversed(ring.coefficients(polynomial))
-    return tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in coefficients)

@@ -51,8 +51,20 @@ FOLLOWED = (
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
     if tf.solves_network:
-        return (inert(_members_of(tf.model)),)
-    form = _readable_form(tf)
+        elements = [e for e in tf.model.elements if isinstance(e.element, LineElement)]
+        parts = [f"{e.element.type_name} {e.name}" for e in elements]
+        parts += [f"field {f.name}" for f in tf.model.fields]
+        more = [f"{len(parts) - NAMED} more"] if len(parts) > NAMED else []
+        return (
+            inert(f"No formula: the network is solved at every s, {', '.join([*parts[:NAMED], *more])}."),
+        )
+    form: PrintedForm | None = None  # the shortest, if it is not long
+    if isinstance(tf, NestedTransferFunction):
+        form = print_form(tf) if tf.size <= NESTED_SIZE else None
+    elif tf.length <= (FORMULA_TERMS if tf.is_rational else KERNEL_TERMS):
+        form = print_form(tf)
+    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
+        form = print_form(tf, "definitions")
     if form is not None:
         whole = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
         lines = [inert(f"{tf.name} = {whole}")]
@@ -62,30 +74,6 @@ def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
         if sum(map(len, lines)) <= FORMULA_LENGTH:
             return tuple(lines)
     return (f"A quotient of {tf.extent} in s, which symflex derive --tf {inert(tf.name)} prints.",)
-
-
-def _members_of(model: Model) -> str:
-    """Return a sentence that names the distributed parts of a network, which has no formula."""
-    parts = [f"{u.element.type_name} {u.name}" for u in model.elements if isinstance(u.element, LineElement)]
-    parts += [f"field {f.name}" for f in model.fields]
-    more = [f"{len(parts) - NAMED} more"] if len(parts) > NAMED else []
-    return f"No formula: the network is solved at every s, {', '.join([*parts[:NAMED], *more])}."
-
-
-def _readable_form(tf: AnyTransferFunction) -> PrintedForm | None:
-    """Return a function in its shortest form, ``None`` where that is known to be long."""
-    if isinstance(tf, NestedTransferFunction):
-        return print_form(tf) if tf.size <= NESTED_SIZE else None
-    if tf.length <= (FORMULA_TERMS if tf.is_rational else KERNEL_TERMS):
-        return print_form(tf)
-    if tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
-        return print_form(tf, "definitions")
-    return None
-
-
-def formula_lines(formula: Sequence[str], width: int) -> list[str]:
-    """Return the paragraphs of a formula in lines of so many columns."""
-    return [line for paragraph in formula for line in wrapped(paragraph, width, "", "    ")]
 
 
 def origin_lines(model: Model, width: int) -> list[str]:
@@ -159,17 +147,12 @@ def identifiers(
         if key not in chosen:
             plain = _OUTSIDE.sub("_", text)
             plain = plain if plain[:1].isalpha() else f"p_{plain.lstrip('_')}"
-            chosen[key] = _free(plain, taken, longest)
+            for suffix in chain(("", "_"), (f"_{number}" for number in count(2))):
+                chosen[key] = (plain if longest is None else plain[: longest - len(suffix)]) + suffix
+                if chosen[key] not in taken:
+                    break
             taken.add(chosen[key])
     return {key: chosen[key] for key in wanted}
-
-
-def _free(text: str, taken: Collection[str], longest: int | None) -> str:
-    for suffix in chain(("", "_"), (f"_{number}" for number in count(2))):
-        kept = text if longest is None else text[: longest - len(suffix)]
-        if f"{kept}{suffix}" not in taken:
-            return f"{kept}{suffix}"
-    raise AssertionError
 
 
 _DIRECTIVE = re.compile(r"(?<!\S)\.\.(?!\S)")

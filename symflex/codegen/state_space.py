@@ -64,9 +64,6 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyTransferFunction
 
 
-ZERO = "0"
-
-
 class StateEquations:
     r"""The equations of one exact realisation, for print.
 
@@ -91,17 +88,16 @@ class StateEquations:
     def __init__(self, system: StateSpace) -> None:
         self.system = system
         self._arranger = Arranger.plain(system.ring, {c.generator: c.expression for c in system.constants})
-        self._known: dict[tuple[str, str], Expression] = {}
+        self._printed: dict[tuple[str, str], Expression] = {}
 
     def entry(self, value: FieldElement) -> Expression:
         """Return an entry, numerator and denominator factored."""
         if value.is_zero:
             return number(0)
         key = (str(value.num), str(value.den))
-        if key not in self._known:
-            above, below = (self._arranger.coefficient(part) for part in (value.num, value.den))
-            self._known[key] = quotient(above, below)
-        return self._known[key]
+        if key not in self._printed:
+            self._printed[key] = quotient(*map(self._arranger.coefficient, (value.num, value.den)))
+        return self._printed[key]
 
     def lines(self) -> list[str]:
         """Return one equation per state and per output."""
@@ -125,7 +121,7 @@ class StateEquations:
         """Return a matrix as lines of aligned entries."""
         height, width = shape
         texts = [
-            [inert(format_expression(self.entry(rows[i][j]))) if j in rows[i] else ZERO for j in range(width)]
+            [inert(format_expression(self.entry(rows[i][j]))) if j in rows[i] else "0" for j in range(width)]
             for i in range(height)
         ]
         sizes = [max((len(texts[i][j]) for i in range(height)), default=1) for j in range(width)]
@@ -151,27 +147,23 @@ class StateEquations:
         return tuple(self._arranger.coefficient(factor) for factor in factors.values())
 
 
-PI = "pi"
 TERM_LIMIT = 20_000
 """Terms of all entries together; beyond that the text would be megabytes."""
 
 EQUATION_LINES = 60
 """Lines of equations in the docstring."""
 
-WORK = 400 * 12**3
-"""Frequencies times the cube of the order: what a measurement may cost."""
-
-FEWEST = 20
-
-LINTS = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
+WORK, FEWEST = 400 * 12**3, 20
+"""Frequencies times the cube of the order, which a measurement may cost, and its fewest frequencies."""
 
 IMPORTS = """\
-# ruff: noqa: {lints}  (names and texts are the model's)
+# ruff: noqa: E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100  (names and texts are the model's)
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 """
 
 LETTERS = ("A", "B", "C", "D")
@@ -231,41 +223,30 @@ class _Module:
         row = [x.name for x in self._system.outputs].index(tf.output.name)
         column = [x.name for x in self._system.inputs].index(tf.input.name)
 
+        given = {p.name: double_of(p.value) for p in self._parameters if p.value is not None}
+
         def values(s: npt.NDArray[np.complex128]) -> list[complex]:
-            return [value[row][column] for value in response(self._arrays(), s.tolist())]
+            """Return what the matrices that the generated code makes of the declared values give."""
+            arrays = []
+            for letter, _, shape in self._system.matrices:
+                arrays.append(np.zeros(shape))
+                for place, node in self._entries[letter].items():
+                    program = tree.lumped(tuple(given), tree.Straight((), (), (node,)))
+                    arrays[-1][place] = float(evaluate(program, 0.0, given).real)
+            return [value[row][column] for value in response(Arrays(*arrays), s.tolist())]
 
         count = min(samples, max(FEWEST, WORK // max(1, self._system.order) ** 3))
         return measure_values(tf, values, "state-space", count)
-
-    def _arrays(self) -> Arrays:
-        """Return the matrices that the generated code makes of the declared values."""
-        given = {p.name: double_of(p.value) for p in self._parameters if p.value is not None}
-        arrays = []
-        for letter, _, shape in self._system.matrices:
-            array = np.zeros(shape)
-            for place, node in self._entries[letter].items():
-                program = tree.lumped(tuple(given), tree.Straight((), (), (node,)))
-                array[place] = float(evaluate(program, 0.0, given).real)
-            arrays.append(array)
-        return Arrays(*arrays)
 
     # --------------------------------------------------------------------------------------- text
 
     def text(self, verified: Sequence[Verification]) -> str:
         """Return the module."""
         system = self._system
-        inputs = [(x.name, x.unit, "") for x in system.inputs]
-        outputs = [(x.name, x.unit, "") for x in system.outputs]
         states = [(x.name, x.unit, format_expression(self._equations.meaning(x))) for x in system.states]
-        blocks = [
-            parameter_table(system.model, self._names),
-            _table("STATES", states),
-            _table("INPUTS", inputs),
-            _table("OUTPUTS", outputs),
-            self._function(),
-        ]
+        blocks = [parameter_table(system.model, self._names), *_tables(system, states), self._function()]
         header = docstring(self._header(verified), "")
-        return f"{header}{IMPORTS.format(lints=LINTS)}\n" + "\n\n".join(blocks)
+        return f"{header}{IMPORTS}" + "\n\n".join(blocks)
 
     def _header(self, verified: Sequence[Verification]) -> list[str]:
         lines = ["State equations of a linear system as a function of its parameters.", ""]
@@ -332,14 +313,17 @@ class _Module:
         return lines
 
 
-def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
-    """Return a tuple of dictionaries."""
-    lines = []
-    for label, unit, meaning in rows:
-        entries = [f'"name": {literal(label)}', f'"unit": {literal(unit)}']
-        entries += [f'"meaning": {literal(meaning)}'] if meaning else []
-        lines += row_of_table("", entries)
-    return "\n".join([f"{name}: tuple[dict[str, str], ...] = (", *lines, ")"]) + "\n"
+def _tables(system: StateSpace, states: Sequence[tuple[str, str, str]]) -> list[str]:
+    """Return tuples of dictionaries: of states, by name, unit and meaning, and of inputs and outputs."""
+    ends = [[(x.name, x.unit, "") for x in group] for group in (system.inputs, system.outputs)]
+    blocks = []
+    for table, rows in zip(("STATES", "INPUTS", "OUTPUTS"), (states, *ends), strict=True):
+        lines = [f"{table}: tuple[dict[str, str], ...] = ("]
+        for label, unit, meaning in rows:
+            entries = [f'"name": {literal(label)}', f'"unit": {literal(unit)}']
+            lines += row_of_table("", [*entries, *([f'"meaning": {literal(meaning)}'] if meaning else [])])
+        blocks.append("\n".join([*lines, ")", ""]))
+    return blocks
 
 
 def _node(expression: Expression) -> tree.CodeNode:
@@ -363,7 +347,7 @@ def _node(expression: Expression) -> tree.CodeNode:
     return fold(
         expression,
         number=exact,
-        name=lambda name: tree.RealNumber(Fraction(1), 1) if name == PI else tree.ParameterValue(name),
+        name=lambda name: tree.RealNumber(Fraction(1), 1) if name == "pi" else tree.ParameterValue(name),
         power=power,
         call=lambda call, argument: tree.Apply(call.name, argument),
         negative=minus,
@@ -429,12 +413,6 @@ def _without_delays(
     return replace(model, blocks=blocks), next(iter(delays), Fraction(0))
 
 
-HOW = {
-    "zoh": "Every entry is the double nearest to its exact value, a matrix exponential.",
-    "tustin": "By the bilinear transformation; every entry is the double nearest to its exact value.",
-}
-
-
 def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> str:
     """Return a module with the matrices of one sampling time, the inputs held from sample to sample.
 
@@ -446,7 +424,10 @@ def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> s
     lines += origin(system.model, "")
     lines += ["Written by symflex. With w the states, u the inputs and y the outputs, in every step", ""]
     lines += ["    w[k + 1] = A w[k] + B u[k],    y[k] = C w[k] + D u[k].", ""]
-    lines += wrapped(HOW[sampling.method], WIDTH)
+    exact = "entry is the double nearest to its exact value"
+    held = f"Every {exact}, a matrix exponential."
+    moved = f"By the bilinear transformation; every {exact}."
+    lines += wrapped(held if sampling.method == "zoh" else moved, WIDTH)
     if delay:
         said = f"The inputs act {float(delay)!r} s late: past inputs are states, the oldest first."
         lines += wrapped(said, WIDTH)
@@ -457,12 +438,10 @@ def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> s
     units = {x.name: x.unit for x in system.states}
     blocks = [
         f"SAMPLE_TIME = {stepped.dt!r}  # [s]\n",
-        _table("STATES", [(name, units.get(name, ""), "") for name in stepped.states]),
-        _table("INPUTS", [(x.name, x.unit, "") for x in system.inputs]),
-        _table("OUTPUTS", [(x.name, x.unit, "") for x in system.outputs]),
+        *_tables(system, [(name, units.get(name, ""), "") for name in stepped.states]),
     ]
     for letter, array in zip(LETTERS, (stepped.A, stepped.B, stepped.C, stepped.D), strict=True):
         rows = [f"    [{', '.join(map(repr, row))}]," for row in array.tolist()]
         shape = f".reshape({array.shape})"
         blocks.append("\n".join([f"{letter}: NDArray[np.float64] = np.array([", *rows, f"]){shape}"]) + "\n")
-    return f"{header}{IMPORTS.format(lints=LINTS)}\n" + "\n\n".join(blocks)
+    return f"{header}{IMPORTS}" + "\n\n".join(blocks)

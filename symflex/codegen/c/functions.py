@@ -75,8 +75,7 @@ class Functions:
 
     def text(self) -> str:
         """Return the definitions."""
-        program = self.program
-        blocks = [self._lumped_value(program)] if program.is_lumped else self._pieces(program)
+        blocks = [self._lumped_value()] if self.program.is_lumped else self._pieces()
         return "\n\n".join("\n".join(block) for block in (*blocks, self._frequency_response())) + "\n"
 
     @property
@@ -96,8 +95,8 @@ class Functions:
         unused = [] if is_used else [f"{STEP}(void)s;"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
-    def _lumped_value(self, program: tree.Piecewise) -> list[str]:
-        scope = Body.of(self.members, S)
+    def _lumped_value(self) -> list[str]:
+        program, scope = self.program, Body.of(self.members, S)
         near, far = program.near, program.far
         scope.assign(near.every)
         if far is not None:
@@ -121,8 +120,8 @@ class Functions:
             "#endif",
         ]
 
-    def _pieces(self, program: tree.Piecewise) -> list[list[str]]:
-        blocks = []
+    def _pieces(self) -> list[list[str]]:
+        program, blocks = self.program, []
         for number, piece in enumerate(program.code):
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece)
         scope = Body.of(self.members, S)
@@ -149,11 +148,10 @@ class Functions:
 
     def _frequency_response(self) -> list[str]:
         """Return the response: in lanes, else with calls of the function of s."""
-        program = self.program
         if self.axis is not None:
             body = lanes(self.axis, self.members)
-        elif is_rational_in_lanes(program):
-            body = rational_lanes(program, self.members)
+        elif is_rational_in_lanes(self.program):
+            body = rational_lanes(self.program, self.members)
         else:
             body = [
                 f"{STEP}for (size_t i = 0; i < n; i++) {{",
@@ -163,14 +161,6 @@ class Functions:
                 f"{STEP}}}",
             ]
         return [*self.freq_prototype.split("\n"), "{", *body, "}"]
-
-
-def _parts(scope: Body, value: Term) -> tuple[str, str]:
-    """Return real and imaginary part of a value; a complex one gets a variable."""
-    if value.kind is Kind.COMPLEX:
-        scope.say("const cx g =", value.text)
-        return "g.re", "g.im"
-    return (value.text, "0.0") if value.kind is Kind.REAL else ("0.0", value.text)
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"
@@ -248,8 +238,7 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     size = tests.term(condition.quantity)
     tests.add(f"is_near[j] = {size.text if size == LANE else f'fabs({size.text})'} < {limit};")
     tests.add("near += is_near[j];")
-    loop = outer.within()
-    is_odd = bool(program.turn)
+    loop, is_odd = outer.within(), bool(program.turn)
     loop.add("double padded[3][LANES], w[LANES], g[LANES] = {0.0};", "int near = 0, is_near[LANES];")
     loop.add(*(["double sign[LANES];"] if is_odd else []), *PADDING.split("\n"))
     loop.add(LOOP, f"{STEP}w[j] = fabs(x[j]);")
@@ -262,9 +251,7 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
         loop.enclose(f"if ({opening}) {{", block.lines)
     value, zero = ("sign[j] * g[j]", "0.0") if is_odd else ("g[j]", "0.0")
     real, imag = (zero, value) if is_odd else (value, zero)
-    loop.add(LOOP, f"{STEP}re[j] = {real};", "}", LOOP, f"{STEP}im[j] = {imag};", "}")
-    loop.add(*UNPADDING.split("\n"))
-    return _looped(outer, loop, members)
+    return _looped(outer, loop, members, {"re": real, "im": imag})
 
 
 def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
@@ -277,10 +264,12 @@ def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[
     block = outer.within(3)
     block.assign(program.near.assignments)
     value = block.term(program.near.values[0])
-    parts = dict(zip(("re", "im"), _parts(block, value), strict=True))
-    varying = {name: text for name, text in parts.items() if text != "0.0"}
-    arrays = {name: block.name(f"g_{name}") for name in varying}
-    for name, text in varying.items():
+    parts = {"im" if value.kind is Kind.IMAGINARY else "re": value.text}
+    if value.kind is Kind.COMPLEX:
+        block.say("const cx g =", value.text)
+        parts = {"re": "g.re", "im": "g.im"}
+    arrays = {name: block.name(f"g_{name}") for name in parts}
+    for name, text in parts.items():
         block.say(f"{arrays[name]}[j] =", text)
     loop = outer.within()
     loop.add(f"double padded[3][LANES], w[LANES], {', '.join(f'{a}[LANES]' for a in arrays.values())};")
@@ -288,14 +277,15 @@ def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[
     # Copied, since the arrays outside might overlap for all that a compiler knows.
     loop.add(LOOP, f"{STEP}w[j] = x[j];", "}")
     loop.enclose(LOOP, block.lines)
-    for name in parts:
-        stored = f"{arrays[name]}[j]" if name in arrays else "0.0"
-        loop.add(LOOP, f"{STEP}{name}[j] = {stored};", "}")
+    stored = {name: f"{arrays[name]}[j]" if name in arrays else "0.0" for name in ("re", "im")}
+    return _looped(outer, loop, members, stored)
+
+
+def _looped(outer: Body, loop: Body, members: Mapping[str, str], stored: Mapping[str, str]) -> list[str]:
+    """Return a loop over frequencies, and what it stores in the end."""
+    for name, value in stored.items():
+        loop.add(LOOP, f"{STEP}{name}[j] = {value};", "}")
     loop.add(*UNPADDING.split("\n"))
-    return _looped(outer, loop, members)
-
-
-def _looped(outer: Body, loop: Body, members: Mapping[str, str]) -> list[str]:
     head = [*outer.opening(members), *outer.lines, f"{STEP}for (size_t i = 0; i < n; i += LANES) {{"]
     return [*head, *loop.lines, f"{STEP}}}"]
 
@@ -309,7 +299,11 @@ def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
     arrays = {
         assignment.name: scope.name(assignment.name)
         for assignment, stage in zip(code.assignments, stages, strict=False)
-        if _is_used_later(assignment.name, stage, values, stages)
+        if any(
+            other > stage
+            and any(isinstance(n, tree.Assigned) and n.name == assignment.name for n in value.walk())
+            for value, other in zip(values, stages, strict=True)
+        )
     }
     if arrays:
         scope.add(f"double {', '.join(f'{array}[LANES]' for array in arrays.values())};")
@@ -333,13 +327,6 @@ def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
             if condition:
                 inner.enclose(f"if ({condition}) {{", target.lines)
         scope.enclose(LOOP, inner.lines)
-
-
-def _is_used_later(name: str, stage: int, values: Sequence[tree.CodeNode], stages: Sequence[int]) -> bool:
-    return any(
-        other > stage and any(isinstance(n, tree.Assigned) and n.name == name for n in value.walk())
-        for value, other in zip(values, stages, strict=True)
-    )
 
 
 def _calls(root: tree.CodeNode) -> bool:

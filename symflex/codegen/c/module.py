@@ -7,25 +7,24 @@ Output: the texts of both files.
 from __future__ import annotations
 
 import re
+from itertools import count
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
 from symflex.codegen.c.functions import Functions, fits_lanes
-from symflex.codegen.export import Export, Language, called_parts
+from symflex.codegen.export import Export, Language, Outline, called_parts
 from symflex.codegen.module_text import (
     BlockComment,
     default_value,
-    formula_lines,
     identifiers,
     inert,
-    origin_lines,
     value_as_written,
     wrapped,
 )
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from symflex.codegen.export import Contents
 
@@ -33,6 +32,8 @@ _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 
 COMMENT = BlockComment("/*", "*/", " * ", ("??",))
 """A comment of C; trigraphs begin with two question marks."""
+
+OUTLINE = Outline(WIDTH - 3, formula="  ")
 
 
 def c_files(contents: Contents) -> Export:
@@ -56,19 +57,6 @@ def prefix_of(name: str | None) -> str:
     prefix = identifiers({"": name or "model"}, KEYWORDS)[""]
     # Private functions are called value_of_... and piece_0_of_...
     return f"{prefix}_" if prefix.endswith("_of") else prefix
-
-
-def _function_names(wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return different identifiers that stay so when ``_freq`` is appended to some of them."""
-    names: dict[str, str] = {}
-    taken: set[str] = set()
-    for key, text in identifiers(wanted, RESERVED).items():
-        name = text
-        while name in taken or f"{name}_freq" in taken:
-            name += "_"
-        names[key] = name
-        taken |= {name, f"{name}_freq"}
-    return names
 
 
 def source_and_header(
@@ -105,12 +93,16 @@ class _Files:
         self.of_s = {m.tf.name: m for m in contents.members if not m.is_response}
         responses = (m for m in contents.members if m.is_response)
         self.on_axis = {m.tf.name: m for m in responses if fits_lanes(m.program)}
-        names = _function_names({key: member.wanted for key, member in self.of_s.items()})
-        self.functions = {key: self._functions(key, names[key]) for key in self.of_s}
-
-    def _functions(self, key: str, name: str) -> Functions:
-        axis = self.on_axis[key].program if key in self.on_axis else None
-        return Functions(name, self.prefix, self.structure, self.members, self.of_s[key].program, axis)
+        self.functions: dict[str, Functions] = {}
+        taken: set[str] = set()
+        # Identifiers stay different with ``_freq`` behind some of them.
+        for key, identifier in identifiers({k: m.wanted for k, m in self.of_s.items()}, RESERVED).items():
+            free = (identifier + "_" * n for n in count())
+            own_name = next(n for n in free if taken.isdisjoint((n, f"{n}_freq")))
+            taken |= {own_name, f"{own_name}_freq"}
+            own = (own_name, self.prefix, self.structure, self.members, self.of_s[key].program)
+            axis = self.on_axis[key].program if key in self.on_axis else None
+            self.functions[key] = Functions(*own, axis)
 
     def made(self) -> Export:
         declared = []
@@ -145,11 +137,7 @@ class _Files:
             "Errors named below were measured with these operations in IEEE double precision; the library's "
             "own errors in exp, sin and similar functions come in addition.",
         ]
-        lines = [f"{files}: transfer functions of a linear system.", ""]
-        lines += origin_lines(self.model, WIDTH - 3)
-        for paragraph in paragraphs:
-            lines += [*wrapped(paragraph, WIDTH - 3), ""]
-        return lines[:-1]
+        return OUTLINE.heading(f"{files}: transfer functions of a linear system.", self.model, paragraphs)
 
     def _parameters(self) -> list[str]:
         lines = [*COMMENT.lines(["Parameters, in SI units."]), f"typedef struct {self.structure} {{"]
@@ -183,16 +171,14 @@ class _Files:
 
     def _described(self, key: str) -> list[str]:
         member = self.of_s[key]
-        lines = [member.headline, ""]
-        lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
         said = member.verification.text()
         sentences = [f"At s = j omega, {said}."]
         if key in self.on_axis:
             real = self.on_axis[key].verification.text()
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
-        lines.append("")
+        lines = OUTLINE.about(member)
         for sentence in sentences:
-            lines += wrapped(inert(sentence), WIDTH - 3)
+            lines += wrapped(inert(sentence), OUTLINE.room)
         return lines
 
     # ---------------------------------------------------------------------------------------- the source

@@ -129,7 +129,7 @@ class Generators:
     forge: Forge
     tf: TransferFunction
     is_far: bool
-    _known: dict[str, tuple[int, int]] = field(default_factory=dict)
+    _made: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     def polynomial(self, ring: Ring, polynomial: fmpz_mpoly) -> tuple[int, int]:
         """Return an expression and its degree in s; in the far branch of ``polynomial / s**degree``."""
@@ -168,9 +168,9 @@ class Generators:
 
     def generator(self, name: str) -> tuple[int, int]:
         """Return the expression of a generator, and its degree in s."""
-        if name not in self._known:
-            self._known[name] = self._make(name)
-        return self._known[name]
+        if name not in self._made:
+            self._made[name] = self._make(name)
+        return self._made[name]
 
     def _make(self, name: str) -> tuple[int, int]:
         forge, tf = self.forge, self.tf
@@ -304,10 +304,10 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
 
 def _generators(forge: Forge, model: Model, constants: Iterable[ConstantFunction]) -> Callable[[str], int]:
     """Return what makes s, pi, parameters and functions of constants of their names."""
-    known = {c.generator: c.expression for c in constants}
+    expressions = {c.generator: c.expression for c in constants}
 
     def named(name: str) -> int:
-        return forge.s if name == LAPLACE else constant_of(forge, model, known.get(name, Name(name)))
+        return forge.s if name == LAPLACE else constant_of(forge, model, expressions.get(name, Name(name)))
 
     return named
 

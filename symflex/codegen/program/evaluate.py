@@ -128,10 +128,10 @@ def value_of_piece(piece: tree.CodePiece, point: Values, given: Mapping[str, Val
     return num / den[0] if den else num
 
 
-def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
+def number_of(node: tree.CodeNode, numbers: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
-    ``known`` are the values of assignments that depend on no argument either.
+    ``numbers`` are the values of assignments that depend on no argument either.
 
     Examples
     --------
@@ -143,10 +143,10 @@ def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     for part in node.walk():
         if isinstance(part, (tree.ParameterValue, tree.Laplace, tree.InverseLaplace)):
             return None
-        if isinstance(part, tree.Assigned) and part.name not in known:
+        if isinstance(part, tree.Assigned) and part.name not in numbers:
             return None
     run = _ProgramRun(None, {}, tree.Straight((), (), ()))
-    run.assigned.update(known)
+    run.assigned.update(numbers)
     return run.value(node)
 
 

@@ -56,9 +56,8 @@ class Forge:
     def make(self, kind: Callable[..., tree.CodeNode], *operands: Any) -> int:  # noqa: ANN401 (numbers of nodes)
         """Return a node of a kind, with what it holds."""
         node = kind(*operands)
-        known = self._numbers.get(node)
-        if known is not None:
-            return known
+        if node in self._numbers:
+            return self._numbers[node]
         x = len(self.nodes)
         self.nodes.append(node)
         own = {tree.Laplace: Depends.S, tree.InverseLaplace: Depends.INVERSE}.get(

@@ -167,22 +167,16 @@ def choose_programs(
     logarithmic scale, and more are taken near poles and zeros. SF503 when every program
     would be too large, SF233 when a number does not fit in double precision.
     """
-    gauge = _gauge(_solved(tf), samples)
+    if not isinstance(tf, NestedTransferFunction) and tf.is_nameless:
+        # Exponents have no formula: the members' equations are solved, but where these are followed along x.
+        if not any(law.matrix for law in tf.kernels.dispersions):
+            (tf,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
+    gauge = _gauge(tf, samples)
     own, programs = _choose(gauge), _real_programs(gauge)
     first = next(programs, None)
     if first is None or not has_real:
         return own, None if first is None else own
     return own, _choose_pieces(chain([first], programs), gauge, "real")
-
-
-def _solved(tf: AnyTransferFunction) -> AnyTransferFunction:
-    """Return a function in nested form where exponents have no formula: its members' equations are solved."""
-    if isinstance(tf, NestedTransferFunction) or not tf.is_nameless:
-        return tf
-    if any(law.matrix for law in tf.kernels.dispersions):
-        return tf
-    (solved,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
-    return solved
 
 
 def choose_band(
@@ -265,20 +259,13 @@ def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
     try:
         bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
         if isinstance(bound, BoundTransferFunction) and tf.model.analysis.band is None:
-            band = _with_few_waves(bound, band)
+            if any(law.matrix for law in bound.kernels.dispersions):
+                # Members that taper are to be no more than so many waves long.
+                end = Fraction(KernelFunction(bound, bound.den).frequency_of(MOST_WAVES) / tau)
+                band = (band[0], max(min(band[1], end), 10 * band[0]))
         return _Gauge(tf, band, pieces, References.over(bound, band, samples, pieces=pieces))
     except ModelError as problem:
         return _Gauge(tf, band, pieces, None, problem.diagnostics[0].message)
-
-
-def _with_few_waves(
-    bound: BoundTransferFunction, band: tuple[Fraction, Fraction]
-) -> tuple[Fraction, Fraction]:
-    """Return the part of a band [Hz] in which members that taper are no more than so many waves long."""
-    if not any(law.matrix for law in bound.kernels.dispersions):
-        return band
-    end = KernelFunction(bound, bound.den).frequency_of(MOST_WAVES) / tau
-    return (band[0], max(min(band[1], Fraction(end)), 10 * band[0]))
 
 
 def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
@@ -289,11 +276,18 @@ def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
         worst = None if references is None else references.worst_error(nested)
         return nested, gauge.verified(form, worst)
     if gauge.pieces is not None:
-        programs = map(gauge.pieces.of_s, series_uses(tf, is_measured=references is not None))
-        return _choose_pieces(programs, gauge, "pieces")
+        uses = series_uses(tf, is_measured=references is not None)
+        return _choose_pieces(map(gauge.pieces.of_s, uses), gauge, "pieces")
     forms = available_forms(tf)
     if references is None:
-        return _unmeasured(gauge, tf, forms)
+        # Expanded coefficients of a model without numbers would be pages long.
+        compact = [form for form in forms if form != "factors"] or forms
+        programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
+        if not programs:
+            return build_program(tf), gauge.verified("", None)
+        shortest = min(program.size for _, program in programs)
+        form, program = next((f, p) for f, p in programs if p.size <= MUCH_LONGER * shortest)
+        return program, gauge.verified(form, None)
     is_long = tf.length > LONG
     candidates: list[tuple[Piecewise, str, float]] = []
     for form in forms:
@@ -350,17 +344,6 @@ def _program(tf: TransferFunction, form: str) -> Piecewise | None:
         return None
 
 
-def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Piecewise, Verification]:
-    # Expanded coefficients of a model without numbers would be pages long.
-    compact = [form for form in forms if form != "factors"] or forms
-    programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
-    if not programs:
-        return build_program(tf), gauge.verified("", None)
-    shortest = min(program.size for _, program in programs)
-    form, program = next((f, p) for f, p in programs if p.size <= MUCH_LONGER * shortest)
-    return program, gauge.verified(form, None)
-
-
 def sample_frequencies(
     bound: BoundTransferFunction | BoundNested,
     band_hz: tuple[Fraction, Fraction],
@@ -371,10 +354,16 @@ def sample_frequencies(
 
     The ``pieces`` are those of a distributed system where it has been begun to make them.
     """
-    low, high = float(band_hz[0]), float(band_hz[1])
     is_costly = isinstance(bound, BoundNested) and not bound.source.is_rational
-    centers = _centers(bound, low, high, pieces)
-    return _frequencies(band_hz, samples, centers, ASIDE[::2] if is_costly else ASIDE)
+    aside = ASIDE[::2] if is_costly else ASIDE
+    if _vanishes(bound):
+        return _frequencies(band_hz, samples, [], aside)
+    enclosed = bound.enclosed(FIRST_BITS)
+    if not isinstance(enclosed, EnclosedTransferFunction):
+        low, high = float(band_hz[0]), float(band_hz[1])
+        return _frequencies(band_hz, samples, _extremes(bound, low, high, pieces), aside)
+    roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
+    return _frequencies(band_hz, samples, [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)], aside)
 
 
 def _frequencies(
@@ -386,19 +375,6 @@ def _frequencies(
     frequencies = [np.geomspace(low, high, samples), *(center * around for center in centers)]
     merged = np.unique(np.concatenate(frequencies))
     return merged[(merged >= low) & (merged <= high)]
-
-
-def _centers(
-    bound: BoundTransferFunction | BoundNested, low: float, high: float, pieces: Pieces | None
-) -> list[float]:
-    """Return the frequencies [Hz] of poles and zeros; of a distributed system where these show."""
-    if _vanishes(bound):
-        return []
-    enclosed = bound.enclosed(FIRST_BITS)
-    if not isinstance(enclosed, EnclosedTransferFunction):
-        return _extremes(bound, low, high, pieces)
-    roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
-    return [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)]
 
 
 def _extremes(
@@ -476,9 +452,20 @@ class References:
 
     def __init__(self, values: EnclosedValues, points: NDArray[Any]) -> None:
         self.bound = values.bound
-        references = [(s, _reference(values, complex(s))) for s in points]
-        self._references = [reference for _, reference in references if reference is not None]
-        self.s = np.array([s for s, reference in references if reference is not None], dtype=complex)
+        self._references: list[_Reference] = []
+        kept = []
+        for s in map(complex, points):
+            if _vanishes(self.bound):
+                reference = _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
+            elif (enclosed := values.at(s)) is None:
+                continue  # a pole or zero
+            else:
+                with precision(enclosed.bits):
+                    size = enclosed.value.abs_lower() * (1 + (acb(s) * enclosed.slope).abs_lower())
+                reference = _Reference(enclosed.value, enclosed.bits, size)
+            self._references.append(reference)
+            kept.append(s)
+        self.s = np.array(kept, dtype=complex)
 
     @classmethod
     def over(
@@ -509,18 +496,6 @@ class References:
         """Return a bound of the error of values at all frequencies."""
         pairs = zip(self._references, values, strict=True)
         return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
-
-
-def _reference(values: EnclosedValues, s: complex) -> _Reference | None:
-    """Return the value at ``s``, or ``None`` at a pole or zero."""
-    if _vanishes(values.bound):
-        return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-    enclosed = values.at(s)
-    if enclosed is None:
-        return None
-    with precision(enclosed.bits):
-        size = enclosed.value.abs_lower() * (1 + (acb(s.real, s.imag) * enclosed.slope).abs_lower())
-        return _Reference(enclosed.value, enclosed.bits, size)
 
 
 @dataclass(frozen=True, slots=True)

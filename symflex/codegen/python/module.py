@@ -11,12 +11,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from symflex.codegen.export import Export, Language
+from symflex.codegen.export import Export, Language, Outline
 from symflex.codegen.module_text import (
     FOLLOWED,
     default_value,
     described,
-    formula_lines,
     identifiers,
     inert,
     origin_lines,
@@ -27,7 +26,7 @@ from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMP
 from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, in_pieces, statement
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
     from symflex.codegen.program.verify import Verification
@@ -60,7 +59,9 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     """
     model, members = contents.model, contents.members
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
-    functions, responses = public_names(members, dialect.reserved)
+    functions = identifiers({m.tf.name: m.wanted for m in members if not m.is_response}, dialect.reserved)
+    at = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.is_response}
+    responses = identifiers(at, {*dialect.reserved, *functions.values()})
     values = {p.name: double_of(p.value) for p in model.parameters if p.value is not None}
     blocks, code, solving = [parameter_table(model, names)], "", None
     for member in members:
@@ -71,7 +72,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
             if dialect.is_traced
             else BlockText(member.program, owner, names, values, dialect)
         )
-        function = _Function(member, public, private, member.verification.text())
+        function = _Function(member, public, private)
         # A response in complex arithmetic calls what the function of s calls.
         own = "\n".join(private.functions() if owner == public else [])
         blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
@@ -101,7 +102,6 @@ class _Function:
     member: Member
     name: str
     private: PrivateText
-    sentence: str
 
     @property
     def variable(self) -> str:
@@ -133,17 +133,11 @@ class _Function:
         return [*lines, *private.call()]
 
     def _docstring(self) -> str:
-        dialect, program, tf, names = (
-            self.private.dialect,
-            self.member.program,
-            self.member.tf,
-            self.private.parameters,
-        )
+        dialect, names = self.private.dialect, self.private.parameters
         array, is_response = dialect.array, self.member.is_response
-        lines = [self.member.headline, ""]
-        lines += [f"    {line}" if line else "" for line in formula_lines(self.member.formula, WIDTH - 4)]
+        lines = OUTLINE.about(self.member)
         kind, what = ("float", "Angular frequency") if is_response else ("complex", "Laplace variable")
-        lines += ["", "    Parameters", "    ----------", f"    {self.variable} : {array} of {kind}"]
+        lines += ["    Parameters", "    ----------", f"    {self.variable} : {array} of {kind}"]
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in self.member.parameters:
             lines += parameter_entry(parameter, names[parameter.name], array)
@@ -152,9 +146,9 @@ class _Function:
             lines.append("        Library of arrays; by default that of the arguments.")
         kind, sentence = dialect.returned
         lines += ["", "    Returns", "    -------", f"    {kind}", f"        {sentence}"]
-        lines += ["", "    Notes", "    -----", *origin(tf.model, "    ")]
-        notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
-        if program.minors:
+        lines += ["", "    Notes", "    -----", *origin(self.member.tf.model, "    ")]
+        notes = [self.member.verification.text(), *([MEASURED] if dialect.is_traced else [])]
+        if self.member.program.minors:
             notes.append(FOLLOWED)
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
@@ -163,10 +157,8 @@ class _Function:
 
 def header(first: str, model: Model, verified: Sequence[Verification], remark: str = "") -> str:
     """Return a module's docstring: a first line, origin, the verified error of every function, a remark."""
-    lines = [first, "", *origin(model, "")]
-    lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
-    if verified:
-        lines.append("")
+    written = "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s]."
+    lines = [*OUTLINE.heading(first, model, [written]), *([""] if verified else [])]
     for verification in verified:
         lines += wrapped(inert(f"{verification.name}: {verification.text()}"), WIDTH, "", "    ")
     text = docstring(lines, "")
@@ -182,16 +174,6 @@ def docstring(lines: Sequence[str], indent: str) -> str:
     """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
     text = "\n".join(line.rstrip() for line in lines)
     return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
-
-
-def public_names(
-    members: Sequence[Member], reserved: Collection[str]
-) -> tuple[Mapping[str, str], Mapping[str, str]]:
-    """Return the names of the functions of s, and of the responses, by ``OUT/IN``."""
-    of_s = {m.tf.name: m.wanted for m in members if not m.is_response}
-    functions = identifiers(of_s, reserved)
-    on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.is_response}
-    return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
 
 def parameter_entry(parameter: ModelParameter, name: str, kind: str) -> list[str]:
@@ -223,8 +205,8 @@ def parameter_table(model: Model, names: Mapping[str, str]) -> str:
 
 def function_table(name: str, functions: Mapping[str, str]) -> str:
     """Return a dictionary of functions by the names of what they compute."""
-    lines = [f"    {literal(key)}: {function}," for key, function in functions.items()]
-    return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
+    rows = OUTLINE.function_rows(functions)
+    return "\n".join([f"{name} = {{", *rows, "}"] if rows else [f"{name} = {{}}"]) + "\n"
 
 
 def literal(text: str) -> str:
@@ -241,6 +223,8 @@ def _character(c: str) -> str:
         return f"\\{c}"
     return c if c.isprintable() else c.encode("unicode_escape").decode("ascii")
 
+
+OUTLINE = Outline(WIDTH, literal)
 
 NUMPY = Language(
     ".py",

@@ -67,9 +67,23 @@ class PrivateText(ABC):
     def call(self) -> list[str]:
         """Return the statements that compute the value of ``arguments``."""
 
-    @abstractmethod
     def functions(self) -> list[str]:
         """Return the lines of all functions; no text of the model is in them."""
+        program, (lines, printer) = self.program, self._body(self.program.tests, self.variable)
+        tests = ", ".join(self._test(condition, printer) for condition in program.conditions)
+        lines = [*self._head(f"_tests_of_{self.name}"), *lines, *statement("return", f"[{tests}]", "    ")]
+        lines += ["", "", *self._along()]
+        for i, piece in enumerate(program.code):
+            lines += [*self._piece(i, piece), "", ""]
+        return [*lines, *self._table()]
+
+    def _along(self) -> list[str]:
+        """Return the lines of the functions of x that members vary like."""
+        return []
+
+    @abstractmethod
+    def _table(self) -> list[str]:
+        """Return the lines of the table of all pieces."""
 
     def _head(self, name: str, arguments: Sequence[str] | None = None) -> list[str]:
         given = self.arguments if arguments is None else arguments
@@ -86,12 +100,6 @@ class PrivateText(ABC):
     @abstractmethod
     def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
         """Return the text of what tells whether a condition holds."""
-
-    def _tests(self, program: tree.Piecewise) -> list[str]:
-        """Return the lines of the function of all tests."""
-        lines, printer = self._body(program.tests, self.variable)
-        tests = ", ".join(self._test(condition, printer) for condition in program.conditions)
-        return [*self._head(f"_tests_of_{self.name}"), *lines, *statement("return", f"[{tests}]", "    ")]
 
     @abstractmethod
     def _mean(self, parts: str, points: int) -> str:
@@ -148,15 +156,12 @@ class BlockText(PrivateText):
             ends = f"{program.network.output}, {program.network.source}"
             value = f"_network_value(_entries(*arguments), _NETWORK, {ends})"
             return [f"def _value_of_{self.name}(*arguments):", *statement("return", value, "    ")]
-        if program.is_lumped:
-            return self._lumped(program)
-        lines = [*self._tests(program), "", ""]
-        lines += self._along()
-        for i, piece in enumerate(program.code):
-            lines += [*self._piece(i, piece), "", ""]
-        names = [f"_piece_{i}_of_{self.name}" for i in program.pieces]
+        return self._lumped(program) if program.is_lumped else super().functions()
+
+    def _table(self) -> list[str]:
+        names = [f"_piece_{i}_of_{self.name}" for i in self.program.pieces]
         comma = "," if len(names) == 1 else ""
-        return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
+        return statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")
 
     def network(self, solve: tree.Solve) -> list[str]:
         """Return the lines of what all functions share that solve a network: its table, and its entries."""
@@ -173,17 +178,7 @@ class BlockText(PrivateText):
             "    ]",
         ]
 
-    @property
-    def _follows(self) -> Mapping[tree.Straight, str]:
-        """What calls the functions of x that members vary like."""
-        given = ", ".join(["_x", *self.arguments[1:]])
-        return {
-            minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
-            for number, minors in enumerate(self.program.minors)
-        }
-
     def _along(self) -> list[str]:
-        """Return the lines of the functions of x that members vary like."""
         lines: list[str] = []
         variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
         for number, minors in enumerate(self.program.minors):
@@ -195,9 +190,8 @@ class BlockText(PrivateText):
 
     def _lumped(self, program: tree.Piecewise) -> list[str]:
         """Return the function that computes with numbers or arrays of any shape."""
-        lines = [f"def _value_of_{self.name}("]
-        lines += [f"    {name}: NDArray[np.complex128]," for name in self.arguments]
-        lines.append(") -> NDArray[np.complex128]:")
+        arguments = (f"    {name}: NDArray[np.complex128]," for name in self.arguments)
+        lines = [f"def _value_of_{self.name}(", *arguments, ") -> NDArray[np.complex128]:"]
         near, far = program.near, program.far
         used = {*self.dialect.reserved, *self.arguments[1:]}
         own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
@@ -222,7 +216,12 @@ class BlockText(PrivateText):
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in code.every}, taken)
-        printer = NumpyPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
+        given = ", ".join(["_x", *self.arguments[1:]])
+        follows = {
+            minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
+            for number, minors in enumerate(self.program.minors)
+        }
+        printer = NumpyPrinter(self.parameters, names, variable, "inverse", follows=follows)
         return [line for a in code.every for line in printer.assignment(a.name, a.value, "    ")], printer
 
     def _test(self, condition: tree.Condition, printer: PythonPrinter) -> str:
@@ -257,13 +256,10 @@ class TracedText(PrivateText):
 
     def functions(self) -> list[str]:
         """Return the lines of all functions; no text of the model is in them."""
-        program = self.program
-        if not program.conditions:
-            return self._piece(0, program.code[0])
-        lines = [*self._tests(program), "", ""]
-        for i, piece in enumerate(program.code):
-            lines += [*self._piece(i, piece), "", ""]
-        lines.append(f"_pieces_of_{self.name} = (")
+        return super().functions() if self.program.conditions else self._piece(0, self.program.code[0])
+
+    def _table(self) -> list[str]:
+        program, lines = self.program, [f"_pieces_of_{self.name} = ("]
         places = places_of(program, self.values)
         for i, (cases, place) in enumerate(zip(cases_of(program), places, strict=True)):
             lines += [
@@ -281,17 +277,9 @@ class TracedText(PrivateText):
         for assignment in code.every:
             if (number := number_of(assignment.value, numbers)) is not None:
                 numbers[assignment.name] = number
-        has_fixed_sizes = self.dialect.has_fixed_sizes and bool(self.program.conditions)
-        printer = ArrayPrinter(
-            self.parameters,
-            names,
-            variable,
-            inverse,
-            self.dialect.space,
-            numbers,
-            has_fixed_sizes,
-            self.leading,
-        )
+        is_fixed = self.dialect.has_fixed_sizes and bool(self.program.conditions)
+        own = (self.parameters, names, variable, inverse, self.dialect.space)
+        printer = ArrayPrinter(*own, numbers, is_fixed, self.leading)
         lines = [line for a in code.every for line in printer.assignment(a.name, a.value, "    ")]
         if any(inverse in line for line in lines):
             lines = [f"    {inverse} = 1.0 / {variable}", *lines]
