@@ -86,7 +86,7 @@ class Exporter(Protocol):
     ) -> Export:
         """Return the file of a model's transfer functions.
 
-        ``stem`` is its name without suffix, where that is known. Where it ``is_alone`` there can be no other
+        ``stem`` is its name without suffix, empty for none. Where it ``is_alone`` there can be no other
         files beside it: it has to serve without companions.
         """
         ...
@@ -129,7 +129,7 @@ class Contents:
     model: Model  # title, source and parameters
     # One for each transfer function, each followed by its frequency response where there is one.
     members: tuple[Member, ...]
-    stem: str  # the file's name without suffix; empty where that is not known
+    stem: str  # the file's name without suffix; empty for none
     is_alone: bool  # there can be no other files beside it
 
     def names(self, reserved: Collection[str]) -> tuple[Mapping[str, str], Mapping[str, str]]:

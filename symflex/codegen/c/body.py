@@ -308,7 +308,7 @@ class Body:
     depth: int = 1  # how far statements are indented
     lines: list[str] = field(default_factory=list)  # the statements so far
     # Assigned values by their names in the program; of lists, the identifier of the array.
-    known: dict[str, Term] = field(default_factory=dict)
+    values: dict[str, Term] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)  # names of the parameters in use
     _taken: set[str] = field(default_factory=set)
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
@@ -322,7 +322,7 @@ class Body:
 
     def within(self, depth: int | None = None) -> Body:
         """Return the scope of a block: it sees these variables, and what it makes stays known to itself."""
-        return replace(self, depth=depth or self.depth + 1, lines=[], known=dict(self.known))
+        return replace(self, depth=depth or self.depth + 1, lines=[], values=dict(self.values))
 
     def name(self, wanted: str) -> str:
         """Return an identifier that nothing else in the function has."""
@@ -357,16 +357,16 @@ class Body:
         """Make variables; what is free of s and made already is not made again."""
         for assignment in assignments:
             if isinstance(assignment.value, tree.Solutions):
-                self.known[assignment.name] = self._array(assignment.value, assignment.name)
+                self.values[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
             term = self.whole(assignment.value)
             key = (term.text, term.kind)
             if term.varies:
-                self.known[assignment.name] = self.hold(assignment.name, term)
+                self.values[assignment.name] = self.hold(assignment.name, term)
                 continue
             if key not in self._shared:
                 self._shared[key] = self.hold(assignment.name, term)
-            self.known[assignment.name] = self._shared[key]
+            self.values[assignment.name] = self._shared[key]
 
     def hold(self, wanted: str, term: Term) -> Term:
         """Make a variable with a value."""
@@ -414,7 +414,7 @@ class Body:
             case tree.ParameterValue(name):
                 return Term(self._parameter(name), Kind.REAL)
             case tree.Assigned(name):
-                return self.known[name]
+                return self.values[name]
             case tree.Laplace():
                 return self.s
             case tree.InverseLaplace():
@@ -439,7 +439,7 @@ class Body:
     def _special(self, node: tree.CodeNode) -> Term:
         match node:
             case tree.Item(tree.Assigned(name), position):
-                held = self.known[name]
+                held = self.values[name]
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
             case tree.Within(point, end):
                 return _cut_off(self.term(point), end)

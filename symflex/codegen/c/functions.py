@@ -230,9 +230,9 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     pieces: list[tuple[tree.Straight, dict[str, Term]]] = []
     for k in program.pieces:
         code = program.code[k].code.needed(program.code[k].code.values)
-        outer.known = {}
+        outer.values = {}
         outer.assign(code.constants)
-        pieces.append((code, outer.known))
+        pieces.append((code, outer.values))
 
     tests.assign(tested.assignments)
     size = tests.term(condition.quantity)
@@ -244,9 +244,9 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     loop.add(LOOP, f"{STEP}w[j] = fabs(x[j]);")
     loop.add(*([f"{STEP}sign[j] = copysign(1.0, x[j]);"] if is_odd else []), "}")
     loop.enclose(LOOP, tests.lines)
-    for (code, known), opening in zip(pieces, ("near < LANES", "near > 0"), strict=True):
+    for (code, values), opening in zip(pieces, ("near < LANES", "near > 0"), strict=True):
         block = loop.within()
-        block.known = dict(known)
+        block.values = dict(values)
         _stages(code, block, "is_near[j]" if opening == "near > 0" else "")
         loop.enclose(f"if ({opening}) {{", block.lines)
     value, zero = ("sign[j] * g[j]", "0.0") if is_odd else ("g[j]", "0.0")
@@ -319,7 +319,7 @@ def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
             term = inner.whole(assignment.value)
             place = f"{arrays[assignment.name]}[j]"
             inner.say(f"{place} =", term.text)
-            inner.known[assignment.name] = Term(place, term.kind, varies=True)
+            inner.values[assignment.name] = Term(place, term.kind, varies=True)
         if stage == stages[-1]:
             num, den = (inner.term(v) for v in code.values)
             target = inner.within() if condition else inner

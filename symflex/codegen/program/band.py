@@ -322,13 +322,13 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
     located = locate(bound, Modes(modes + BEYOND), DIGITS)
     poles, zeros = ([root.frequency_hz() for root in modes_of(x)] for x in (located.poles, located.zeros))
     # Where no wave is reflected there may be few poles, and zeros without end.
-    told = poles if len(poles) > modes else zeros
-    if len(told) <= modes:
+    counted = poles if len(poles) > modes else zeros
+    if len(counted) <= modes:
         return located, LUMPED_END
     # Between two modes, where the function is neither large nor small.
-    end = Fraction(f"{sqrt(told[modes - 1] * told[modes]):.3g}")
+    end = Fraction(f"{sqrt(counted[modes - 1] * counted[modes]):.3g}")
     if len(zeros) >= modes + BEYOND and max(zeros) < ENOUGH * end:
-        located = locate(bound, Band(Fraction(0), Fraction(max(told))), DIGITS)
+        located = locate(bound, Band(Fraction(0), Fraction(max(counted))), DIGITS)
     return located, end
 
 
@@ -359,7 +359,7 @@ def _two_doubles(x: arb) -> tuple[float, float]:
 
 
 def _fitted(values: EnclosedValues, located: PoleZeroMap, end: Fraction) -> BandForm | None:
-    """Return the band form with given roots, None where what they leave is not smooth."""
+    """Return the band form with given roots; the result is None if what they leave is not smooth."""
     (below, poles), (above, zeros) = _split(located.poles), _split(located.zeros)
     reason = located.certificate.reason or "; ".join(
         f"infinitely many accumulate about {complex(hole.re, hole.im):.4g} rad/s" for hole in located.excluded
@@ -371,7 +371,9 @@ def _fitted(values: EnclosedValues, located: PoleZeroMap, end: Fraction) -> Band
         if fit is None:
             return None
         gain, even, odd = fit
-        kept = [_trimmed(part) for part in (even, odd)]
+        # Up to the last coefficient that counts.
+        last = [max((i for i, c in enumerate(x) if abs(c) > NEGLIGIBLE), default=-1) for x in (even, odd)]
+        kept = [tuple(x[: i + 1]) for x, i in zip((even, odd), last, strict=True)]
         if all(len(part) <= count - SPARE for part in kept):
             # All roots of a rational function leave nothing but the gain's rounding.
             if isinstance(located.region, Everything) and not reason:
@@ -379,12 +381,6 @@ def _fitted(values: EnclosedValues, located: PoleZeroMap, end: Fraction) -> Band
             return replace(made, gain=gain, even=kept[0], odd=kept[1])
         count *= 2
     return None
-
-
-def _trimmed(coefficients: Sequence[float]) -> tuple[float, ...]:
-    """Return the coefficients up to the last one that counts."""
-    last = max((i for i, c in enumerate(coefficients) if abs(c) > NEGLIGIBLE), default=-1)
-    return tuple(coefficients[: last + 1])
 
 
 def _fit(values: EnclosedValues, made: BandForm, count: int) -> tuple[float, list[float], list[float]] | None:

@@ -36,26 +36,26 @@ def differentiated(code: tree.Straight) -> tree.Straight:
     >>> differentiated(code).values[1]
     ParameterValue(name='k')
     """
-    known: dict[str, tree.CodeNode | None] = {a.name: None for a in code.constants}
+    assigned: dict[str, tree.CodeNode | None] = {a.name: None for a in code.constants}
     assignments: list[tree.Assignment] = []
     for a in code.assignments:
         assignments.append(a)
-        slope = _derivative(a.value, known)
+        slope = _derivative(a.value, assigned)
         if slope is not None and not isinstance(slope, tree.RealNumber):
             assignments.append(tree.Assignment(f"slope of {a.name}", slope))
             slope = tree.Assigned(f"slope of {a.name}")
-        known[a.name] = slope
+        assigned[a.name] = slope
     values: list[tree.CodeNode] = []
     for value in code.values:
-        values += (value, _derivative(value, known) or tree.RealNumber(Fraction(0)))
+        values += (value, _derivative(value, assigned) or tree.RealNumber(Fraction(0)))
     return tree.Straight(code.constants, tuple(assignments), tuple(values))
 
 
-def _derivative(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
-    """Return the derivative in s, ``None`` where it is zero; ``known`` has those of assigned names."""
+def _derivative(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
+    """Return the derivative in s, None if it is zero; ``assigned`` has those of assigned names."""
 
     def slope(of: tree.CodeNode) -> tree.CodeNode | None:
-        return _derivative(of, known)
+        return _derivative(of, assigned)
 
     match node:
         case tree.Laplace():
@@ -63,9 +63,9 @@ def _derivative(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> 
         case tree.InverseLaplace():
             return tree.Negate(tree.Multiply((node, node)))
         case tree.Assigned(name):
-            return known[name]
+            return assigned[name]
         case tree.Item(tree.Assigned(name), position):
-            inner = known[name]
+            inner = assigned[name]
             return None if inner is None else tree.Item(inner, position)
         case tree.Add(terms):
             return _total([slope(t) for t in terms])
@@ -85,12 +85,12 @@ def _derivative(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> 
                 return None if rise is None else tree.Divide(rise, below)
             change = tree.Negate(_product((tree.Divide(above, below), fall)))
             return tree.Divide(change if rise is None else tree.Add((rise, change)), below)
-    return _of_composed(node, known)
+    return _of_composed(node, assigned)
 
 
-def _of_composed(node: tree.CodeNode, known: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
+def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
     def slope(of: tree.CodeNode) -> tree.CodeNode | None:
-        return _derivative(of, known)
+        return _derivative(of, assigned)
 
     match node:
         case tree.LargerRoot(_, middle, product):  # of x^2 - 2*m*x + p, without cancellation

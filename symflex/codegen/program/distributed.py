@@ -260,17 +260,21 @@ class _PieceMaker:
         Then nothing else can overflow. Differences of successive lengths, by their declared values, mostly
         are such; where they are not, a few of them are cut as Euclid does.
         """
+
+        def has_corner(i: int) -> bool:
+            """Tell whether one term of the denominator has a family's largest exponents at every length."""
+            pairs = [key[i][0] for s in sums for key in s]
+            most = tuple(max(abs(p[j][0]) + abs(p[j][1]) for p in pairs) for j in range(len(pairs[0])))
+            return any(tuple(a for a, _ in key[i][0]) == most for key in sums[1])
+
         changes = []
         families = list(self.families)
         for i, family in enumerate(families):
             count = len(family.lengths)
             identity = [[int(j == k) for k in range(count)] for j in range(count)]
             same = [k for k, f in enumerate(self.families) if f.dispersion is family.dispersion]
-            if (
-                count == 1
-                or not family.wavenumber
-                or all(_has_corner(sums, k) for k in same if self.families[k].wavenumber)
-            ):
+            waves = [k for k in same if self.families[k].wavenumber]
+            if count == 1 or not family.wavenumber or all(has_corner(k) for k in waves):
                 changes.append(identity)
                 continue
             values = [declared_length(self.tf, x) for x in family.lengths]
@@ -389,7 +393,13 @@ class _PieceMaker:
         ]
         fourth = len(tests)
         laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
-        tests += [self._lone_test(site, d) for d in laws]
+        for law in laws:  # is the smaller of a pair's arguments small at every length?
+            of_law = [g for g in self.groups if g.dispersion is law]
+            reaches = [forge.multiply([forge.constant(g.spread), site.value(g.length)]) for g in of_law]
+            scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
+            # At least half the square of the smaller wavenumber in size.
+            quotient = forge.divide(site.coefficient(law), site.coefficient(law, 2))
+            tests.append((quotient, (LONE * self.reach) ** 2, scale))
         fifth = len(tests)
         occurs = self._together(forge, tests, counts, None)
 
@@ -424,19 +434,6 @@ class _PieceMaker:
             near = self._near(bits, counts)
             choices.append(choice(near if occurs(near) else (False,) * len(near), bits))
         return choices
-
-    def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
-        """Return the test that the smaller of a pair's arguments is small at every length."""
-        forge = site.forge
-        reaches = [
-            forge.multiply([forge.constant(g.spread), site.value(g.length)])
-            for g in self.groups
-            if g.dispersion is dispersion
-        ]
-        scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
-        # At least half the square of the smaller wavenumber in size.
-        quotient = forge.divide(site.coefficient(dispersion), site.coefficient(dispersion, 2))
-        return quotient, (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self,
@@ -545,8 +542,11 @@ class _PieceMaker:
         lone = [g.dispersion for g in near if isinstance(g, _Lone)]
         for orders, terms in self._derivatives(half.terms, near):
             spend()
-            if len(near) == 1 and self._is_negligible(orders[0], parts):
-                break
+            if len(near) == 1 and parts and orders[0] > self.reach:
+                (lowest,), (order,) = next(iter(parts)), orders
+                largest = max(taylor_term(self.reach, m) for m in range(lowest, order))
+                if taylor_term(self.reach, order) < SERIES_ERROR + largest:
+                    break  # this derivative in a small length, and all that follow, add nothing
             values = {
                 k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
                 for k, p in terms.items()
@@ -569,13 +569,6 @@ class _PieceMaker:
         for order in range(first.basis.order):
             if derived := self._derivative(terms, first, order):
                 yield from (((order, *rest), own) for rest, own in self._derivatives(derived, others))
-
-    def _is_negligible(self, order: int, known_orders: Iterable[tuple[int, ...]]) -> bool:
-        """Tell whether a derivative in a small length, and all that follow, add nothing to those found."""
-        if not (lower := [k for (k,) in known_orders]) or order <= self.reach:
-            return False
-        largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
-        return taylor_term(self.reach, order) < SERIES_ERROR + largest
 
     def _derivative(self, terms: KernelSum, group: _Group, order: int) -> KernelSum:
         """Return the derivative of a sum with respect to a length at zero."""
@@ -768,8 +761,8 @@ class _PieceMaker:
 
 def declared_length(tf: TransferFunction, length: Factored) -> float:
     """Return the declared value of a length; without values, of a model with every parameter 1."""
-    known = {p.name: float(p.value.nearly) for p in tf.parameters if p.value is not None}
-    point = [known.get(name, 1.0) for name in length.ring.names]
+    declared = {p.name: float(p.value.nearly) for p in tf.parameters if p.value is not None}
+    point = [declared.get(name, 1.0) for name in length.ring.names]
     factors = (value_at(f, point.__getitem__, float) ** e for f, e in length.factors)
     return prod(factors, start=float(length.unit))
 
@@ -799,10 +792,3 @@ def _longer_and_shorter(
             if others:
                 return (longer[0], short) if longer else (short, others[0])
     return None
-
-
-def _has_corner(sums: Sequence[KernelSum], i: int) -> bool:
-    """Tell whether one term of the denominator has the largest exponents of a family at every length."""
-    pairs = [key[i][0] for s in sums for key in s]
-    most = tuple(max(abs(p[j][0]) + abs(p[j][1]) for p in pairs) for j in range(len(pairs[0])))
-    return any(tuple(a for a, _ in key[i][0]) == most for key in sums[1])

@@ -222,14 +222,14 @@ class RealAxis:
         return True
 
     def sign(self, dispersion: Dispersion) -> bool | None:
-        """Return whether ``c_0`` is negative, ``None`` when it depends on values."""
+        """Return whether ``c_0`` is negative; the result is None if that depends on values."""
         if dispersion in self.signs:
             return self.signs[dispersion]
         value = self.coefficient(dispersion)
-        known = {self.ring.index[n] for n in (*self.positive, "pi")} | {0}
+        positive = {self.ring.index[n] for n in (*self.positive, "pi")} | {0}
         for factor, _ in value.factors:
             for monomial, coefficient in factor.terms():
-                if int(coefficient) < 0 or any(e and i not in known for i, e in enumerate(monomial)):
+                if int(coefficient) < 0 or any(e and i not in positive for i, e in enumerate(monomial)):
                     return None
         return bool(value.unit < 0)
 

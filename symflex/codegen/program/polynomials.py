@@ -183,10 +183,10 @@ def express(forge: Forge, plan: RecurrencePlan, images: RingValues) -> list[tupl
 
     In the far branch the expressions are those of ``polynomial / s**degree``.
     """
-    known: list[tuple[int, int]] = []
+    made: list[tuple[int, int]] = []
 
     def scaled(part: Scaled) -> tuple[int, int]:
-        value, degree = known[part.rest] if part.rest >= 0 else (forge.constant(1), 0)
+        value, degree = made[part.rest] if part.rest >= 0 else (forge.constant(1), 0)
         factors = [forge.constant(part.integer, part.monomial[images.pi])]
         for i, exponent in enumerate(part.monomial):
             if exponent and i != images.pi:
@@ -201,14 +201,14 @@ def express(forge: Forge, plan: RecurrencePlan, images: RingValues) -> list[tupl
             pairs = [(scaled(part), exponent) for part, exponent in step.parts]
             factors = [forge.power(value, exponent) for (value, _), exponent in pairs]
             total = sum(degree * exponent for (_, degree), exponent in pairs)
-            known.append((forge.multiply([forge.constant(step.integer), *factors]), total))
+            made.append((forge.multiply([forge.constant(step.integer), *factors]), total))
             continue
         parts = [scaled(part) for part in step.parts]
         total = max(degree for _, degree in parts)
         if images.is_far:
             inverse = images.values[0]
             parts = [(forge.multiply([v, forge.power(inverse, total - d)]), d) for v, d in parts]
-        known.append((forge.add([value for value, _ in parts]), total))
+        made.append((forge.add([value for value, _ in parts]), total))
     return [scaled(root) for root in plan.roots]
 
 
@@ -256,7 +256,7 @@ class _Planner:
     ring: Ring
     splits_s: bool
     steps: list[SumStep | ProductStep] = field(default_factory=list)
-    _known: dict[tuple[bytes, tuple[int, ...]], int] = field(default_factory=dict)
+    _positions: dict[tuple[bytes, tuple[int, ...]], int] = field(default_factory=dict)
     _wanted: set[tuple[bytes, tuple[int, ...]]] = field(default_factory=set)
     _work: int = 0
     _depth: int = 0
@@ -275,15 +275,15 @@ class _Planner:
         if len(rest.coefficients) == 1:
             return Scaled(integer, monomial, -1)
         key = rest.key
-        if key not in self._known:
+        if key not in self._positions:
             self._depth += 1
             if self._depth > DEPTH_LIMIT:
                 raise _without_structure()
             step = self._product(rest) or self._split(rest)
             self._depth -= 1
             self.steps.append(step)
-            self._known[key] = len(self.steps) - 1
-        return Scaled(integer, monomial, self._known[key])
+            self._positions[key] = len(self.steps) - 1
+        return Scaled(integer, monomial, self._positions[key])
 
     def _product(self, terms: _Terms) -> ProductStep | None:
         """Return the product of the irreducible factors, ``None`` when there is only one."""

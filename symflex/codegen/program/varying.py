@@ -25,14 +25,13 @@ from symflex.model.along import varies_along_x
 from symflex.transfer.of_model import followed_along_x
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import SingularStart
     from symflex.along.law import Summand
     from symflex.along.minors import Minor
-    from symflex.expressions import Call
     from symflex.transfer import TransferFunction
 
 
@@ -97,7 +96,8 @@ class _Workshop:
         used = sorted({m for f in factors for _, product in self.sums.of(f) for m in product})
         for number, (law, length) in enumerate(self.sums.matrices):
             own = [m for m in used if m.matrix == number]
-            parted = PartedLaw(law, self._functions)
+            calls = ((c.generator, c.expression) for c in self.tf.constants if c.generator in self.ring.index)
+            parted = PartedLaw(law, {name: call for name, call in calls if varies_along_x(call)})
             inner = Forge()
             along = Generators(inner, self.tf, is_far=False)
             tip, beginning = (None, ()) if law.singular is None else self._tip(parted, law.singular)
@@ -113,7 +113,7 @@ class _Workshop:
             self._minors |= {m: (item(i), item(len(own) + len(m.rows) - 1)) for i, m in enumerate(own)}
 
     def _tip(self, parted: PartedLaw, singular: SingularStart) -> tuple[Tip, tuple[Summand, ...]]:
-        """Return how finite solutions begin at a singular start, and the parts of B that is told by."""
+        """Return how finite solutions begin at a singular start, and the parts of B."""
         size = range(len(singular.powers))
         exponents = [0 for _ in size]
         matrix = [list(row) for row in singular.matrix]
@@ -128,18 +128,19 @@ class _Workshop:
         own = PartedLaw(
             replace(parted.law, matrix=tuple(map(tuple, matrix)), singular=None), parted.functions
         )
-        known = [str(d) for d in parted.divisors]
+        below = [str(d) for d in parted.divisors]
         places = tuple(
-            (i, j, singular.orders[i][j], t.power // parted.step, *(int(str(t.divisor) == d) for d in known))
+            (
+                i,
+                j,
+                singular.orders[i][j],
+                t.power // parted.step,
+                *(int(str(t.divisor) == d) for d in below),
+            )
             for (i, j), summands in own.summands.items()
             for t in summands
         )
         return Tip(places, singular.powers, tuple(exponents), singular.free), own.every
-
-    @property
-    def _functions(self) -> Mapping[str, Call]:
-        known = ((c.generator, c.expression) for c in self.tf.constants if c.generator in self.ring.index)
-        return {name: call for name, call in known if varies_along_x(call)}
 
     def _sum(self, factor: fmpz_mpoly) -> tuple[int, int]:
         """Return a factor over its largest term, and the logarithm of that."""
