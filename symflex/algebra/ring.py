@@ -218,6 +218,13 @@ def coefficients_of(
     >>> coefficients_of(ring, m * s**2 - 3 * b * s + m * b * s, (0, 2))
     {(2, 0): m, (1, 1): m - 3}
     """
+    if (sparse := _sparse(polynomial)) is not None:
+        split: dict[tuple[int, ...], dict[Monomial, int]] = {}
+        for each, number in sparse.parts.items():
+            powers = dict(each)
+            key = tuple([powers.pop(i, 0) for i in positions])
+            split.setdefault(key, {})[tuple(powers.items())] = number
+        return {key: cast("fmpz_mpoly", SparsePolynomial(sparse.context, x)) for key, x in split.items()}
     parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
     for monomial, coefficient in polynomial.to_dict().items():
         rest = list(monomial)

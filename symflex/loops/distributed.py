@@ -21,11 +21,12 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import ORIGIN_BITS, AxisRoots, LoopAtOrigin, find_on_axis, joined, loop_at_origin
+from symflex.loops.axis import ORIGIN_BITS, joined, loop_at_origin
+from symflex.loops.axis_search import NEXT_TO_ZERO, NOT_PROVED_AT_ZERO, SHRINKINGS, AxisSearch
 from symflex.loops.gain_functions import GainFunctions
 from symflex.loops.loop import GainPolynomial, independent
-from symflex.loops.loop_function import LoopFunction, LoopValue
-from symflex.loops.stability_map import Crossing, PoleCount, hertz
+from symflex.loops.loop_function import LoopFunction
+from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, right_tail
@@ -56,15 +57,8 @@ HALVINGS = 12
 """Halvings of a range: its end is then known to a few hundredths of the gain's own value."""
 SLIVER = 40
 """Halvings of a range: what is left may be missing at an end of it."""
-SHRINKINGS = 30
-"""Halvings of a disc about 0."""
-NOT_PROVED_AT_ZERO = "the motion of poles next to s = 0 is not proved"
 WITHOUT_WAVES = 1e-6
 """A frequency [rad/s] from which a radius is sought for polynomials in a root of s."""
-WIDER = 16.0
-"""By how much a disc about 0 is widened."""
-NEXT_TO_ZERO = 1e-6
-"""Share of the frequency of one wave at which the search for crossings begins, if 0 stays open."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
 ARCS, SHORTEST = 64, 1e-5
@@ -76,7 +70,7 @@ NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 
 
 @dataclass
-class DistributedFactors:
+class DistributedFactors(AxisSearch):
     """The factors of a characteristic function that hold kernels, together.
 
     ``reasons`` say why something is not certified.
@@ -203,6 +197,14 @@ class DistributedFactors:
         """A frequency at which the largest argument of a kernel is about one [rad/s]."""
         return self._function(self.limits[1]).frequency_of(1.0) if self.bound.kernels else WITHOUT_WAVES
 
+    def frequency(self, omega: arb) -> arb:
+        """Return the frequency [rad/s] at a place of the axis."""
+        return self.bound.frequency(omega)
+
+    def from_root(self, size: float) -> float:
+        """Return an ``abs(s)`` [rad/s] up to which no root of it exceeds a size."""
+        return self.bound.from_root(size)
+
     @cached_property
     def _without_end(self) -> float:
         return self._function(self.limits[1]).frequency_of(WAVES) if self.up_to is None else self.up_to
@@ -221,10 +223,13 @@ class DistributedFactors:
         s = whole.ring.context.gen(0)
         return KernelFunction(*without_squares(bound, whole.filter(lambda f: f != s)))
 
-    def is_mirrored(self, function: LoopFunction) -> bool:
-        """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""
-        if self.bound.sheets > 1:
-            return False  # what mirrors a pole lies on another sheet
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether A and B of a factor are even or odd alike: roots mirror each other for every gain."""
+        # What mirrors a pole lies on another sheet if there are some.
+        return self.bound.sheets == 1 and any(map(self._mirrors, self.with_gain))
+
+    def _mirrors(self, function: LoopFunction) -> bool:
         ring = self.bound.ratio.ring
         parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in function.parts]
         if not all(part.is_even for part in parts):
@@ -232,8 +237,9 @@ class DistributedFactors:
         powers = [{int(m[0]) % 2 for m in f.monoms()} for f in function.parts]
         return all(each == powers[0] for each in powers)
 
-    def last_crossover(self, function: LoopFunction, gain: arb) -> float:
+    def last_crossover(self, gain: arb) -> float:
         """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
+        (function,) = self.with_gain
         last, is_proved = self.radius
         if not is_proved:
             return last
@@ -254,7 +260,7 @@ class DistributedFactors:
         Where that is proved, they are those ``below`` and what comes at the crossings between. SF802 when a
         pole lies on the path of the count.
         """
-        end = self.bound.from_root(self._circle)
+        end = self.from_root(self._circle)
         changes = [
             c.change for c in crossed if c.change != 0 and not (c.frequencies and c.frequencies[0] > end)
         ]
@@ -321,7 +327,8 @@ class DistributedFactors:
         crossings: list[Crossing] = []
         for factor in self.factors:
             if factor.degree == 1:
-                crossings += self._crossings(self._parts(factor), digits)
+                is_simple = all(each.multiplicity == 1 for each in self.factors if each.degree)
+                crossings += self.crossings_of(self._parts(factor), digits, is_simple=is_simple)
             elif factor.degree:
                 ends = zip(map(ball, self.limits), self._tree(factor).ends, strict=True)
                 crossings += [Crossing(x.union(e), (), change=None) for x, e in ends if not x.overlaps(e)]
@@ -418,107 +425,6 @@ class DistributedFactors:
             raise UncertifiedError(Diagnostic("SF802", message, None, "give a narrower --range"))
         for omega, gain in points.undecided:
             if not any(gain.overlaps(ball(end)) for end in self.limits):
-                self._leave_open(omega)
+                self.leave_open(omega)
         crossings += [Crossing(gain, (omega,), is_open=True, change=None) for omega, gain in points.undecided]
         return crossings + [Crossing(gain, (omega,), change=None) for omega, gain in points.proved]
-
-    def _leave_open(self, omega: arb) -> None:
-        place = float(hertz(omega).mid())
-        self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
-
-    def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
-        crossings: list[Crossing] = []
-        first, origin = self.next_to_zero(function)
-        if origin is not None:
-            gain = origin.gain()
-            if gain is not None and self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (arb(0),), change=None))
-        result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
-        is_simple = all(factor.multiplicity == 1 for factor in self.factors if factor.degree)
-        for omega in result.roots:
-            bits = max(BITS, 2 * omega.bits())
-            around, _ = function.on(omega, bits)
-            with precision(bits):
-                if self._is_far(around):
-                    continue
-                if around.b.contains(0):
-                    place = float(hertz(omega).mid())
-                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
-                    continue
-                gain = around.gain()
-                # A simple pole s moves by ds/dK = -B/(A' + K B'); its mirror image moves alike.
-                slope = -(around.b / (around.a_slope + gain * around.b_slope)).real
-                change = 2 if is_simple and slope > 0 else -2 if is_simple and slope < 0 else None
-            if self._may_be_in_range(gain):
-                crossings.append(Crossing(gain, (self.bound.frequency(omega),), change=change))
-        return crossings
-
-    def on_axis(
-        self,
-        function: LoopFunction,
-        equation: Callable[[LoopValue], tuple[arb, arb]],
-        is_excluded: Callable[[LoopValue], bool],
-        limits: tuple[float, float],
-        digits: int,
-    ) -> AxisRoots:
-        """Return the roots of a real function along the axis between two frequencies."""
-        low, high = limits
-        result = find_on_axis(function.on, equation, is_excluded, (low, high * 1.01), digits)
-        for gap in result.undecided:
-            self._leave_open(gap)
-        return result
-
-    def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
-        """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
-        origin = loop_at_origin(function)
-        if origin is None:
-            self.reasons.append(NOT_PROVED_AT_ZERO)
-            return self.scale * NEXT_TO_ZERO, None
-        radius = self._proved_within(origin)
-        if radius is None:
-            # Several crossings meet at 0: nothing is gained by going closer.
-            self.reasons.append(NOT_PROVED_AT_ZERO)
-            return float((origin.series[0].reach / 4).lower()), origin
-        times = WIDER
-        # Balls know little next to 0 where wavenumbers vanish, and series reach farther.
-        while function.is_blurred(radius) and (wider := loop_at_origin(function, times)) is not None:
-            larger = self._proved_within(wider)
-            if larger is None or not larger > radius:
-                break
-            origin, radius, times = wider, larger, times * WIDER
-        return float(radius.lower()), origin
-
-    def _proved_within(self, origin: LoopAtOrigin) -> arb | None:
-        radius = origin.series[0].reach / 4
-        for _ in range(SHRINKINGS):
-            if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
-                return radius
-            radius = radius / 2
-        return None
-
-    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
-        first, second = origin.orders
-        if first > second:
-            return False
-        a, b = origin.sizes(radius)
-        most = max(abs(x) for x in self.limits)
-        bound = ball(most) * b.abs_upper() * radius ** (second - first)
-        return bool(a.abs_lower() > bound)
-
-    def _is_far(self, value: LoopValue) -> bool:
-        """Tell whether the gain of a pole at these values is out of the range."""
-        low, high = (ball(x) for x in self.limits)
-        most = abs(low).max(abs(high))
-        size = value.a.abs_lower()
-        if size > most * value.b.abs_upper():
-            return True
-        if low > 0 and value.a.abs_upper() < low * value.b.abs_lower():
-            return True
-        if value.b.contains(0):
-            return False
-        gain = value.gain()
-        return bool(gain < low) or bool(gain > high)
-
-    def _may_be_in_range(self, gain: arb) -> bool:
-        low, high = (ball(x) for x in self.limits)
-        return not (gain < low or gain > high)

@@ -21,13 +21,14 @@ from symflex.algebra import degree_in
 from symflex.balls import ball, precision
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
-from symflex.loops.apart import poles_apart
-from symflex.loops.distributed import SHRINKINGS, DistributedFactors
+from symflex.loops.apart import PolesApart, poles_apart
+from symflex.loops.axis_search import SHRINKINGS, AxisSearch
+from symflex.loops.distributed import DistributedFactors
 from symflex.loops.locus import closed_loop_roots, is_straight
 from symflex.loops.loop import Loop
 from symflex.loops.loop_function import LoopFunction
 from symflex.loops.lumped import LumpedFactor
-from symflex.loops.networks import AnyLoop, NetworkLoop
+from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
     Boundary,
@@ -46,13 +47,13 @@ from symflex.roots.root import exact_fraction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.loops.axis_search import OnAxis
     from symflex.loops.loop import GainPolynomial
     from symflex.loops.loop_function import LoopValue
 
 
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
 BRANCH = "stable gains are searched where the branch point is s = 0, and not where it lies elsewhere"
-NETWORK = "stable gains are not searched for a network that is too large to be written out"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
 NARROW_BITS = 20
@@ -82,23 +83,19 @@ def find_stable_gains(
     SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
     SF505, SF506.
     """
-    if isinstance(loop, NetworkLoop):
-        return _at_nominal(loop, limits or (None, None), digits, NETWORK)
-    root = loop.bound.root
+    root = None if isinstance(loop, NetworkLoop) else loop.bound.root
     if root is not None and root.shift != 0:
         return _at_nominal(loop, limits or (None, None), digits, BRANCH)
     end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
-    at_end = None if end is None else _gain_at_end(loop, end)
-    lumped, along, (low, high) = _factors(loop, limits, up_to, end, at_end)
-    if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
-        return _at_nominal(loop, (low, high), digits, MIRRORED)
+    lumped, along, (low, high), apart, at_end = _parts(loop, limits, up_to, end)
+    end = None if isinstance(along, NetworkFactors) else end
     if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
         return _at_nominal(loop, (low, high), digits, along.reasons[-1])
-    # Poles that no gain moves, as far as they are roots of polynomials.
-    apart = poles_apart(loop.bound, _split(loop)[0])
-    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
     resting = PoleCount(apart.right, apart.axis)
     try:
+        if along is not None and along.is_mirrored:
+            return _at_nominal(loop, (low, high), digits, MIRRORED)
+        crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
         if along is not None:
             crossings += along.crossings(digits + GUARD_DIGITS)
         boundaries, intervals, open_ends = _between(crossings, lumped, along, (low, high), resting, end)
@@ -108,7 +105,7 @@ def find_stable_gains(
         told = error.diagnostics[0]
         return _at_nominal(loop, (low, high), digits, "; ".join(filter(None, (told.message, told.hint))))
     nominal = loop.nominal
-    radius = end if along is None else loop.bound.from_root(along.radius[0])
+    radius = end if along is None else along.from_root(along.radius[0])
     reasons = [] if along is None else along.reasons[end is not None :]
     if end is not None and at_end is None:
         reasons.append(
@@ -128,7 +125,7 @@ def find_stable_gains(
         digits=digits,
         method="polynomials" if along is None else along.method,
         apart=apart,
-        tf=loop.bound.name,
+        tf=loop.bound.name if isinstance(loop, Loop) else "",
         is_passive=along is not None and along.energy.is_passive,
         is_narrowed=along is not None and along.is_narrowed,
         data_end=end,
@@ -161,6 +158,18 @@ def find_stable_gains(
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*open_ends, *reasons))),
     )
+
+
+def _parts(
+    loop: AnyLoop, limits: Limits | None, up_to: float | None, end: float | None
+) -> tuple[list[LumpedFactor], AxisSearch | None, Limits, PolesApart, float | None]:
+    """Return what :func:`_factors` does, poles that no gain moves, and the gain at the end of the data."""
+    if isinstance(loop, NetworkLoop):
+        ends = _bounded(loop, _range(loop, limits, has_kernels=True))
+        return [], NetworkFactors(loop, loop.gain.name, ends, up_to), ends, PolesApart(), None
+    at_end = None if end is None else _gain_at_end(loop, end)
+    # Poles that no gain moves, as far as they are roots of polynomials.
+    return *_factors(loop, limits, up_to, end, at_end), poles_apart(loop.bound, _split(loop)[0]), at_end
 
 
 def _gain_at_end(loop: Loop, end: float) -> float | None:
@@ -222,15 +231,9 @@ def _factors(
 ) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
-    low, high = given or (None if loop.gain.assume == "real" else Fraction(0), None)
-    if low is not None and high is not None and not low < high:
-        message = f"the range of '{loop.gain.name}' must end above its start"
-        raise UsageError(Diagnostic("SF804", message))
+    low, high = _range(loop, given, has_kernels=bool(mixed) and loop.functions is None)
     if loop.functions is not None:
         low, high = loop.functions.domain((low, high), is_endless=not mixed)
-    elif mixed and given is None and loop.nominal:
-        reach = abs(loop.nominal) * RANGE_OF_NOMINAL
-        low, high = -reach if low is None else low, reach
     if at_end is not None:
         # Counts begin at 0, and end where the loop gain is one at the end of the data.
         most = Fraction(at_end)
@@ -239,10 +242,7 @@ def _factors(
     lumped = [LumpedFactor.of(loop.bound, factor, loop, (low, high)) for factor in plain if factor.degree]
     if not mixed:
         return lumped, None, (low, high)
-    if low is None or high is None:
-        message = f"a loop with beams, rods or delays needs a bounded range of '{loop.gain.name}'"
-        hint = "give the parameter a value, or say --range LO HI"
-        raise UsageError(Diagnostic("SF804", message, None, hint))
+    low, high = _bounded(loop, (low, high))
     if loop.bound.sheets > 1 and any(factor.degree > 1 for factor in mixed):
         message = f"a loop with roots of s must be linear in '{loop.gain.name}'"
         hint = "use it as the gain of one loop, not squared, and give other loops parameters of their own"
@@ -252,6 +252,28 @@ def _factors(
     )
     along = along.where_no_delay_leads if given is None and end is None else along
     return lumped, along, along.limits
+
+
+def _range(loop: AnyLoop, given: Limits | None, *, has_kernels: bool) -> Limits:
+    """Return the range of the gain: that given, else of its sign, with kernels up to 100 times its value."""
+    low, high = given or (None if loop.gain.assume == "real" else Fraction(0), None)
+    if low is not None and high is not None and not low < high:
+        message = f"the range of '{loop.gain.name}' must end above its start"
+        raise UsageError(Diagnostic("SF804", message))
+    if has_kernels and given is None and loop.nominal:
+        reach = abs(loop.nominal) * RANGE_OF_NOMINAL
+        low, high = -reach if low is None else low, reach
+    return low, high
+
+
+def _bounded(loop: AnyLoop, limits: Limits) -> tuple[Fraction, Fraction]:
+    """Return a range with two ends; SF804 where one is missing."""
+    low, high = limits
+    if low is None or high is None:
+        message = f"a loop with beams, rods or delays needs a bounded range of '{loop.gain.name}'"
+        hint = "give the parameter a value, or say --range LO HI"
+        raise UsageError(Diagnostic("SF804", message, None, hint))
+    return low, high
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -271,7 +293,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
 def _between(
     crossings: Sequence[Crossing],
     lumped: Sequence[LumpedFactor],
-    along: DistributedFactors | None,
+    along: AxisSearch | None,
     limits: Limits,
     apart: PoleCount,
     end: float | None,
@@ -303,7 +325,7 @@ def _between(
     boundaries, intervals, start = list[Boundary](), list[GainInterval](), ends[0]
     counted = inf  # up to which frequency
     if along is not None and not along.radius[1]:
-        counted = along.bound.from_root(along.radius[0] * 1.01)
+        counted = along.from_root(along.radius[0] * 1.01)
     for i, (gain, group) in enumerate(groups):
         # A stable loop is not stable at one gain alone where poles touch the axis and turn back. Poles
         # that cross it above the highest frequency counted only seem to. Where the order is lower, or
@@ -420,8 +442,12 @@ def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> LoopGain | None:
+def _loop_gain(loop: AnyLoop, along: AxisSearch | None, digits: int) -> LoopGain | None:
     """Return the loop gain of a loop that is closed once, by its gain or a function of it."""
+    if isinstance(along, NetworkFactors):
+        return None if along.radius[1] else LoopGain(along.function, along, digits)
+    if isinstance(loop, NetworkLoop):
+        return None
     if [factor.multiplicity for factor in loop.with_gain] != [1]:
         return None
     (factor,) = loop.with_gain
@@ -433,7 +459,7 @@ def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> Loo
         )
         one = alone.in_one_function(factor, is_monic=True)
         return one and LoopGain(one[2].with_gain[0], one[2], digits, one[0](ball(loop.nominal))[0])
-    if along is not None and factor in along.factors:
+    if isinstance(along, DistributedFactors) and factor in along.factors:
         return LoopGain(along.with_gain[0], along, digits)
     return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits)
 
@@ -442,8 +468,8 @@ def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> Loo
 class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
-    function: LoopFunction  # A and B
-    along: DistributedFactors | None  # whose factor this is; None of polynomials
+    function: OnAxis  # A and B
+    along: AxisSearch | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
     value: arb | None = None  # of the function of the gain that stands for it, at its own value
 
@@ -454,7 +480,7 @@ class LoopGain:
             crossovers = distributed_crossovers(self.along, times, gain, self.digits)
             if self.value is not None and self.along.reasons:
                 return ()  # which may not be all
-        else:
+        elif isinstance(self.function, LoopFunction):
             crossovers = lumped_crossovers(self.function, gain, self.digits)
         margins = []
         for omega, ratio in sorted(crossovers, key=lambda pair: float(pair[0].mid())):
@@ -480,7 +506,7 @@ def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) ->
     return [(root.im, _ratio(function, root.im, 2 * root.working_bits())) for root in above]
 
 
-def _ratio(function: LoopFunction, omega: arb, bits: int) -> acb:
+def _ratio(function: OnAxis, omega: arb, bits: int) -> acb:
     """Return an enclosure of B/A at a frequency [rad/s]."""
     around, _ = function.on(omega, bits)
     with precision(bits):
@@ -488,7 +514,7 @@ def _ratio(function: LoopFunction, omega: arb, bits: int) -> acb:
 
 
 def distributed_crossovers(
-    along: DistributedFactors, gain: arb, nominal: Fraction, digits: int
+    along: AxisSearch, gain: arb, nominal: Fraction, digits: int
 ) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
     (function,) = along.with_gain
@@ -514,7 +540,7 @@ def distributed_crossovers(
             # As where it is one at s = 0 itself: nothing is gained by going closer.
             along.reasons.append("it could not be decided whether the loop gain is one next to s = 0")
             first = start
-    last = along.last_crossover(function, gain)
+    last = along.last_crossover(gain)
     result = along.on_axis(function, equation, lambda value: False, (first, last), digits)
     crossovers = [(omega, _ratio(function, omega, max(BITS, 2 * omega.bits()))) for omega in result.roots]
     return [(omega, ratio) for omega, ratio in crossovers if ratio.is_finite()]

@@ -20,6 +20,7 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 from symflex.algebra import Factored
 from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
 from symflex.balls import Value, expansion, precision
+from symflex.loops.axis import LoopAtOrigin, loop_at_origin
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.functions.kernel_function import KernelFactors
 
@@ -162,6 +163,10 @@ class LoopFunction:
         """Tell whether next to nothing is known of A or B on a hundredth of a frequency."""
         around, _ = self.on(omega * arb(1, 0.01), bits)
         return bool(around.a.contains(0)) or bool(around.b.contains(0))
+
+    def at_origin(self, times: float = 1.0) -> LoopAtOrigin | None:
+        """Return A and B near 0; see :func:`.loop_at_origin`."""
+        return loop_at_origin(self, times)
 
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""

@@ -8,7 +8,7 @@ from mpmath import mp, mpc
 
 import symflex
 
-from .plane_frames import Member, clamped, freedoms, stiffness
+from .plane_frames import Member, clamped, freedoms, pinned, response, stiffness
 
 FRAME = """symflex = 1
 [parameters]
@@ -103,3 +103,49 @@ def test_sensitivities_of_a_chain_with_loss_factors_follow_from_its_eigenvalues(
         assert float(by_name["eta"].loss_factor) == pytest.approx(1, rel=PROOF)
         assert abs(float(by_name["k"].loss_factor)) < PROOF
         assert abs(float(by_name["eta"].frequency)) < PROOF
+
+
+GANTRY = """symflex = 1
+parameters = { K = "2e5 N/m", T_d = "8 ms", T_f = "0.5 ms", T_t = "0.3 ms", eta = "20 us", h = "80 cm" }
+definitions.C = "K*(1 + T_d*s)/(1 + T_f*s)"
+[elements]
+left  = { type = "frame", between = ["a", "p"], E = "69 GPa", I = "4.2 cm^4", A = "6 cm^2", rho = "2.7 g/cm^3", eta = "eta", l = "h", angle = "90 deg" }
+right = { type = "frame", between = ["ground", "q"], E = "69 GPa", I = "4.2 cm^4", A = "6 cm^2", rho = "2.7 g/cm^3", eta = "eta", l = "h", angle = "90 deg" }
+beam  = { type = "frame", between = ["p", "q"], E = "69 GPa", I = "4.2 cm^4", A = "6 cm^2", rho = "2.7 g/cm^3", eta = "eta", l = "1.2 m" }
+rail  = { type = "pin", at = "a" }
+head  = { type = "rigid_body", at = "p", m = "6 kg" }
+motor = { type = "force_source", at = "p.x", f = "u" }
+[signals]
+u = "C*exp(-s*T_t)*(r - p.x)"
+[inputs]
+r = { unit = "m" }
+[outputs]
+x = "p.x"
+"""  # noqa: E501
+
+
+def gantry_loop(s):
+    """Return the loop gain of the gantry over K, with the head's mass beside its dense stiffness."""
+    with mp.workdps(40):
+        s = mpc(s)
+        E = mp.mpf("69e9") * (1 + mp.mpf("20e-6") * s)
+        rest = {"I": mp.mpf("4.2e-8"), "A": mp.mpf("6e-4"), "rho": mp.mpf(2700)}
+        posts = [Member(*ends, E=E, l=mp.mpf("0.8"), angle=mp.pi / 2, **rest) for ends in ("ap", "gq")]
+        members = [*posts, Member("p", "q", E=E, l=mp.mpf("1.2"), **rest)]
+        added = {(("p", c), ("p", c)): 6 * s**2 for c in ("x", "y")}
+        moved = response(members, {*clamped("g"), *pinned("a")}, ("p", "x"), ("p", "x"), s, added)
+        controller = (1 + mp.mpf("0.008") * s) / (1 + mp.mpf("0.0005") * s) * mp.exp(-s * mp.mpf("0.0003"))
+        return complex(controller * moved)
+
+
+@pytest.mark.slow
+def test_a_gain_of_a_frame_with_dead_time_becomes_unstable_where_the_dense_loop_gain_is_minus_one():
+    stable = symflex.loads(GANTRY).stability("K").proved
+    (boundary,) = stable.boundaries
+    gain, omega = float(boundary.gain.mid()), float(boundary.crossings[0].frequencies[0].mid())
+    assert gain * gantry_loop(1j * omega) == pytest.approx(-1, rel=1e-9)
+    assert [i.poles.right for i in stable.intervals] == [0, 2]
+    (margin,) = stable.phase_margins
+    at = 2e5 * gantry_loop(1j * float(margin.frequency.mid()))
+    assert abs(at) == pytest.approx(1, rel=1e-9)
+    assert np.angle(-at) == pytest.approx(float(margin.angle.mid()), rel=1e-9)

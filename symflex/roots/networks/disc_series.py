@@ -12,16 +12,18 @@ narrowed by values at points.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil, exp, log, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb
 
-from symflex.balls import precision, series_terms, stays_inside
+from symflex.balls import ball, precision, series_terms, stays_inside
 from symflex.budget import spend
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from fractions import Fraction
 
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8
@@ -86,6 +88,31 @@ class DiscSeries:
                 slope += (len(terms) - 1) * abs(terms.pop())
                 off = more
         return DiscSeries(radius, acb_poly(terms), arb(off), slope, bits, is_real)
+
+    def plus(self, other: DiscSeries, times: Fraction) -> DiscSeries:
+        """Return the sum with a multiple of another function in the same disc."""
+        bits = min(self.bits, other.bits)
+        with precision(bits):
+            factor = ball(times)
+            polynomial = self.polynomial + other.polynomial * acb(factor)
+            off, slope = (
+                one + abs(factor) * two
+                for one, two in ((self.off, other.off), (self.slope_off, other.slope_off))
+            )
+        return DiscSeries(self.radius, polynomial, off, slope, bits, self.is_real and other.is_real)
+
+    def on(self, box: acb) -> tuple[tuple[acb, acb], tuple[acb, acb]]:
+        """Return value and derivative by x on a box within the unit disc, and in its middle."""
+        first, second = self._derivatives
+        middle, off, slope_off = box.mid(), ball_about_zero(self.off), ball_about_zero(self.slope_off)
+        value, slope = self.polynomial(middle), first(middle)
+        along = slope + second(box) * (box - middle)
+        return (value + along * (box - middle) + off, along + slope_off), (value + off, slope + slope_off)
+
+    @cached_property
+    def _derivatives(self) -> tuple[acb_poly, acb_poly]:
+        first = self.polynomial.derivative()
+        return first, first.derivative()
 
     def slope_on(self, box: acb) -> acb:
         """Return the derivative by x on a box within the unit disc."""

@@ -104,19 +104,27 @@ def unstable(count, gain, up_to):
 
 
 @pytest.mark.slow
-def test_stability_of_a_network_is_that_at_its_own_gain():
-    for gain, word in ((1, "unknown"), (60, "unstable")):
-        network = found(chain(6).replace('K = "1 N*s/m"', f'K = "{gain} N*s/m"'))
-        assert network.verdict.word == word
-        assert (unstable(6, gain, 2 * pi * 300) > 0) is (word == "unstable")
-        assert not network.certified and not network.intervals
-        said = stability_text(network)
-        assert f"examined: K = {gain} alone" in said and "are not searched" in said
-        assert "stable for" not in said and "boundaries" not in said
-    assert (
-        found(chain(6).replace('K = "1 N*s/m"', 'K = "K"').replace('K = "K"', "K = {}")).verdict.word
-        == "unknown"
-    )
+def test_stable_gains_of_a_network_are_those_of_finite_elements_up_to_a_frequency():
+    network = found(chain(6))
+    assert [len(b.crossings) for b in network.boundaries] == [1, 1]
+    for interval in network.intervals:
+        gain = (float(interval.low.mid()) + float(interval.high.mid())) / 2
+        assert unstable(6, gain, 2 * pi * 300) == interval.poles.right
+    # Just beside a boundary, too, which finite elements know to a thousandth.
+    for boundary, before, after in zip(network.boundaries, (0, 2), (2, 4), strict=True):
+        gain = float(boundary.gain.mid())
+        assert [unstable(6, x * gain, 2 * pi * 300) for x in (0.998, 1.002)] == [before, after]
+    assert not network.certified and network.counted_up_to == pytest.approx(2 * pi * 300)
+    assert "poles are counted up to there" in stability_text(network)
+    assert network.gain_margins[0].factor.overlaps(network.boundaries[0].gain)  # of K = 1
+
+
+@pytest.mark.slow
+def test_a_passive_loop_of_a_network_is_stable_for_all_gains():
+    text = chain(6, law="-K*s*n_1.y")
+    network = found(text.replace('r = { unit = "m/s" }', 'F = { force = "n_6.y" }'))
+    assert network.certified and not network.boundaries
+    assert [interval.poles.is_stable for interval in network.intervals] == [True]
 
 
 def test_a_locus_of_a_search_whose_time_is_over_is_refused(monkeypatch):
