@@ -30,10 +30,9 @@ from symflex.errors import Diagnostic, ModelError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-SAMPLES = 1000
-"""Samples of a run that measures rounding; the input is +1 or -1 at random, which excites all frequencies."""
-FREQUENCIES = 200
-"""Frequencies at which responses are compared, over four decades up to half of the sampling frequency."""
+SAMPLES, FREQUENCIES = 1000, 200
+"""Samples of a run that measures rounding, +1 or -1 at random, which excites all frequencies, and frequencies
+at which responses are compared, over four decades up to half of the sampling frequency."""
 MEASURE_BITS = 600
 """Precision of the run that counts as exact: differences of close poles cost a few hundred bits."""
 LARGE = 1e-9

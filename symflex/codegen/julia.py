@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 WIDTH = 92
 """Columns, as Julia's own style has it."""
 
-LAST_OF_FOUR_DIGITS = 0xFFFF
-"""The last character that ``\\u`` names."""
-
 KEYWORDS = frozenset(
     "abstract as baremodule begin break catch const continue do else elseif end export false finally for "
     "function global if import in isa let local macro module mutable outer primitive public quote return "
@@ -43,9 +40,6 @@ NAMES = frozenset(
 """What generated code uses, and names that a reader or the module itself would miss."""
 
 RESERVED = KEYWORDS | NAMES | {"s"}
-
-WORDS_OF_TITLE = 4
-"""Words of the title that name a module."""
 
 
 # ---------------------------------------------------------------------------------- expressions
@@ -192,7 +186,7 @@ def module_name(text: str) -> str:
     >>> module_name("six_mass"), module_name("Main"), module_name("2 masses, joined"), module_name("")
     ('SixMass', 'Main_', 'P2MassesJoined', 'TransferFunctions')
     """
-    words = re.findall(r"[A-Za-z0-9]+", text)[:WORDS_OF_TITLE]
+    words = re.findall(r"[A-Za-z0-9]+", text)[:4]  # the first of them name it
     joined = "".join(word[:1].upper() + word[1:] for word in words) or "TransferFunctions"
     plain = joined if joined[0].isalpha() else f"P{joined}"
     return identifiers({"main": plain}, RESERVED)["main"]
@@ -219,7 +213,7 @@ def _character(c: str) -> str:
         return f"\\{c}"
     if c.isprintable():
         return c
-    return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
+    return f"\\U{ord(c):08x}" if ord(c) > 0xFFFF else f"\\u{ord(c):04x}"  # noqa: PLR2004 (the last of \\u)
 
 
 JULIA_OUTLINE = Outline(

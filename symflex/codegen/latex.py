@@ -33,11 +33,8 @@ LOOP_TITLES = {"locus": "Root locus", "nyquist": "Nyquist plot of the loop gain"
 DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
 """Figures of kinds that the model asks for none of."""
 
-MOST_IN_A_FIGURE = 6
-"""So many functions a figure holds that the model did not ask for."""
-
-TALLEST_MM = 225.0
-"""Height of the tallest figure with its words, on a page of the document."""
+MOST_IN_A_FIGURE, TALLEST_MM = 6, 225.0
+"""Functions that a figure holds which the model did not ask for, and its height on a page, with its words."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,11 +74,8 @@ NAMES = frozenset({"default_parameters"}.union(*PARTS))
 
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
-TITLE_LENGTH = 30
-"""Characters of a title that a function is named by."""
-
-LONGEST_STEM = 64
-"""Characters of a file's name that a message shows."""
+TITLE_LENGTH, LONGEST_STEM = 30, 64
+"""Characters of a title that a function is named by, and of a file's name that a message shows."""
 
 EXPANSION = (
     "s and parameters are expanded against each other, as operators expand them. "

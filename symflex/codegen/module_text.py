@@ -29,14 +29,9 @@ if TYPE_CHECKING:
 FORMULA_LENGTH = 1_600
 """Characters of a formula that a docstring shows: twenty lines, which fill a terminal of 24."""
 
-FORMULA_TERMS = 1000
-"""Terms up to which a formula is formatted; those of nested sums may print in few characters each."""
-
-KERNEL_TERMS = FORMULA_LENGTH // 16
-"""The same with kernels: a product of two takes some twenty characters, and nesting spares a few."""
-
-NESTED_SIZE = 300
-"""Operations of a nested form up to which its formula is written out."""
+FORMULA_TERMS, KERNEL_TERMS, NESTED_SIZE = 1000, FORMULA_LENGTH // 16, 300
+"""Terms up to which a formula is formatted, without kernels and with them (a product of two takes some
+twenty characters), and operations up to which a nested form is."""
 
 NAMED = 12
 """Members of a network that a docstring names: three lines."""

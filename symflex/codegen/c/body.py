@@ -27,11 +27,8 @@ from symflex.codegen.program.evaluate import nearest_double
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-FEW = 3
-"""Powers up to this one are products."""
-
-DEEPEST = 3
-"""Calls nested in each other from which a variable is made, for the reader's sake."""
+FEW, DEEPEST = 3, 3
+"""Powers up to which are products, and calls nested in each other from which a variable is made."""
 
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 

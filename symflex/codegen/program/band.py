@@ -55,14 +55,9 @@ if TYPE_CHECKING:
 CLOSED_TERMS = 60
 """Terms with kernels up to which a formula is short: twice as many are some hundred kilobytes of code."""
 
-BEYOND = 5
-"""Modes that are found beyond those of the band."""
-
-FURTHER = Fraction(3, 2)
-"""How far beyond a band that is given in Hz roots are found, in frequencies."""
-
-ENOUGH = Fraction(6, 5)
-"""How far beyond the band the highest of as many zeros as poles has to lie."""
+BEYOND, FURTHER, ENOUGH = 5, Fraction(3, 2), Fraction(6, 5)
+"""How far beyond the band roots are found: in modes, and in frequencies of a band given in Hz; and how
+far beyond it the highest of as many zeros as poles has to lie."""
 
 ROUNDS = 3
 """How often roots are sought further away where what they leave is not smooth."""
@@ -73,11 +68,8 @@ DIGITS = 36
 FIRST_NODES, MOST_NODES = 24, 192
 """Points on the positive half of the band at which what is left is taken; the next try has twice as many."""
 
-SPARE = 4
-"""Last coefficients that count for nothing where there were points enough."""
-
-NEGLIGIBLE = 2.0**-57
-"""Size of a coefficient that changes no double."""
+SPARE, NEGLIGIBLE = 4, 2.0**-57
+"""Last coefficients that count for nothing where there were points enough: their size changes no double."""
 
 GROUP = 12
 """Zeros, and poles, that are multiplied before their products are divided: a division costs more."""

@@ -50,11 +50,9 @@ if TYPE_CHECKING:
 TERM_LIMIT = 20_000
 """Terms a program may be made of; beyond that its text would be megabytes."""
 
-HEADROOM = 180
-"""Decades a power of s may reach in double precision (308 in all); the rest is left to the coefficients."""
-
-FAR_FROM = 1e15
-"""A far branch is made when powers of s could overflow below this abs(s) [rad/s]."""
+HEADROOM, FAR_FROM = 180, 1e15
+"""Decades a power of s may reach in double precision, of 308 in all: coefficients have the rest; and
+abs(s) [rad/s] below which they could overflow where a far branch is made."""
 
 PI = "pi"
 

@@ -58,11 +58,9 @@ if TYPE_CHECKING:
 REACHES = (3.0, 2.0, 4.5)
 """Sizes of the largest exponent below which series are used; which serves best is measured."""
 
-CHOOSING = 3
-"""Base lengths up to which every one may have series by itself: eight pieces for three of them."""
-
-TOGETHER = 2
-"""Those up to which that is not more than a module should hold; of more it is measured whether it serves."""
+CHOOSING, TOGETHER = 3, 2
+"""Base lengths up to which every one may have series by itself, eight pieces for three of them, and those up
+to which that is not more than a module should hold; of more it is measured whether it serves."""
 
 CUTS = 12
 """How often one base length is cut by another; two spans and a sensor need one or two."""
@@ -76,11 +74,8 @@ REAL_TERMS = 1000
 LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
 """Frequencies [rad/s] at which it is looked which arguments are small together."""
 
-CONFLUENT = 2.0
-"""Twice the squared distance of a pair's arguments below which means over a circle are taken."""
-
-CIRCLE = 24
-"""Points of a circle over which means are taken."""
+CONFLUENT, CIRCLE = 2.0, 24
+"""Twice the squared distance of a pair's arguments below which means over a circle are taken, and points."""
 
 LONE = 0.25
 """Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""

@@ -247,7 +247,13 @@ class _Schedule:
         for x in sorted(reached):
             node, deep = self._node(x)
             is_inner = x not in roots or (shared and uses[x][0] > 0)
-            if is_inner and self._deserves_name(x, (uses[x][0] + (x in roots), uses[x][1]), deep):
+            operands, free = self.forge.operands(x), self.forge.depends[x] == Depends.PARAMETERS
+            is_minus = isinstance(node, tree.Negate)
+            is_plain = not operands or (is_minus and not self.forge.operands(operands[0]))
+            is_hoisted = free and uses[x][1] and not is_minus
+            is_shared = uses[x][0] + (x in roots) > 1
+            has_name = x in self.forge.labels or is_shared or is_hoisted or deep > DEEPEST
+            if is_inner and has_name and not is_plain:
                 section = 0 if not self.forge.depends[x] else 2 if x in late else 1
                 name = self._name(x)
                 sections[section].append(tree.Assignment(name, node))
@@ -274,16 +280,6 @@ class _Schedule:
                 count, hoisted = counts[operand]
                 counts[operand] = (count + 1, hoisted or bool(self.forge.depends[x]))
         return counts
-
-    def _deserves_name(self, x: int, uses: tuple[int, bool], deep: int) -> bool:
-        operands = self.forge.operands(x)
-        is_minus = isinstance(self.forge.nodes[x], tree.Negate)
-        if not operands or (is_minus and not self.forge.operands(operands[0])):
-            return False
-        count, used_with_s = uses
-        is_free = self.forge.depends[x] == Depends.PARAMETERS
-        is_hoisted = is_free and used_with_s and not is_minus
-        return x in self.forge.labels or count > 1 or is_hoisted or deep > DEEPEST
 
     def _name(self, x: int) -> str:
         wanted = self.forge.labels.get(x)

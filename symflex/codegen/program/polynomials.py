@@ -124,12 +124,9 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
 FACTOR_LIMIT = 400
 """Number of terms up to which a polynomial is factored."""
 
-WORK_LIMIT = 300_000_000
-"""Exponents looked at before the search for structure is given up; about two seconds."""
-
-
-DEPTH_LIMIT = 150
-"""Splits inside one another; a polynomial of so high a degree is better nested by powers of s."""
+WORK_LIMIT, DEPTH_LIMIT = 300_000_000, 150
+"""Exponents looked at before the search for structure is given up, about two seconds, and splits inside one
+another: a polynomial of so high a degree is better nested by powers of s."""
 
 
 @dataclass(frozen=True, slots=True)

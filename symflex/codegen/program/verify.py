@@ -57,11 +57,9 @@ ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
 REACH = np.logspace(-9, 12, 85)
 """Frequencies [rad/s] at which a form may neither overflow nor lose the value."""
 
-SIMILAR = 2.0
-"""Forms whose errors differ by less than this factor count as equally accurate; the faster one is taken."""
-
-MUCH_LONGER = 2
-"""How many times the operations of the shortest form recurrences may take when nothing can be measured."""
+SIMILAR, MUCH_LONGER = 2.0, 2
+"""Forms whose errors differ by less than this factor count as equally accurate, and the faster one is taken;
+how many times the operations of the shortest form recurrences may take when nothing can be measured."""
 
 LONG = 500
 """Terms from which coefficients of powers of s are not expanded if another form is accurate."""
@@ -69,17 +67,13 @@ LONG = 500
 ACCURATE = 1e-14
 """Error below which no other form is looked for: some fifty roundings of a double."""
 
-SCAN = 3000
-"""Frequencies over the band among which a distributed system's resonances and antiresonances are sought."""
+SCAN, MOST_EXTREMES = 3000, 40
+"""Frequencies over the band among which a distributed system's resonances and antiresonances are sought, and
+how many of each the error is measured around: the first and the last ones of more."""
 
-MOST_EXTREMES = 40
-"""Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
-
-LIGHT_NESTED = 600
-"""Operations of a nested form from which fewer frequencies are looked at."""
-
-LEAST = 0.05
-"""The part of them that is looked at in any case; of a network of beams a value takes 10 ms and more."""
+LIGHT_NESTED, LEAST = 600, 0.05
+"""Operations of a nested form from which fewer frequencies are looked at, and the part of them that is looked
+at in any case; of a network of beams a value takes 10 ms and more."""
 
 NAMED = 6
 """Parameters without value that are named."""
@@ -90,11 +84,8 @@ BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
 BAND_SHARE = 8
 """One in so many of the usual samples shows how smooth the rest of a band form with known roots is."""
 
-ASIDE_OF_AXIS = 0.1
-"""Distance from the imaginary axis, in bands, at which a band form is measured too."""
-
-HEIGHTS = np.linspace(0.02, 0.98, 5)
-"""Heights at which it is, in bands."""
+ASIDE_OF_AXIS, HEIGHTS = 0.1, np.linspace(0.02, 0.98, 5)
+"""Distance from the imaginary axis, and heights, in bands, at which a band form is measured too."""
 
 AT_A_POLE = 1e-14
 """Relative distance from a pole's frequency within which infinity may stand for the value: some roundings."""

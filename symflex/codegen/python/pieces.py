@@ -403,15 +403,11 @@ Cases = tuple[tuple[tuple[int, bool], ...], ...]
 """Alternatives; each is a number of tests with the results they must have."""
 
 SIZES = np.logspace(-12, 60, 145)
-"""Frequencies [rad/s] among which places are sought."""
-
 DIRECTIONS: NDArray[np.complex128] = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
-"""One in every quadrant, on no axis."""
+"""Frequencies [rad/s] and directions, one in every quadrant and on no axis, among which places are sought."""
 
 INWARDS = 1.5
 """Decades between a place and the lower end of the range that a piece serves, or its only end."""
-
-BESIDE = np.array([1.0, 0.999, 1.001])
 
 
 def in_pieces(program: Piecewise) -> Piecewise:
@@ -491,7 +487,7 @@ def _place(
         aim = min(logarithms[rows[-1]], last) - INWARDS
     distance = np.abs(logarithms - aim)[:, None] + np.where(serves.any(axis=0), 0.0, 1e3)
     for position in np.argsort(distance, axis=None, kind="stable"):
-        point = points.flat[position] * BESIDE
+        point = points.flat[position] * np.array([1.0, 0.999, 1.001])
         if np.all(np.isfinite(value_of_piece(piece, point, given))):
             return complex(points.flat[position])
     return complex(points.flat[0])
