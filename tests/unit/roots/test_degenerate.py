@@ -58,17 +58,13 @@ def test_motions_without_strain_that_input_or_output_do_not_see_are_hidden():
     pinned = 'p = { type = "pin", at = "a" }'
     damped = complex(-1, 8**0.5)
     for given, place, expected in [
-        ((), 3j, 1),
-        (("k_f = 18", 'force = "a.y"', "c.y"), 3j, 1),
+        ((), 3j, 1), (("k_f = 18", 'force = "a.y"', "c.y"), 3j, 1),
         (("k_f = 18", 'torque = "a.theta"', "a.theta"), 3j, 1),
         (("k_f = 18", 'force = "a.y"', "a.y", 'm = { type = "mass", at = "c.y", m = 1 }'), 3j, 0),
-        (("k_f = 18", 'torque = "a.theta"', "a.theta", pinned), 3j, 0),
-        (("k_f = 18, N = 3",), 3j, 0),
-        (('k_f = 18, theory = "rayleigh", rhoI = 0.1',), 3j, 0),
-        (("k_f = 18, c_f = 4",), damped, 1),
-        (("k_f = 18, c_f = 4, eta = 0.01",), damped.conjugate(), 1),
-        (("c_f = 4",), -2, 1),
-    ]:
+        (("k_f = 18", 'torque = "a.theta"', "a.theta", pinned), 3j, 0), (("k_f = 18, N = 3",), 3j, 0),
+        (('k_f = 18, theory = "rayleigh", rhoI = 0.1',), 3j, 0), (("k_f = 18, c_f = 4",), damped, 1),
+        (("k_f = 18, c_f = 4, eta = 0.01",), damped.conjugate(), 1), (("c_f = 4",), -2, 1),
+    ]:  # fmt: skip
         assert hidden(bound(*given), place) == expected, given
 
 

@@ -432,13 +432,9 @@ def test_roots_are_found_where_wavenumbers_vanish_or_meet_and_where_they_have_no
 # --------------------------------------------------------------------- every engine, every kind of region
 
 SEARCHED = (
-    "a rod with a mass",
-    "a string in a fluid",
-    "a free beam",
-    "a hinged beam on a foundation",
-    "a line with losses",
-    "a loop with a delay",
-)
+    "a rod with a mass", "a string in a fluid", "a free beam", "a hinged beam on a foundation",
+    "a line with losses", "a loop with a delay",
+)  # fmt: skip
 """One of each kind: a wavenumber of s or of its root, with losses or without, a double pole at 0, a delay."""
 BROKEN_OFF = ("a rod with a mass", "a free beam", "a loop with a delay")
 

@@ -577,14 +577,8 @@ TIMOSHENKOS = [
     "kGA*(h'' - b') = rhoA*s^2*h + k/l*(h - u)", "EI*b'' + kGA*(h' - b) = J*s^2*b",
 ]  # fmt: skip
 HELD_AT_0 = [
-    *ENDS,
-    "a(0) = 0",
-    "b(0) = 0",
-    "kGA*(u'(l) - a(l)) = F",
-    "a'(l) = 0",
-    "h'(l) - b(l) = 0",
-    "b'(l) = 0",
-]
+    *ENDS, "a(0) = 0", "b(0) = 0", "kGA*(u'(l) - a(l)) = F", "a'(l) = 0", "h'(l) - b(l) = 0", "b'(l) = 0",
+]  # fmt: skip
 THREE = ["T*u'' - k/l*(u - h) = rhoA*s^2*u", "T*h'' - k/l*(2*h - u - z) = rhoA*s^2*h"]
 THREE += ["T*z'' - k/l*(z - h) = rhoA*s^2*z"]
 UNLIKE = ["EI*u'''' - T*u'' + rhoA*s^2*u + (k/l + c*s)*(u - h) = 0"]

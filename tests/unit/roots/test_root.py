@@ -47,13 +47,10 @@ def test_a_frequency_is_known_as_well_as_both_parts():
 
 def test_roots_come_with_their_mirror_images():
     for given, even, images in [
-        (root(-3, 4), False, [(-3, 4), (-3, -4)]),
-        (root(-3, 4), True, [(-3, 4), (-3, -4), (3, 4), (3, -4)]),
-        (root(-3, 0), False, [(-3, 0)]),
-        (root(-3, 0), True, [(-3, 0), (3, 0)]),
-        (root(0, 4), True, [(0, 4), (0, -4)]),
-        (root(0, 0), True, [(0, 0)]),
-    ]:
+        (root(-3, 4), False, [(-3, 4), (-3, -4)]), (root(-3, 4), True, [(-3, 4), (-3, -4), (3, 4), (3, -4)]),
+        (root(-3, 0), False, [(-3, 0)]), (root(-3, 0), True, [(-3, 0), (3, 0)]),
+        (root(0, 4), True, [(0, 4), (0, -4)]), (root(0, 0), True, [(0, 0)]),
+    ]:  # fmt: skip
         found = mirror_images([given], even=even)
         assert [(float(r.re), float(r.im)) for r in found] == images, (given, even)
         assert all(
@@ -68,16 +65,11 @@ def test_roots_may_be_the_same_where_both_parts_may():
 
 def test_a_part_is_printed_with_its_digits_and_what_they_are_off_by():
     for value, digits, text, radius in [
-        (arb("0.00001"), 3, "0.0000100", "0"),
-        (arb(2) ** -17, 2, "7.6e-6", "3.0e-8"),
-        (arb(1024), 2, "1.0e3", "2.4e+1"),
-        (arb(1024), 4, "1024", "0"),
-        (arb(1024), 6, "1024.00", "0"),
-        (arb("9.996"), 3, "10.0", "4.1e-3"),
-        (arb(99.96875), 3, "100", "3.2e-2"),
-        (arb(-0.5), 1, "-0.5", "0"),
+        (arb("0.00001"), 3, "0.0000100", "0"), (arb(2) ** -17, 2, "7.6e-6", "3.0e-8"),
+        (arb(1024), 2, "1.0e3", "2.4e+1"), (arb(1024), 4, "1024", "0"), (arb(1024), 6, "1024.00", "0"),
+        (arb("9.996"), 3, "10.0", "4.1e-3"), (arb(99.96875), 3, "100", "3.2e-2"), (arb(-0.5), 1, "-0.5", "0"),
         (arb(1000000, 2), 9, "1.00000e6", "2.1e+0"),
-    ]:
+    ]:  # fmt: skip
         found = decimals(value, arb(0), digits)
         assert found.im == "0", (value, digits)
         assert found.re == text

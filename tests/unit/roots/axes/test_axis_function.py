@@ -132,12 +132,8 @@ def test_no_root_is_enclosed_where_none_is_single_or_the_guess_too_large_for_dou
 
 def test_signs_are_opposite_about_one_root():
     for low, high, changes in [
-        (1.0, 2.5, True),
-        (2.5, 4.0, True),
-        (1.0, 4.0, False),
-        (2.1, 2.9, False),
-        (2.0, 2.5, False),
-    ]:
+        (1.0, 2.5, True), (2.5, 4.0, True), (1.0, 4.0, False), (2.1, 2.9, False), (2.0, 2.5, False),
+    ]:  # fmt: skip
         # (t - 2)(t - 3); at a root there is no sign.
         assert changes_sign(polynomial(6, -5, 1), low, high) is changes
 

@@ -49,14 +49,9 @@ TWO_BEAMS = (
     (1, 0, 0, ((0, "cosh"), (0, "cos"), (1, "sin"))),
 )
 FUNCTIONS = {
-    "bent": BENT,
-    "slid": SLID,
-    "loaded": LOADED,
-    "wave": WAVE,
-    "both": BOTH,
-    "power": POWER,
+    "bent": BENT, "slid": SLID, "loaded": LOADED, "wave": WAVE, "both": BOTH, "power": POWER,
     "two beams": TWO_BEAMS,
-}
+}  # fmt: skip
 
 
 def test_on_an_axis_it_is_the_same_function_but_for_one_exponential_and_one_number():

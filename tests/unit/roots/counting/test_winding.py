@@ -20,12 +20,8 @@ from tests.unit.roots.known_functions import KnownFunction
 
 def test_a_disc_is_seen_from_0_at_twice_the_arc_sine_rounded_up():
     for off, size, seen in [
-        (0, 1, 0),
-        (1, 2, pi / 6),
-        (0.999, 1, asin(0.999)),
-        (1, 1, pi / 2),
-        (3, 1, 3 * pi / 2),
-    ]:
+        (0, 1, 0), (1, 2, pi / 6), (0.999, 1, asin(0.999)), (1, 1, pi / 2), (3, 1, 3 * pi / 2),
+    ]:  # fmt: skip
         assert angle(arb(off), arb(size)) == pytest.approx(seen, rel=1e-7)
     assert angle(arb(1) / 3, arb(1)) >= asin(1 / 3)
 

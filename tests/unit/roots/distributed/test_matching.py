@@ -13,11 +13,7 @@ from symflex import pipeline
 from symflex.roots import Band, Modes
 from symflex.roots.counting.winding import Cell
 from symflex.roots.distributed.proof import holes_about
-from symflex.roots.locate import (
-    _exclusion,
-    default_region,
-    degenerate_points,
-)
+from symflex.roots.locate import _exclusion, default_region, degenerate_points
 from tests.unit.roots.distributed_models import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 from tests.unit.roots.stand_ins import places
 
@@ -61,6 +57,6 @@ def test_neighbourhoods_that_meet_are_left_out_as_one():
     for points, count in [
         ([2, 2 * 1.1], 1), ([2, 2 * 1.11], 2), ([2, 2 * cexp(0.099j)], 1), ([2, 2 * cexp(0.101j)], 2),
         # the third joins two that do not meet each other
-        ([2, 2 * cexp(0.15j), 2 * cexp(0.07j)], 1), ([2, 3, 4, 3.05], 3),
+        ([2, 2 * cexp(0.15j), 2 * cexp(0.07j)], 1), ([2, 3, 4, 3.05], 3)
     ]:  # fmt: skip
         assert len(holes_about([complex(p) for p in points])) == count, points

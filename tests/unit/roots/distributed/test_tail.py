@@ -258,11 +258,8 @@ def test_one_term_outweighs_the_others_from_a_radius_on():
 
 def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_later():
     for power, unit, over, edge in [
-        (1, 1, 3, 3),
-        (1, 2, 3, 1.5),
-        (Fraction(1, 2), 2, 1, 1),
-        (Fraction(1, 2), 3, 2, 16 / 9),
-    ]:
+        (1, 1, 3, 3), (1, 2, 3, 1.5), (Fraction(1, 2), 2, 1, 1), (Fraction(1, 2), 3, 2, 16 / 9),
+    ]:  # fmt: skip
         # exp(c r^p) > r^q/1000 at every r, and r^q exp(-c r^p) falls from (q/(c p))^(1/p) on.
         terms = {GROWING: powers(p0=1), LEVEL: {Fraction(over): acb("0.001")}}
         arguments = [_Power(Fraction(power), acb(unit))]

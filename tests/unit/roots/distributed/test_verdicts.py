@@ -7,10 +7,7 @@ from math import pi
 import pytest
 
 from symflex import pipeline
-from symflex.roots.distributed.right_half_plane import (
-    RightHalfPlane,
-    gaps_text,
-)
+from symflex.roots.distributed.right_half_plane import RightHalfPlane, gaps_text
 from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
 

@@ -41,13 +41,7 @@ def located(text, region=None, digits=12, output="X", source="F"):
     where = region or Modes(4)
     equations = equations_of(text)
     return locate_in_network(
-        equations,
-        "/".join(pair),
-        pair,
-        where,
-        digits,
-        is_default=False,
-        energy=energy_proof(equations.model),
+        equations, "/".join(pair), pair, where, digits, is_default=False, energy=energy_proof(equations.model)
     )
 
 

@@ -7,12 +7,7 @@ from symflex.roots.networks.blocks import most_zeros
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.network import OtherNetworkError
 from symflex.roots.passivity import energy_proof
-from tests.unit.roots.networks.network_models import (
-    BEAM,
-    equations_of,
-    network,
-    specification,
-)
+from tests.unit.roots.networks.network_models import BEAM, equations_of, network, specification
 
 TWO = f"""
 one = {{ {BEAM}, between = ["ground", "a"], l = "0.4 m" }}

@@ -5,13 +5,7 @@ from fractions import Fraction
 from flint import acb, acb_poly, arb
 
 from symflex.balls import precision
-from symflex.roots.polynomials.discs import (
-    Disc,
-    LevelPolynomial,
-    complete,
-    overlapping_pairs,
-    with_mirrors,
-)
+from symflex.roots.polynomials.discs import Disc, LevelPolynomial, complete, overlapping_pairs, with_mirrors
 
 
 def test_discs_a_hair_apart_are_told_apart_beyond_double_precision():

@@ -47,13 +47,8 @@ def test_each_disc_holds_one_root_to_the_digits_wanted():
 
 def test_guesses_that_do_not_lead_to_all_roots_are_passed_on_to_the_next_engine():
     for wrong in [
-        (),
-        (1.01, 1.02, -3 + 4j),
-        (1, -2),
-        (1, -2, 5),
-        (1, -2, -3 + 4j, 7),
-        (0.5 + 1e-30j, 0.5, 0.5),
-    ]:
+        (), (1.01, 1.02, -3 + 4j), (1, -2), (1, -2, 5), (1, -2, -3 + 4j, 7), (0.5 + 1e-30j, 0.5, 0.5),
+    ]:  # fmt: skip
         first, asked = proposing(*wrong)
         second, asked_too = proposing(1.1, -2.1, -3 + 4.1j)
         discs = isolated(first, second)[-1]

@@ -7,11 +7,7 @@ from flint import acb, arb, fmpq
 
 from symflex.balls import precision
 from symflex.roots import PolynomialInS, Root, RootProblem
-from symflex.roots.polynomial_roots import (
-    _square_roots,
-    find_polynomial_roots,
-    in_order,
-)
+from symflex.roots.polynomial_roots import _square_roots, find_polynomial_roots, in_order
 from symflex.roots.polynomials.discs import Disc
 from symflex.roots.problem import SquareFreePart
 

@@ -13,14 +13,7 @@ from symflex.errors import UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots
 from symflex.roots.engines import GUESSES
 from symflex.roots.polynomials.discs import propose_by_laguerre
-from tests.unit.roots.root_problems import (
-    chain,
-    from_roots,
-    problem,
-    problem_of,
-    with_pi,
-    with_root_of_two,
-)
+from tests.unit.roots.root_problems import chain, from_roots, problem, problem_of, with_pi, with_root_of_two
 
 
 def test_frequencies_in_hz_are_exact_and_keep_their_damping_ratio():
@@ -133,14 +126,11 @@ def test_sizes_beyond_the_reach_of_doubles_are_refused_not_guessed():
 
 
 PROBLEMS = {
-    "linear": problem(3, 2),
-    "axis": problem(16, 0, 8, 0, 1),
-    "real": problem(*from_roots([1, 2, 3, -4, -50])),
-    "damped": problem_of(chain(8, 3, 500, 2)),
-    "cyclotomic": problem_of(fmpz_poly.cyclotomic(29)),
-    "rigid": problem(0, 0, 0, 5, 1, 1),
+    "linear": problem(3, 2), "axis": problem(16, 0, 8, 0, 1),
+    "real": problem(*from_roots([1, 2, 3, -4, -50])), "damped": problem_of(chain(8, 3, 500, 2)),
+    "cyclotomic": problem_of(fmpz_poly.cyclotomic(29)), "rigid": problem(0, 0, 0, 5, 1, 1),
     "constant": problem(5),
-}
+}  # fmt: skip
 
 
 def test_every_engine_finds_as_many_roots_as_the_degree_and_all_agree():
