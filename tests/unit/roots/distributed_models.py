@@ -36,18 +36,6 @@ F = {{ force = "p" }}
 Y = "p"
 """
 
-PINNED_IN_THE_MIDDLE = f"""{PARAMETERS}
-[elements]
-left   = {{ type = "beam", between = ["p", "m"], {BEAM}, l = "l/2" }}
-right  = {{ type = "beam", between = ["m", "q"], {BEAM}, l = "l/2" }}
-near   = {{ type = "pin", at = "p" }}
-far    = {{ type = "pin", at = "q" }}
-[inputs]
-F = {{ force = "m" }}
-[outputs]
-Y = "m"
-"""
-
 # c = sqrt(E/rho) = 1; the tip mass is half the rod's: x tan x = mu = rho A l/m = 2.
 ROD = """
 symflex = 1

@@ -8,10 +8,8 @@ Axial force and rotary inertia resist the turn, not the translation.
 
 from fractions import Fraction
 
-import pytest
-
 from symflex import pipeline
-from symflex.roots import Band, Modes
+from symflex.roots import Band
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.locate import locate
 from tests.unit.roots.stand_ins import places
@@ -25,19 +23,6 @@ b = {{ type = "beam", between = ["a", "c"], EI = 4, rhoA = 2, l = 1, {more} }}
 F = {{ {load} }}
 [outputs]
 Y = "{output}"
-"""
-TURNED = """
-symflex = 1
-[elements]
-e0 = { type = "beam", between = ["x0", "x1"], EI = 1e4, rhoA = 1, l = 100, k_f = 100 }
-e1 = { type = "beam", between = ["x1", "x2"], EI = 1e4, rhoA = 1, l = 100, k_f = 100, eta = 0.001 }
-tip = { type = "rigid_body", at = "x2", m = 6.97 }
-sp = { type = "spring", between = ["x2", "ground"], k = 3.75 }
-[inputs]
-F = { torque = "x2.theta" }
-[outputs]
-X = "x2"
-T = "x2.theta"
 """
 
 
@@ -96,17 +81,3 @@ def test_a_hidden_turn_is_listed_among_the_roots_with_its_place_and_in_the_verdi
     assert places(h.root for h in found.hidden) == [(0, 3, 1), (0, -3, 1)]
     assert places(found.poles) == [(0, 3, 1), (0, -3, 1)]
     assert found.certificate.certified
-
-
-@pytest.mark.slow
-def test_two_beams_that_turn_about_the_tip_without_strain_hide_it_from_its_deflection():
-    # The determinant by transfer matrices (mpmath, 150 digits) has one zero within 1e-6 of 10j.
-    model = pipeline.loads(TURNED)
-    seen, turned = pipeline.derive_bound(model, model.transfer_functions)
-    found = locate(seen, Modes(3), 15)
-    assert found.certificate.certified
-    assert [(round(float(h.root.im.mid()), 12), h.root.multiplicity) for h in found.hidden] == [
-        (10, 1),
-        (-10, 1),
-    ]
-    assert hidden(turned, 10j) == 0

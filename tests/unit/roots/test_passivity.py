@@ -33,7 +33,6 @@ $more
 """)
 PD = "K/n*(r - (1 + T*s)*hub.theta)"
 UNIFORM = 'I = "I_0", A = "A_0"'
-TAPERED = 'I = "I_0*(1 - x/(2*l))^3", A = "A_0*(1 - x/(2*l))"'
 TIMOSHENKO = UNIFORM + ', theory = "timoshenko", kappa = "1", G = "1 Pa"'
 
 

@@ -10,10 +10,7 @@ from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     REAL,
     AxisFunction,
-    AxisNewton,
     Enclosures,
-    bits_of,
-    changes_sign,
 )
 
 BITS = 300
@@ -93,49 +90,6 @@ def test_values_of_a_ball_are_in_the_ball_of_values():
                 assert slope.contains(arb(expected[1]).mid()), t
             # Not much wider than the way that the slope leads.
             assert value.rad() < 100 * abs(slope).upper() * ball.rad(), t
-
-
-# --------------------------------------------------------------------- roots of polynomials in t, known
-
-
-def polynomial(*coefficients, axis=REAL):
-    """Return a polynomial in t, lowest power first."""
-    even = {n: {(): c} for n, c in enumerate(coefficients) if c}
-    return AxisFunction((AxisWave((0,), (0,), even, {}),), axis, Enclosures(2000, (), (arb(1),), (1,)))
-
-
-def test_a_root_next_to_a_guess_is_enclosed():
-    for digits in [5, 40, 300]:
-        for guess in [1.9999999, 2.0, 2 + 1e-12]:
-            # (t - 2)(t - 3)(t + 5)
-            source = polynomial(30, -19, 0, 1)
-            found = AxisNewton(digits).frequency(source, guess)
-            assert found.contains(4), (digits, guess)
-            with precision(bits_of(digits)):
-                assert found.rad() < 4 * arb(10) ** -digits, guess
-
-
-def test_no_root_is_enclosed_where_none_is_single_or_the_guess_too_large_for_doubles():
-    for coefficients in [
-        (4, -4, 1),  # (t - 2)^2
-        (5, -4, 1),  # (t - 2)^2 + 1
-        (2**62 + 1, -(2**62), 2**60),  # (t - 2)^2 + 2^-60
-        (-8, 12, -6, 1),  # (t - 2)^3
-        (1,),
-    ]:
-        for guess in [2.0, 2 + 2.0**-30, 2.001]:
-            assert AxisNewton(20).frequency(polynomial(*coefficients), guess) is None
-    one = Enclosures(64, (), (arb(1),), (2,))
-    source = AxisFunction((AxisWave((0,), (1,), {}, {0: {(): 1}}),), REAL, one)
-    assert AxisNewton(20).frequency(source, 1e200) is None
-
-
-def test_signs_are_opposite_about_one_root():
-    for low, high, changes in [
-        (1.0, 2.5, True), (2.5, 4.0, True), (1.0, 4.0, False), (2.1, 2.9, False), (2.0, 2.5, False),
-    ]:  # fmt: skip
-        # (t - 2)(t - 3); at a root there is no sign.
-        assert changes_sign(polynomial(6, -5, 1), low, high) is changes
 
 
 # ------------------------------------------------------------------- functions given by their formulas

@@ -1,8 +1,7 @@
-"""Networks the tests of this folder share, and their counters and maps."""
+"""Networks the tests of this folder share, and their maps."""
 
 from symflex import pipeline
 from symflex.model import with_numbers
-from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.network import network_of
 from symflex.roots.networks.poles_zeros import locate_in_network
 from symflex.roots.passivity import energy_proof
@@ -27,12 +26,6 @@ def network(text, output="X", source="F"):
     return network_of(
         equations := equations_of(text), output, source, is_passive=energy_proof(equations.model).is_passive
     )
-
-
-def counter(text, output="X", source="F"):
-    """Return what counts its frequencies, and those with the input's motion held."""
-    found = network(text, output, source)
-    return Counter(found, (found.driven,))
 
 
 def located(text, region=None, digits=12, output="X", source="F"):

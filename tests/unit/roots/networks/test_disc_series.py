@@ -1,11 +1,10 @@
 """Entire functions in a disc whose roots are known, from their values on the circle."""
 
-from math import log, pi
+from math import pi
 
 import pytest
 from flint import acb, arb, ctx
 
-from symflex.roots.networks.disc_search import enclosed_roots, images
 from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
 
 BITS = 160
@@ -51,29 +50,6 @@ def test_roots_are_counted_on_circles_whose_powers_exceed_floats():
     for size in (1e-2, 1e-6, 1e-10):
         assert double.count_about(acb(0, arb(3) / 10), size) == 2
         assert double.count_about(acb(0, arb("0.305")), size) == (2 if size == 1e-2 else 0)
-
-
-def test_double_roots_on_the_axis_are_enclosed_with_their_images():
-    found = enclosed_roots(series(lambda s: s.cosh() ** 2, 80.0), 0, is_even=True)
-    assert [count * images(box, is_even=True) for box, count in found] == [4, 4, 4]
-    for k, (box, _) in enumerate(found):
-        assert (box * 10).contains(acb(0, arb.pi() * (k + 0.5)))
-
-
-def test_a_double_root_is_not_proved_to_be_one():
-    found = series(lambda s: (s * s + 9) ** 2, 15.0)
-    assert all(found.proved(x) is None for x in found.approximate(0))
-    assert found.count_about(acb(0, 0.3), 0.01) == 2
-
-
-@pytest.mark.slow
-def test_roots_are_proved_where_a_singularity_close_by_takes_many_terms():
-    # Analytic up to 1.07 times the radius; the roots -6 +- 6j lie where rounding of boxes grows most.
-    found = series(lambda s: (s * s + 12 * s + 72) / (10.7 - s), log(309 / 0.2), ratio=1.05)
-    guesses = [x for x in found.approximate(0) if abs(x) < 0.9]
-    assert found.polynomial.degree() > 600
-    assert len(guesses) == 2
-    assert all(found.proved(x) is not None for x in guesses)
 
 
 def test_all_roots_are_approximated_and_proved():
