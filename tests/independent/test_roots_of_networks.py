@@ -13,6 +13,7 @@ from symflex.model import with_numbers
 from symflex.roots.networks.anywhere import roots_in_disc
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.poles_zeros import locate_in_network
+from symflex.roots.passivity import energy_proof
 from symflex.roots.region import Band, Modes
 from tests.independent.boundary_value import DIGITS
 from tests.independent.members import is_seen, random_members, response, specification
@@ -28,8 +29,9 @@ def equations_of(network):
 
 
 def located(network, region, digits=15):
+    equations, pair = equations_of(network), ("X", "F")
     return locate_in_network(
-        equations_of(network), "X/F", ("X", "F"), region, digits, is_default=False, proof=""
+        equations, "X/F", pair, region, digits, is_default=False, energy=energy_proof(equations.model)
     )
 
 
