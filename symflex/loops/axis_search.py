@@ -19,12 +19,10 @@ from symflex.loops.loop_function import LoopValue
 from symflex.loops.stability_map import Crossing, hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from fractions import Fraction
 
     from symflex.loops.axis import AxisRoots, LoopAtOrigin
-    from symflex.loops.stability_map import PoleCount
-    from symflex.roots.passivity import EnergyProof
 
 BITS = 128
 """Precision of gains and their limits."""
@@ -55,14 +53,6 @@ class AxisSearch(ABC):
 
     limits: tuple[Fraction, Fraction]  # range of the gain
     reasons: list[str]
-    gain: str  # its name
-    method: str
-    is_narrowed: bool
-
-    @property
-    @abstractmethod
-    def radius(self) -> tuple[float, bool]:
-        """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right."""
 
     @property
     @abstractmethod
@@ -73,40 +63,6 @@ class AxisSearch(ABC):
     @abstractmethod
     def scale(self) -> float:
         """A frequency of the loop [rad/s]."""
-
-    @property
-    @abstractmethod
-    def is_endless(self) -> bool:
-        """Whether poles next to the axis have no end along it, or none that is known."""
-
-    @property
-    @abstractmethod
-    def energy(self) -> EnergyProof:
-        """What energy says of the poles for every gain in the range."""
-
-    @property
-    @abstractmethod
-    def with_gain(self) -> Sequence[OnAxis]:
-        """A and B of every factor that depends on the gain."""
-
-    @property
-    @abstractmethod
-    def is_mirrored(self) -> bool:
-        """Whether roots mirror each other in the axis for every gain."""
-
-    @abstractmethod
-    def last_crossover(self, gain: arb) -> float:
-        """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
-
-    @abstractmethod
-    def crossings(self, digits: int) -> list[Crossing]:
-        """Return where poles cross the axis for gains in the range."""
-
-    @abstractmethod
-    def count(
-        self, gain: Fraction, below: PoleCount | None = None, crossed: Sequence[Crossing] = ()
-    ) -> PoleCount:
-        """Return how many poles lie right of the axis and on it, as far as they are searched."""
 
     def frequency(self, omega: arb) -> arb:
         """Return the frequency [rad/s] at a place of the axis."""

@@ -22,7 +22,7 @@ from symflex.balls import ball, precision
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
-from symflex.loops.axis_search import SHRINKINGS, AxisSearch
+from symflex.loops.axis_search import SHRINKINGS
 from symflex.loops.distributed import DistributedFactors
 from symflex.loops.locus import closed_loop_roots, is_straight
 from symflex.loops.loop import Loop
@@ -67,6 +67,7 @@ BITS = 128
 NEXT_TO_ZERO = 2**20
 """By what the first boundary is divided where poles of a small gain are counted."""
 Limits = tuple[Fraction | None, Fraction | None]
+AnyFactors = DistributedFactors | NetworkFactors
 
 
 def find_stable_gains(
@@ -162,7 +163,7 @@ def find_stable_gains(
 
 def _parts(
     loop: AnyLoop, limits: Limits | None, up_to: float | None, end: float | None
-) -> tuple[list[LumpedFactor], AxisSearch | None, Limits, PolesApart, float | None]:
+) -> tuple[list[LumpedFactor], AnyFactors | None, Limits, PolesApart, float | None]:
     """Return what :func:`_factors` does, poles that no gain moves, and the gain at the end of the data."""
     if isinstance(loop, NetworkLoop):
         ends = _bounded(loop, _range(loop, limits, has_kernels=True))
@@ -293,7 +294,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
 def _between(
     crossings: Sequence[Crossing],
     lumped: Sequence[LumpedFactor],
-    along: AxisSearch | None,
+    along: AnyFactors | None,
     limits: Limits,
     apart: PoleCount,
     end: float | None,
@@ -442,7 +443,7 @@ def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _loop_gain(loop: AnyLoop, along: AxisSearch | None, digits: int) -> LoopGain | None:
+def _loop_gain(loop: AnyLoop, along: AnyFactors | None, digits: int) -> LoopGain | None:
     """Return the loop gain of a loop that is closed once, by its gain or a function of it."""
     if isinstance(along, NetworkFactors):
         return None if along.radius[1] else LoopGain(along.function, along, digits)
@@ -469,7 +470,7 @@ class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
     function: OnAxis  # A and B
-    along: AxisSearch | None  # whose factor this is; None of polynomials
+    along: AnyFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
     value: arb | None = None  # of the function of the gain that stands for it, at its own value
 
@@ -514,7 +515,7 @@ def _ratio(function: OnAxis, omega: arb, bits: int) -> acb:
 
 
 def distributed_crossovers(
-    along: AxisSearch, gain: arb, nominal: Fraction, digits: int
+    along: AnyFactors, gain: arb, nominal: Fraction, digits: int
 ) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
     (function,) = along.with_gain

@@ -107,7 +107,7 @@ class NetworkLoop:
     @property
     def radius(self) -> float:
         """That of a disc [rad/s] that holds twice the modes asked for, or all before roots accumulate."""
-        return DiscSearch(self.cramer, DIGITS, (False, False)).radius_of(4 * self.modes)
+        return DiscSearch(self.cramer, DIGITS, (False, False)).radius_of(4 * self.modes) / WIDER
 
     def in_disc(self, radius: float) -> LoopInDisc:
         """Return A and B in a disc about 0 [rad/s].
@@ -246,7 +246,7 @@ class NetworkFactors(AxisSearch):
             whole = self.loop.in_disc(self.radius[0] * WIDER)
             size = len(cramer.entries)
             least = [series.order_at_zero() for series in (whole.a, whole.minus_b)]
-            orders = [order_at_zero(cramer, size - 1 + i, n) for i, n in enumerate(least)]
+            orders = [n and order_at_zero(cramer, size - 1 + i, n) for i, n in enumerate(least)]
         except (UndecidedError, EssentialSingularityError) as error:
             message = "the loop's determinants are not enclosed in a disc"
             raise UncertifiedError(Diagnostic("SF802", message, None, "lower --up-to")) from error
