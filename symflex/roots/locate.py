@@ -95,12 +95,10 @@ def locate(
     if bound.sheets > 1:
         if IMAGINARY in bound.ratio.ring.index:
             check_causal(bound.source.model, "a search on the sheets of a root of s")
-        where = region or Everything() if bound.is_rational else _region_of(bound, region)[0]
-        is_default = not bound.is_rational and (region is None or isinstance(region, Everything))
+        where, is_default = _region_of(bound, region)
         return replace(locate_on_sheet(bound, where, digits, locate), is_default_region=is_default)
     if IMAGINARY in bound.ratio.ring.index:
-        where = region or Everything() if bound.is_rational else _region_of(bound, region)[0]
-        return locate_lossy(bound, where, digits, locate_distributed)
+        return locate_lossy(bound, _region_of(bound, region)[0], digits, locate_distributed)
     if not bound.is_rational:
         located = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
         if located.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
@@ -217,9 +215,9 @@ def default_region(bound: AnyBoundFunction) -> Region:
 
 
 def _region_of(bound: AnyBoundFunction, region: Region | None) -> tuple[Region, bool]:
-    """Return where to search, and whether nobody said where."""
+    """Return where to search, and whether nobody said where: all roots of a rational function are found."""
     if region is None or isinstance(region, Everything):
-        return default_region(bound), True
+        return (Everything(), False) if bound.is_rational else (default_region(bound), True)
     return region, False
 
 
