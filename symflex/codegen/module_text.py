@@ -16,7 +16,6 @@ from symflex.expressions import Quotient, format_expression, is_number
 from symflex.library.elements import LineElement
 from symflex.print.forms import print_form
 from symflex.print.latex.table import decimal_text
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -54,7 +53,7 @@ def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
             inert(f"No formula: the network is solved at every s, {', '.join([*parts[:NAMED], *more])}."),
         )
     form: PrintedForm | None = None  # the shortest, if it is not long
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         form = print_form(tf) if tf.size <= NESTED_SIZE else None
     elif tf.length <= (FORMULA_TERMS if tf.is_rational else KERNEL_TERMS):
         form = print_form(tf)

@@ -25,7 +25,7 @@ from symflex.codegen.module_text import (
     wrapped,
 )
 from symflex.errors import BudgetError, Diagnostic
-from symflex.transfer import NestedTransferFunction, bind
+from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -149,7 +149,7 @@ class DifferenceExporter:
         functions, warnings = [], []
         for tf in tfs:
             spend()
-            if isinstance(tf, NestedTransferFunction):
+            if not tf.is_reduced:
                 message = f"the closed form of {tf.name} is too large to be sampled"
                 raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
             sampled = sampled_transfer_function(bind(tf), self.sampling)

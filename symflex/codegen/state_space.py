@@ -48,7 +48,7 @@ from symflex.print.forms.arrange import Arranger
 from symflex.state_space import minimal, not_rational, realise
 from symflex.state_space.numeric import Arrays, response
 from symflex.state_space.sampled import sampled_state_space
-from symflex.transfer import NestedTransferFunction, bind
+from symflex.transfer import bind
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
@@ -396,7 +396,7 @@ def _without_delays(
 
     delays = {}
     for tf in tfs:
-        if isinstance(tf, NestedTransferFunction):
+        if not tf.is_reduced:
             raise not_rational(tf.name)
         delays[dead_time(bind(tf), sampling)] = tf.name
     if len(delays) > 1:

@@ -21,7 +21,7 @@ from symflex.model.loss_factors import has_loss_factors
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
-from symflex.transfer import BoundTransferFunction, TransferFunction
+from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -157,10 +157,10 @@ class Study:
             return ()
         by_name = {each.tf: each for each in self.maps}
         derived = self.tfs if self.has_symbols else ()
-        symbolic = {tf.name: tf for tf in derived if isinstance(tf, TransferFunction)}
+        symbolic = {tf.name: tf for tf in derived if tf.is_reduced}
         rows = []
         for bound in self.bounds:
-            if bound.name in by_name and isinstance(bound, BoundTransferFunction):
+            if bound.name in by_name and bound.is_reduced:
                 roots = by_name[bound.name]
                 explained = explain_zeros(self.model, bound, roots)
                 rows.append((symbolic.get(bound.name, bound.source), roots, explained))
@@ -262,7 +262,7 @@ class Study:
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None if there is no such approximation."""
         bound = next(b for b in self.bounds if b.name == tf.name)
-        if not isinstance(bound, BoundTransferFunction):
+        if not bound.is_reduced:
             return None
         modes = self.model.analysis.modes or MODES
         approximation = attempt(lambda: approximate(bound, modes))

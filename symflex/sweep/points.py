@@ -33,7 +33,7 @@ from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
-from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction, bind_any
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any
 
 LARGEST = 1023
 """Exponent of two beyond which nothing is told."""
@@ -177,8 +177,8 @@ class RootSolver:
         self._tf, self._names, self._kind, self._region = tf, tuple(names), kind, region
         # A band or a rectangle does not scale with the roots.
         scalable = region is None or isinstance(region, Modes | Everything)
-        self._similarities = Similarities(tf) if scalable and isinstance(tf, TransferFunction) else None
-        hidden = tf.hidden_parameters if isinstance(tf, TransferFunction) else ()
+        self._similarities = Similarities(tf) if scalable and tf.is_reduced else None
+        hidden = tf.hidden_parameters if tf.is_reduced else ()
         used = {p.name: p.value for p in (*tf.parameters, *hidden)}
         self._declared = {name: value for name, value in used.items() if value is not None}
         if any(value is None and name not in self._names for name, value in used.items()):
@@ -345,7 +345,7 @@ def solve_margins(task: Task) -> Solver:
     """Return what finds gain and phase margins of the loop closed with the task's gain."""
     parameter = pick_gain(task.model.parameters, task.gain)
     tf = derived(task, task.gain)
-    if not isinstance(tf, TransferFunction):
+    if not tf.is_reduced:
         message = "margins need the closed form, which is too large here"
         raise BudgetError(Diagnostic("SF502", message, None, "split the model, or sweep its poles"))
 

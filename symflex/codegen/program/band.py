@@ -40,7 +40,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
 from symflex.roots.root import groups, modes_of
-from symflex.transfer import BoundNested, NestedTransferFunction
+from symflex.transfer import BoundNested
 from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
@@ -112,11 +112,11 @@ class EnclosedValues:
             spend()
             function = self._function(bits)
             value, slope = function.value_and_slope(point)
-            if not value.is_finite() and isinstance(self.bound, BoundNested):
+            if not (value.is_finite() or self.bound.is_reduced):
                 # Its program divides by zero for these values; without a slope errors count more.
                 value, slope = self.bound.solved(point, bits), acb(0)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
-                if isinstance(function, EnclosedNested):
+                if not self.bound.is_reduced:
                     self._first_bits = bits  # the next point most likely needs as many
                 return EnclosedValue(value, slope, bits)
         return None
@@ -271,7 +271,7 @@ def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
 
 def is_closed(tf: AnyTransferFunction) -> bool:
     """Tell whether a function is a short closed expression, not the solution of equations at every s."""
-    if isinstance(tf, NestedTransferFunction) or tf.is_rational:
+    if not tf.is_reduced or tf.is_rational:
         return tf.is_rational
     is_followed = any(law.matrix for law in tf.kernels.dispersions)
     return not tf.is_nameless and not is_followed and tf.length <= CLOSED_TERMS

@@ -23,13 +23,7 @@ from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.transfer import (
-    BoundNested,
-    BoundTransferFunction,
-    NestedTransferFunction,
-    bind,
-    bind_nested,
-)
+from symflex.transfer import bind_any
 from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
@@ -40,7 +34,7 @@ if TYPE_CHECKING:
 
     from symflex.codegen.program.nodes import Piecewise
     from symflex.model import ExactValue
-    from symflex.transfer import AnyTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
@@ -158,10 +152,9 @@ def choose_programs(
     logarithmic scale, and more are taken near poles and zeros. SF503 when every program
     would be too large, SF233 when a number does not fit in double precision.
     """
-    if not isinstance(tf, NestedTransferFunction) and tf.is_nameless:
+    if tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions):
         # Exponents have no formula: the members' equations are solved, but where these are followed along x.
-        if not any(law.matrix for law in tf.kernels.dispersions):
-            (tf,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
+        (tf,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
     gauge = _gauge(tf, samples)
     own, programs = _choose(gauge), _real_programs(gauge)
     first = next(programs, None)
@@ -182,7 +175,7 @@ def choose_band(
         raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
     (bound,) = derive_for_roots(tf.model, [(tf.output.name, tf.input.name)])
     values = EnclosedValues(bound)
-    form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, up_to_hz)
+    form = BandForm.zero(tf.name) if bound.is_zero else band_form(values, up_to_hz)
     program, high = form.program(), form.end_hz
     low = (tf.model.analysis.band or DEFAULT_BAND)[0]
     band = (min(low, high / 1000), high)
@@ -240,20 +233,20 @@ def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
     band = tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     pieces = None
-    if not isinstance(tf, NestedTransferFunction) and not tf.is_rational and not tf.is_zero:
+    if tf.is_reduced and not (tf.is_rational or tf.is_zero):
         values = {p.name: double_of(p.value) for p in tf.parameters if p.value}
         pieces = Pieces(tf, None if missing else values)
     if missing:
-        if isinstance(tf, NestedTransferFunction) and len(missing) > NAMED:
+        if not tf.is_reduced and len(missing) > NAMED:
             missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
         return _Gauge(tf, band, pieces, None, "no values for " + ", ".join(missing))
     try:
-        bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
-        if isinstance(bound, BoundTransferFunction) and tf.model.analysis.band is None:
-            if any(law.matrix for law in bound.kernels.dispersions):
-                # Members that taper are to be no more than so many waves long.
-                end = Fraction(KernelFunction(bound, bound.den).frequency_of(MOST_WAVES) / tau)
-                band = (band[0], max(min(band[1], end), 10 * band[0]))
+        bound = bind_any(tf)
+        is_tapered = any(law.matrix for law in bound.kernels.dispersions)
+        if bound.is_reduced and is_tapered and tf.model.analysis.band is None:
+            # Members that taper are to be no more than so many waves long.
+            end = Fraction(KernelFunction(bound, bound.den).frequency_of(MOST_WAVES) / tau)
+            band = (band[0], max(min(band[1], end), 10 * band[0]))
         return _Gauge(tf, band, pieces, References.over(bound, band, samples, pieces=pieces))
     except ModelError as problem:
         return _Gauge(tf, band, pieces, None, problem.diagnostics[0].message)
@@ -261,7 +254,7 @@ def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
 
 def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
-    if isinstance(tf, NestedTransferFunction):
+    if not tf.is_reduced:
         nested = build_nested(tf)
         form = "nested" if nested.network is None else "solved"
         worst = None if references is None else references.worst_error(nested)
@@ -336,7 +329,7 @@ def _program(tf: TransferFunction, form: str) -> Piecewise | None:
 
 
 def sample_frequencies(
-    bound: BoundTransferFunction | BoundNested,
+    bound: AnyBoundFunction,
     band_hz: tuple[Fraction, Fraction],
     samples: int,
     pieces: Pieces | None = None,
@@ -345,9 +338,8 @@ def sample_frequencies(
 
     The ``pieces`` are those of a distributed system where it has been begun to make them.
     """
-    is_costly = isinstance(bound, BoundNested) and not bound.source.is_rational
-    aside = ASIDE[::2] if is_costly else ASIDE
-    if _vanishes(bound):
+    aside = ASIDE[::2] if bound.source.solves_network else ASIDE
+    if bound.is_zero:
         return _frequencies(band_hz, samples, [], aside)
     enclosed = bound.enclosed(FIRST_BITS)
     if not isinstance(enclosed, EnclosedTransferFunction):
@@ -368,15 +360,13 @@ def _frequencies(
     return merged[(merged >= low) & (merged <= high)]
 
 
-def _extremes(
-    bound: BoundTransferFunction | BoundNested, low: float, high: float, pieces: Pieces | None
-) -> list[float]:
+def _extremes(bound: AnyBoundFunction, low: float, high: float, pieces: Pieces | None) -> list[float]:
     """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
     source = bound.source
-    if isinstance(source, NestedTransferFunction):
-        program = build_nested(source)
-    else:
+    if source.is_reduced:
         program = (pieces or Pieces(source)).of_s(series_uses(source)[0])
+    else:
+        program = build_nested(source)
     part = _part(bound)
     most = 2 * max(1, int(MOST_EXTREMES * part) // 2)
     values = doubles(bound)
@@ -403,17 +393,12 @@ def _extremes(
     return extremes
 
 
-def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
-    return bound.is_zero if isinstance(bound, BoundNested) else bound.ratio.is_zero
-
-
-def _part(bound: BoundTransferFunction | BoundNested) -> float:
+def _part(bound: AnyBoundFunction) -> float:
     """Return which part of the usual number of frequencies is looked at."""
-    if isinstance(bound, BoundNested) and not bound.source.is_rational:
+    source = bound.source
+    if source.solves_network:
         return LEAST
-    if isinstance(bound, BoundNested):
-        return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
-    return 1.0
+    return 1.0 if source.is_reduced else max(LEAST, min(1.0, LIGHT_NESTED / max(source.size, 1)))
 
 
 def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[np.complex128]:
@@ -446,7 +431,7 @@ class References:
         self._references: list[_Reference] = []
         kept = []
         for s in map(complex, points):
-            if _vanishes(self.bound):
+            if self.bound.is_zero:
                 reference = _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
             elif (enclosed := values.at(s)) is None:
                 continue  # a pole or zero
@@ -461,14 +446,14 @@ class References:
     @classmethod
     def over(
         cls,
-        bound: BoundTransferFunction | BoundNested,
+        bound: AnyBoundFunction,
         band_hz: tuple[Fraction, Fraction],
         samples: int = SAMPLES,
         *,
         pieces: Pieces | None = None,
     ) -> References:
         """Return those at so many frequencies over a band [Hz], besides those around poles and zeros."""
-        if not isinstance(bound, BoundNested):
+        if bound.is_reduced:
             bound.expect(0, tau * float(band_hz[1]))
         count = max(1, int(samples * _part(bound)))
         hertz = sample_frequencies(bound, band_hz, count, pieces)
@@ -514,17 +499,17 @@ def _arguments(program: Piecewise, s: NDArray[Any]) -> NDArray[Any]:
     return s.imag if program.is_real else s
 
 
-def keeps_its_value(program: Piecewise, bound: BoundTransferFunction | BoundNested) -> bool:
+def keeps_its_value(program: Piecewise, bound: AnyBoundFunction) -> bool:
     """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
     values = evaluate(program, _arguments(program, 1j * REACH), doubles(bound))
     keeps = np.isfinite(values) & (values != 0)
-    if _vanishes(bound) or keeps.all():
+    if bound.is_zero or keeps.all():
         return True
     expected = np.array([bound(complex(s)) for s in 1j * REACH[~keeps]])
     return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
 
 
-def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, Any]:
+def doubles(bound: AnyBoundFunction) -> dict[str, Any]:
     """Return the double nearest to every parameter's value."""
     # A function does not depend on a parameter without value, though the network it is solved from may.
     others = {p.name: 1.0 for p in bound.source.model.parameters}

@@ -56,7 +56,7 @@ from symflex.report.document import (
     unit_text,
 )
 from symflex.report.study import MOST_FUNCTIONS, Study
-from symflex.transfer import AnyTransferFunction, TransferFunction
+from symflex.transfer import AnyTransferFunction
 
 
 def specification_section(study: Study) -> ChapterPart:
@@ -133,7 +133,7 @@ def _of(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, 
 
 def _introduction(tf: AnyTransferFunction) -> str:
     unit = f" in {unit_text(tf.unit)}" if unit_text(tf.unit) else ""
-    if not isinstance(tf, TransferFunction):
+    if not tf.is_reduced:
         return f"{tf.quantity.capitalize()}{unit}."
     pairs = zip(counts_of(tf), ("zero", "pole"), strict=True)
     counts = ", ".join(f"infinitely many {noun}s" if n is None else counted(n, noun) for n, noun in pairs)
