@@ -63,14 +63,9 @@ CONSTANT_BITS = 256
 
 @dataclass(frozen=True, eq=False)
 class CutModel:
-    """A distributed model, of which the network that double precision solves is made when it is wanted."""
+    """A model, of which the network that double precision solves is made when it is wanted."""
 
     solve: ModelSolve  # its equations at points
-
-    @property
-    def model(self) -> Model:
-        """The model itself."""
-        return self.solve.model
 
     @cached_property
     def network(self) -> LineNetwork:
@@ -104,8 +99,8 @@ class NestedTransferFunction:
     constants: tuple[ConstantFunction, ...]  # what generators such as ``sqrt(k*m)`` stand for
     model: Model  # where it comes from
     equations: Equations  # those it solves
-    every_wave: tuple[Waves, ...] = ()  # the fundamental functions in them, of all members
-    cut: CutModel | None = None  # the same for double precision; functions of a model share it
+    every_wave: tuple[Waves, ...]  # the fundamental functions in them, of all members
+    cut: CutModel  # the same for double precision; functions of a model share it
 
     def __repr__(self) -> str:
         return f"<NestedTransferFunction {self.name}, {self.size} operations>"
@@ -200,7 +195,7 @@ def derive_nested(
     """
     model = equations.model
     solve = ModelSolve(model, nested_transfer, equations)
-    cut = None if equations.propagation is None else CutModel(solve)
+    cut = CutModel(solve)
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
     elimination = eliminate(equations, pairs)
@@ -289,7 +284,7 @@ class BoundNested:
             return 0j
         # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
         value = double_value(self._known, s, 1, bits)
-        if isfinite(value) or self.source.cut is None:
+        if isfinite(value) or self.source.equations.propagation is None:
             return value
         # A program may divide by what is zero for these values, such as the sine of an angle of 180 degrees.
         return double_value(lambda bits: partial(self.solved, bits=bits), s, 1)
@@ -325,8 +320,8 @@ class BoundNested:
         import numpy as np  # binding and ball arithmetic need none of it
 
         points = np.asarray(s, dtype=complex)
-        if not self.source.is_rational and self.source.cut is not None:
-            return self._solved(self.source.cut, points)
+        if not self.source.is_rational:
+            return self._solved(points)
         with precision(CONSTANT_BITS):
             known: dict[str, Any] = {
                 n: float(self.numeric.constant(n).real.mid()) for n in self.source.generators - {LAPLACE}
@@ -337,13 +332,13 @@ class BoundNested:
             value = num / np.asarray(den, dtype=complex)
         return np.array(np.broadcast_to(value, points.shape), dtype=complex)
 
-    def _solved(self, cut: CutModel, points: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    def _solved(self, points: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
         """Return the values of a network of line elements."""
         import numpy as np
 
         from symflex.algebra.line_networks import network_value  # few functions are of so many members
 
-        network = cut.network
+        network = self.source.cut.network
         known = self._with_numbers(network.equations).constant
         with precision(CONSTANT_BITS), np.errstate(all="ignore"):
             entries = network.values(

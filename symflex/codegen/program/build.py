@@ -275,7 +275,7 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
 
     Raises BudgetError: SF503 when it would be too large.
     """
-    if not tf.is_rational and tf.cut is not None:
+    if not tf.is_rational:
         return _build_solved(tf, tf.cut.network)
     size = tf.size
     if size > OPERATION_LIMIT:
