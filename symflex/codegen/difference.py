@@ -196,21 +196,16 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
             return DifferenceEquation(sampled, (FilterSection(above, below[1:]),))
         sections = []
         for poles, zeros in _paired(sampled.poles, sampled.zeros or ()):
-            below = _below(poles, sampled.tf)
+            _, *back = _doubles(monic(poles), sampled.tf)
+            if len(back) == PAIR and any(p == 1 for p in poles):
+                # A pole at 1 stays there, as the integrator it is: 1 + a_1 + a_2 = 0 exactly, since the
+                # difference of two doubles this close is a double.
+                back[1] = -1.0 - back[0]
             scaled = [c * gain for c in monic(zeros)]
             gain = arb(1)
-            scaled = [arb(0)] * (len(below) + 1 - len(scaled)) + scaled
-            sections.append(FilterSection(_doubles(scaled, sampled.tf), below))
+            scaled = [arb(0)] * (len(back) + 1 - len(scaled)) + scaled
+            sections.append(FilterSection(_doubles(scaled, sampled.tf), tuple(back)))
         return DifferenceEquation(sampled, tuple(sections))
-
-
-def _below(poles: Sequence[acb], name: str) -> tuple[float, ...]:
-    """Return the coefficients after the first; a pole at 1 stays there, as the integrator it is."""
-    coefficients = list(_doubles(monic(poles), name)[1:])
-    if len(coefficients) == PAIR and any(p == 1 for p in poles):
-        # 1 + a_1 + a_2 = 0 exactly: the difference of two doubles this close is a double.
-        coefficients[1] = -1.0 - coefficients[0]
-    return tuple(coefficients)
 
 
 def _paired(poles: Sequence[acb], zeros: Sequence[acb]) -> list[tuple[list[acb], list[acb]]]:

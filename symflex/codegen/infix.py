@@ -78,16 +78,13 @@ class InfixPrinter(ABC):
         """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
         terms = []
         for i, condition in enumerate(program.conditions):
-            test = self._holds(condition)
+            quantity, scale = self.print(condition.quantity), self.print(condition.scale)
+            test = f"real({self.print(tree.Multiply((condition.scale, condition.quantity)))}) < 0.0"
+            if condition.limit:
+                below = "" if scale == "1.0" else f" {self.over} abs({scale})"
+                test = f"abs({quantity}) < {condition.limit!r}{below}"
             terms.append(f"{2**i} {self.times} ({test})" if i else f"({test})")
         return " + ".join(terms)
-
-    def _holds(self, condition: tree.Condition) -> str:
-        if not condition.limit:
-            return f"real({self.print(tree.Multiply((condition.scale, condition.quantity)))}) < 0.0"
-        quantity, scale = self.print(condition.quantity), self.print(condition.scale)
-        below = "" if scale == "1.0" else f" {self.over} abs({scale})"
-        return f"abs({quantity}) < {condition.limit!r}{below}"
 
     @abstractmethod
     def complex_number(self, real: float, imaginary: float) -> str:

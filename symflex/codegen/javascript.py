@@ -19,11 +19,10 @@ import re
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import count
-from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
-from symflex.codegen.module_text import identifiers
+from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.derivative import differentiated
 from symflex.codegen.program.evaluate import nearest_double
@@ -182,7 +181,7 @@ class PairBody:
 
     def say(self, text: str) -> None:
         """Add a statement."""
-        self.lines += in_lines(text, self.depth)
+        self.lines += statement_lines(text, WIDTH, "    " * self.depth)
 
     def hold(self, wanted: str, x: Real, least: int = 0, name: str = "") -> Real:
         """Return a constant with a value, or the value itself if that is an atom, or short."""
@@ -340,20 +339,6 @@ def _short(name: str) -> str:
     return name.replace("slope of ", "d_")
 
 
-def in_lines(text: str, depth: int) -> list[str]:
-    """Return a statement in lines.
-
-    Examples
-    --------
-    >>> in_lines("return a;", 1)
-    ['    return a;']
-    """
-    indent = "    " * depth
-    wrapper = TextWrapper(WIDTH, break_long_words=False, break_on_hyphens=False)
-    wrapper.initial_indent, wrapper.subsequent_indent = indent, f"{indent}    "
-    return wrapper.wrap(text)
-
-
 @dataclass(frozen=True)
 class PairFunctions:
     """Prints the private functions of one transfer function: its value, and the parts of its quotient."""
@@ -386,7 +371,7 @@ class PairFunctions:
         listed = takes or (f"{{ {', '.join(self.used)} }}" if self.used else "_")
         opening = [f"function {name}({listed}) {{"]
         if len(opening[0]) > WIDTH:
-            opening = [f"function {name}(", *in_lines(listed, 1), ") {"]
+            opening = [f"function {name}(", *statement_lines(listed, WIDTH, "    "), ") {"]
         return "\n".join(
             [*opening, *outer.lines, f"    return ({arguments}) => {{", *inner.lines, "    };", "}", ""]
         )
@@ -434,8 +419,13 @@ class PairFunctions:
         scales = [outer.pair("c_1", outer.value(c.scale)) for c in program.conditions]
         inner = outer.within(2)
         inner.assign(program.tests.assignments)
-        tests = (self._test(inner, *both) for both in zip(program.conditions, scales, strict=True))
-        terms = [f"{2**i} * ({test})" for i, test in enumerate(tests)]
+        terms, below = [], "<=" if program.is_lumped else "<"
+        for i, (condition, scale) in enumerate(zip(program.conditions, scales, strict=True)):
+            quantity = inner.value(condition.quantity)
+            test = f"{_size(quantity).text} * {_size(scale).text} {below} {condition.limit!r}"
+            if not condition.limit:
+                test = f"{_text(inner.multiply(scale, quantity).re)} < 0.0"
+            terms.append(f"{2**i} * ({test})")
         *others, last = sorted(served)
         if others:
             inner.say(f"const number = {' + '.join(terms)};")
@@ -444,13 +434,6 @@ class PairFunctions:
             inner.say(f"if ({test}) return piece_{k}(s_re, s_im{into});")
         inner.say(f"return piece_{last}(s_re, s_im{into});")
         return self._function(f"{kind}_of_{self.name}", outer, inner, f"s_re, s_im{into}", takes="p")
-
-    def _test(self, scope: PairBody, condition: tree.Condition, scale: ComplexParts) -> str:
-        quantity = scope.value(condition.quantity)
-        if not condition.limit:
-            return f"{_text(scope.multiply(scale, quantity).re)} < 0.0"
-        below = "<=" if self.program.is_lumped else "<"
-        return f"{_size(quantity).text} * {_size(scale).text} {below} {condition.limit!r}"
 
 
 def _quotient_of(code: tree.Straight) -> tree.Straight:
@@ -547,7 +530,7 @@ def _public(member: Member, functions: PairFunctions) -> str:
     used = f"[{', '.join(map(string, functions.used))}]"
     name = functions.name
     call = [f"export const {name} = offered("]
-    call += [*in_lines(f"value_of_{name}, parts_of_{name}, {used}", 1), ");"]
+    call += [*statement_lines(f"value_of_{name}, parts_of_{name}, {used}", WIDTH, "    "), ");"]
     return "\n".join([*comment(lines), *call, ""])
 
 

@@ -123,15 +123,12 @@ class JuliaFunctions(PrivateFunctions):
         if piece.circle:
             values = f"({', '.join(printer.print(v) for v in piece.code.values)})"
             parts = self._function(f"parts_{number}", s, [*lines, *self.statement("return", values)])
-            return [parts, self._mean(number, piece.circle)]
+            _, (s, z) = self.scope((), "s", "z")
+            parts_of_z = f"{z} -> {self._call(f'parts_{number}', z)}"
+            mean = self.statement("return", f"_mean_over_circle({parts_of_z}, {s}, {piece.circle})")
+            return [parts, self._function(f"piece_{number}", s, mean)]
         lines += self.statement("return", printer.quotient(*piece.code.values))
         return [self._function(f"piece_{number}", s, lines)]
-
-    def _mean(self, number: int, points: int) -> str:
-        _, (s, z) = self.scope((), "s", "z")
-        parts = f"{z} -> {self._call(f'parts_{number}', z)}"
-        whole = f"_mean_over_circle({parts}, {s}, {points})"
-        return self._function(f"piece_{number}", s, self.statement("return", whole))
 
 
 # -------------------------------------------------------------------------------------- the module

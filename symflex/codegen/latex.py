@@ -17,8 +17,6 @@ from symflex.transfer.nested_form import bind_any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from matplotlib.figure import Figure
-
     from symflex.model import Model
     from symflex.print.forms import PrintedForm
     from symflex.roots import PoleZeroMap
@@ -92,13 +90,18 @@ class LatexExporter:
         title: str,
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
-        from symflex.figures import render  # imports matplotlib
+        from symflex.figures import LOOP_FIGURES, draw, draw_loop, render  # imports matplotlib
         from symflex.figures.files import MM_PER_INCH
+        from symflex.loops.of_model import characteristic_loop
 
         name, kind = asked.name, asked.kind
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
         try:
-            figure = self._drawn(asked, of)
+            if asked.gain and kind in LOOP_FIGURES:
+                loop = characteristic_loop(of[0].source.model, asked.gain)
+                figure = draw_loop(kind, loop, band_hz=asked.band, width_mm=self.width_mm, font="latex")
+            else:
+                figure = draw(kind, of, band_hz=asked.band, width_mm=self.width_mm, font="latex")
         except SymflexError as error:
             spend()
             is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
@@ -113,16 +116,6 @@ class LatexExporter:
         shown = () if says_whose else tuple(bound.source for bound in of)
         latex = render(figure, "pgf", font="latex").decode("ascii")
         pictures.append(Picture(name, latex, title, shown))
-
-    def _drawn(self, asked: Asked, of: Sequence[AnyBoundFunction]) -> Figure:
-        from symflex.figures import LOOP_FIGURES, draw, draw_loop
-        from symflex.loops.of_model import characteristic_loop
-
-        kind, band = asked.kind, asked.band
-        if asked.gain and kind in LOOP_FIGURES:
-            loop = characteristic_loop(of[0].source.model, asked.gain)
-            return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
-        return draw(kind, of, band_hz=band, width_mm=self.width_mm, font="latex")
 
     def _parts(
         self, tfs: Sequence[AnyTransferFunction]

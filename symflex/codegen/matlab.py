@@ -198,17 +198,15 @@ class LocalFunctions(PrivateFunctions):
             for name, node in zip(results, piece.code.values, strict=True):
                 lines += self.statement(name, printer.print(node))
             parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", s, lines)
-            return [parts, self._mean(number, piece.circle)]
+            _, (s, value, z) = self.scope((), "s", "value", "z")
+            given = ", ".join(self.arguments(z))
+            parts_of_z = f"@({z}) {self.names[f'{number}_parts']}({given})"
+            mean = self.statement(value, f"mean_over_circle({parts_of_z}, {s}, {piece.circle})")
+            return [parts, self._function(value, str(number), s, mean)]
         printer, (s, value) = self.scope(assignments, "s", "value")
         lines = self.assigned(assignments, printer)
         lines += self.statement(value, printer.quotient(*piece.code.values))
         return [self._function(value, str(number), s, lines)]
-
-    def _mean(self, number: int, points: int) -> str:
-        _, (s, value, z) = self.scope((), "s", "value", "z")
-        given = ", ".join(self.arguments(z))
-        whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {s}, {points})"
-        return self._function(value, str(number), s, self.statement(value, whole))
 
 
 # -------------------------------------------------------------------------------------------------- text

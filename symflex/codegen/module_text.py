@@ -204,6 +204,15 @@ class BlockComment:
         return f"{text}." if text.endswith("\\") else text
 
 
+def statement_lines(text: str, width: int, indent: str, more: str = "    ") -> list[str]:
+    """Return code in lines broken at blanks; all but the first are indented ``more``.
+
+    Only between operators: an identifier longer than a line stays whole.
+    """
+    wrapper = TextWrapper(width, indent, indent + more, break_long_words=False, break_on_hyphens=False)
+    return wrapper.wrap(text)
+
+
 def wrapped(text: str, width: int, indent: str = "", more: str | None = None) -> list[str]:
     """Return a text without line ends as lines, long products broken after their operators.
 

@@ -16,11 +16,10 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from itertools import count
-from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.codegen.export import parts_of
-from symflex.codegen.module_text import identifiers
+from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
 
@@ -286,13 +285,7 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
     >>> statement("return", "a + b", 1)
     ['    return a + b;']
     """
-    indent = STEP * depth
-    line = f"{indent}{opening} {value};"
-    if len(line) <= WIDTH:
-        return [line]
-    # Only between operators: an identifier longer than a line stays whole.
-    wrapper = TextWrapper(WIDTH, indent, indent + STEP, break_long_words=False, break_on_hyphens=False)
-    return wrapper.wrap(f"{opening} {value};")
+    return statement_lines(f"{opening} {value};", WIDTH, STEP * depth)
 
 
 @dataclass
@@ -380,10 +373,6 @@ class Body:
         ]
         return lines or [f"{STEP}(void)p;"]
 
-    def _parameter(self, name: str) -> str:
-        self.used.add(name)
-        return self.parameters[name]
-
     def _array(self, node: tree.Solutions, wanted: str) -> Term:
         """Declare an array with the values of a list."""
         terms = [complex_term(self.term(c)) for c in node.coefficients]
@@ -409,7 +398,8 @@ class Body:
             case tree.ToComplex(operand) | tree.LargerRoot(operand):
                 return self.whole(operand)
             case tree.ParameterValue(name):
-                return Term(self._parameter(name), Kind.REAL)
+                self.used.add(name)
+                return Term(self.parameters[name], Kind.REAL)
             case tree.Assigned(name):
                 return self.values[name]
             case tree.Laplace():

@@ -245,9 +245,10 @@ class _Schedule:
         uses = self._uses(reached)
         sections: tuple[list[tree.Assignment], list[tree.Assignment], list[tree.Assignment]] = ([], [], [])
         for x in sorted(reached):
-            node, deep = self._node(x)
-            is_inner = x not in roots or (shared and uses[x][0] > 0)
             operands, free = self.forge.operands(x), self.forge.depends[x] == Depends.PARAMETERS
+            node = self.forge.nodes[x].with_children(self.nodes[o] for o in operands)
+            deep = 1 + max(self.depth[o] for o in operands) if operands else 0
+            is_inner = x not in roots or (shared and uses[x][0] > 0)
             is_minus = isinstance(node, tree.Negate)
             is_plain = not operands or (is_minus and not self.forge.operands(operands[0]))
             is_hoisted = free and uses[x][1] and not is_minus
@@ -292,8 +293,3 @@ class _Schedule:
             if (name := f"{stem}_{count}") not in self.taken:
                 self.taken[name] = 1
                 return name
-
-    def _node(self, x: int) -> tuple[tree.CodeNode, int]:
-        operands = self.forge.operands(x)
-        deep = 1 + max(self.depth[o] for o in operands) if operands else 0
-        return self.forge.nodes[x].with_children(self.nodes[o] for o in operands), deep

@@ -69,21 +69,16 @@ def evaluate_polynomial(forge: Forge, polynomial: fmpz_mpoly, images: RingValues
             key[0] = total - degree
         fixed = tuple(0 if d else e for e, d in zip(monomial, images.degrees, strict=True))
         groups.setdefault(tuple(key), {})[fixed] = int(coefficient)
-    terms = {key: _coefficient(forge, group, images) for key, group in groups.items()}
-    return _collect(forge, terms, [images.values[i] for i in varying])
-
-
-def _collect(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) -> int:
-    """Return a sum by descending powers of the first value, the Laplace variable, by Horner's rule."""
-    parts: dict[int, Terms] = {}
-    for monomial, coefficient in terms.items():
-        parts.setdefault(monomial[0], {})[(0, *monomial[1:])] = coefficient
-    exponents = sorted(parts, reverse=True)
-    result = _nest(forge, parts[exponents[0]], values)
-    for higher, lower in pairwise(exponents):
+    values = [images.values[i] for i in varying]
+    parts: dict[int, Terms] = {}  # by powers of the first value, the Laplace variable
+    for monomial, group in groups.items():
+        parts.setdefault(monomial[0], {})[(0, *monomial[1:])] = _coefficient(forge, group, images)
+    powers = sorted(parts, reverse=True)
+    result = _nest(forge, parts[powers[0]], values)
+    for higher, lower in pairwise(powers):
         raised = forge.power(values[0], higher - lower)
         result = forge.add([forge.multiply([result, raised]), _nest(forge, parts[lower], values)])
-    return forge.multiply([result, forge.power(values[0], exponents[-1])])
+    return forge.multiply([result, forge.power(values[0], powers[-1])])
 
 
 def _coefficient(forge: Forge, terms: Terms, images: RingValues) -> int:

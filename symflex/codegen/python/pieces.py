@@ -11,13 +11,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from cmath import isfinite
 from dataclasses import dataclass, field, replace
-from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from symflex.codegen.infix import InfixPrinter, in_lines
-from symflex.codegen.module_text import identifiers
+from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
@@ -394,9 +393,8 @@ def statement(target: str, value: str, indent: str) -> list[str]:
     opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
     if len(opening) + len(value) <= WIDTH:
         return [opening + value]
-    # Only between operators: an identifier longer than a line stays whole.
-    wrapper = TextWrapper(width=WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False)
-    return [f"{opening}(", *(f"{indent}    {line}" for line in wrapper.wrap(value)), f"{indent})"]
+    lines = statement_lines(value, WIDTH, f"{indent}    ", "")
+    return [f"{opening}(", *lines, f"{indent})"]
 
 
 Cases = tuple[tuple[tuple[int, bool], ...], ...]
