@@ -181,7 +181,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     if has_loss_factors(model):
         located = replace(located, verdict=NO_STABILITY)
     certificate, verdict = located.certificate, located.verdict
-    is_judged = verdict.right is not None or bool(verdict.found) or has_loss_factors(model)
+    is_judged = verdict.word != "unknown" or has_loss_factors(model)
     is_whole = certificate.certified and is_judged and all(h.is_proved for h in located.hidden)
     if is_whole or certificate.code is not None:
         return located

@@ -70,7 +70,6 @@ if TYPE_CHECKING:
 
 PASSIVE = "passive, nothing supplies energy"
 COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"
-PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 OBSERVED = "(output)"
 """No name of a specification reads so."""
 Powers = dict[tuple[int, int], arb]
@@ -171,8 +170,7 @@ def energy_proof(
     closed = structure.closed_at(places)
     if closed is None:
         return EnergyProof()
-    reason = COMPRESSED if pressed else PASSIVE_LOOP if closed.stiffness or closed.damping else PASSIVE
-    return replace(closed, reason=reason, limit=limit, has_loop=has_loop)
+    return replace(closed, reason=COMPRESSED if pressed else PASSIVE, limit=limit, has_loop=has_loop)
 
 
 def _supplies_nothing(use: PlacedElement, line: Line, signs: Mapping[str, int | None]) -> bool:

@@ -96,7 +96,7 @@ BY_OTHER_ELEMENTS = {
     "classics": (
         "free_free kelvin_voigt_cantilever one_link_arm pinned_pinned quarter_car rod_tip_mass shaft_discs"
     ),
-    "frames": "l_frame pin_ended_cross portal_frame two_link_arm",
+    "frames": "l_frame portal_frame two_link_arm",
     "eppinger1988": "lumped_bending_beam robot_axis six_mass two_mass",
     "eppinger1988/loops": "base_flexure_position sliding_free_beam_force two_mass_force",
     "../symflex/templates": "motor_loop servo",

@@ -508,10 +508,13 @@ def _answers(model: Model, given: Mapping[str, str], *, asks_roots: bool) -> Ans
 def _said(found: PoleZeroMap) -> dict[str, object]:
     """Return what is said of roots, but for the engine, radii, and the names of what moves unseen."""
     data = found.to_json_dict()
-    hidden_motion = data["stability"]["hidden_motion"].partition(":")[0]
-    words = data["stability"] | data["certificate"] | {"engine": "", "hidden_motion": hidden_motion}
-    return words | {
-        f"{side} listed": [{key: root.get(key) for key in SAID} for root in data[side]]
+    verdict, certificate = data["stability"], data["certificate"]
+    hidden_motion = verdict["hidden_motion"].partition(":")[0]
+    return {
+        "verdict": verdict | {"hidden_motion": hidden_motion},
+        "certificate": certificate | {"engine": ""},
+    } | {
+        side: [{key: root.get(key) for key in SAID} for root in data[side]]
         for side in ("poles", "zeros", "hidden", "right_half_plane")
     }
 

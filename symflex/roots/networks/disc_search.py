@@ -74,14 +74,17 @@ class DiscSide:
         )
 
     def refined(self, box: acb, digits: int) -> acb:
-        """Return a smaller enclosure of a simple root, to so many digits."""
+        """Return a smaller enclosure of a simple root, to so many digits of each part, if not far smaller."""
         first = bits_for_digits(digits) + GUARD_BITS
         finer = precisions(first, first << REFINEMENTS)
         bits, wanted = next(finer), arb(10) ** -(digits + 2)
         slope = self.series.slope_on(box)
         for _ in range(REFINEMENTS):
             with precision(bits):
-                if max(box.real.rad(), box.imag.rad()) <= abs(box).mid() * wanted:
+                size = abs(box).mid()
+                parts = [abs(x).mid() for x in (box.real, box.imag) if not x.contains(0)]
+                least = max(min(parts, default=size), size * wanted)
+                if max(box.real.rad(), box.imag.rad()) <= least * wanted:
                     return box
                 middle = box.mid()
                 closer = middle - self.value(middle, bits) / slope

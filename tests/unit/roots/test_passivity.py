@@ -339,7 +339,7 @@ def judged(tau, region):
 def test_poles_of_a_passive_loop_are_left_of_the_axis_and_those_of_one_that_pushes_are_not():
     found = judged(PD, Modes(1))
     assert found.word == "stable"
-    assert found.sentence == "stable: the loop is a spring and a damper on a passive structure"
+    assert found.sentence == "stable: passive, nothing supplies energy"
     assert judged("K*(r + phi)", Modes(1)).word == "unstable"
 
 
