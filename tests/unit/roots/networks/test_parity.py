@@ -1,6 +1,7 @@
-"""What is called even or odd in s is so at points, and a lossless field's poles lie on the axis exactly."""
+"""What is called even or odd in s is so at points, and both parts of roots in discs are right."""
 
 from flint import acb
+from mpmath import mp
 
 from symflex import pipeline
 from symflex.model import with_numbers
@@ -37,3 +38,21 @@ def test_poles_of_a_field_without_losses_lie_on_the_axis_by_its_equations():
     found = pipeline.roots(bind_nested(tf))
     assert found.verdict.word == "marginal"
     assert all(pole.on_imaginary_axis for pole in found.poles)
+
+
+def test_a_small_real_part_has_its_digits_too():
+    # A rod with a weak damper at its free end: e^(2 s) = -(1 - b)/(1 + b).
+    text = """symflex = 1
+[elements]
+rod = { type = "rod", between = ["ground", "x"], E = 1, A = 1, rho = 1, l = 1 }
+loss = { type = "damper", between = ["x", "ground"], b = 1e-8 }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+    (tf,) = pipeline.derive_nested(pipeline.loads(text))
+    pole = next(p for p in pipeline.roots(bind_nested(tf)).poles if p.im > 0)
+    with mp.workdps(40):
+        expected = mp.log((1 - mp.mpf("1e-8")) / (1 + mp.mpf("1e-8"))) / 2
+        assert pole.decimal(15).re == mp.nstr(expected, 15, strip_zeros=False).replace("e-0", "e-")
