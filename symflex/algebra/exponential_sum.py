@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
 from itertools import product
 from math import comb
 from typing import TYPE_CHECKING, TypeVar
@@ -74,11 +73,6 @@ def parts(amplitude: Mapping[Monomial, Gaussian]) -> Iterator[tuple[Monomial, Ga
     yield from ((m, (0, im)) for m, (_, im) in amplitude.items() if im)
 
 
-def amplitude_of(polynomial: fmpz_mpoly) -> Amplitude:
-    """Return a polynomial as an amplitude."""
-    return {_sparse(monomial): (int(c), 0) for monomial, c in polynomial.terms()}
-
-
 def _sparse(exponents: Sequence[int]) -> Monomial:
     return tuple((i, int(e)) for i, e in enumerate(exponents) if e)
 
@@ -116,11 +110,6 @@ class ExponentialSum:
     halvings: int = 0  # what all amplitudes are divided by two so often
 
     _known: dict[Exponent, tuple[Combination, ...]] = field(default_factory=dict, repr=False)
-
-    @cached_property
-    def combinations(self) -> tuple[dict[int, complex], ...]:
-        """The exponent of every term: positions of arguments, and what they are multiplied with."""
-        return tuple({i: complex(a, b) for i, a, b in exponent} for exponent in self.terms)
 
     def exponents(self, less: Exponent = REAL) -> tuple[Combination, ...]:
         """Return the exponents of all terms, less another one, as combinations of the arguments."""

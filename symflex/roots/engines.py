@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.roots.polynomials.discs import Proposer
 
-    Start = Callable[["Sought"], Iterator["Attempt"]]
+    Start = Callable[["Sought"], Iterator[RootSearch | LosslessSearch]]
 
 POLYNOMIAL = "polynomial"
 """What stands in a certificate where engines are chosen by degree."""
@@ -67,30 +67,21 @@ class Sought:
         return RootSearch(winding, self.holes, self.digits)
 
 
-@dataclass(frozen=True, slots=True)
-class Attempt:
-    """One search of a function."""
-
-    search: RootSearch | LosslessSearch  # what finds roots
-    scans: bool  # it begins with the axes, and is done if all roots are there
-
-
-def without_losses(sought: Sought) -> Iterator[Attempt]:
+def without_losses(sought: Sought) -> Iterator[LosslessSearch]:
     """Isolate the roots of a function without losses in one dimension, on both axes; others are refused."""
     search = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
     if search is not None:
-        yield Attempt(search, scans=True)
+        yield search
 
 
-def guess_and_prove(sought: Sought) -> Iterator[Attempt]:
-    """Look for sign changes on both axes where roots mirror each other, then in cells of the whole plane."""
-    for scans in (True, False) if sought.mirrors else (False,):
-        yield Attempt(sought.search(Winding(sought.function)), scans)
+def guess_and_prove(sought: Sought) -> Iterator[RootSearch]:
+    """Look for roots in cells of the plane, counted in doubles."""
+    yield sought.search(Winding(sought.function))
 
 
-def subdivide(sought: Sought) -> Iterator[Attempt]:
+def subdivide(sought: Sought) -> Iterator[RootSearch]:
     """Cut cells of the plane, every count proved."""
-    yield Attempt(sought.search(sought.winding), scans=False)
+    yield sought.search(sought.winding)
 
 
 GUESSES: Mapping[str, Guess] = {

@@ -33,7 +33,7 @@ from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.root import Root
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from symflex.roots.functions.kernel_function import KernelFunction
 
@@ -92,7 +92,7 @@ class LosslessSearch:
     """Searches one lossless function, real but for a constant factor on both axes, factor by factor.
 
     What is not real is left to a count. ``order`` is that to which the function vanishes at s = 0.
-    :meth:`scan` puts what it finds in the closed right upper quadrant into ``roots``; ``reached`` is ln of
+    :meth:`extend` puts what it finds in the closed right upper quadrant into ``roots``; ``reached`` is ln of
     the radius up to which it searched.
     """
 
@@ -141,17 +141,12 @@ class LosslessSearch:
                 raise RootOnPathError
         return turns - self.order
 
-    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
-        """Find the lowest modes, and all up to ln of a radius; tell whether these are all."""
+    def extend(self, modes: int, radius: float) -> None:
+        """Find the lowest modes that lie on the axes, and all of these up to ln of a radius."""
         self.roots, self.reached = self.lowest(modes) if modes else ([], self.smallest())
         if self.reached < radius:
-            self.roots = self.on_axes(-inf, radius)
+            self.roots = self.between(0.0, exp(radius))
             self.reached = radius
-        return is_complete()
-
-    def on_axes(self, low: float, high: float) -> list[Root]:
-        """Return the roots on both axes between ln of two radii."""
-        return self.between(exp(low), exp(high))
 
     def passing(self, radius: float) -> float:
         """Return ln of the radius itself: nothing is left out."""

@@ -90,7 +90,6 @@ class Side:
         self._domain: Cell | None = None
         self._innermost: float | None = None
         self._known: Proof | None = None
-        self._scans = False
         self.engine = self._engines[0]
         self._lossless: LosslessSearch | None = None
         if is_kernel := has_kernels(mixed, bound.kernels):
@@ -102,7 +101,7 @@ class Side:
                 self._winding, part, self._left, self.holes, is_hidden=is_hidden
             )
             self._sought = Sought(self.function, self._winding, self._order, self.holes, digits)
-            self._attempts = ((e, attempt) for e in self._engines for attempt in SEARCHES[e](self._sought))
+            self._attempts = ((e, search) for e in self._engines for search in SEARCHES[e](self._sought))
             self._next_search()
             if self.is_finite:
                 message = f"not for the engine {', '.join(self._engines)}"
@@ -148,40 +147,24 @@ class Side:
             message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
             raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
         self._bound.expect(modes, exp(min(radius, HIGHEST)))
-        while self._scans and self._search is not None:
-            if self._scanned(self._search, modes, radius):
-                return
-            self._next_search()
-        search = self._search
-        if isinstance(search, RootSearch):
-            self._innermost = search.smallest()
+        while (search := self._search) is not None:
+            if isinstance(search, RootSearch):
+                self._innermost = search.smallest()
             try:
                 search.extend(modes, radius)
             finally:
                 self._take(search)
+            if search is not self._lossless or self.counted().is_complete or not self._next_search():
+                return
 
-    def _next_search(self) -> None:
-        """Turn to a search that also finds what the last one did not."""
-        self._scans = False
+    def _next_search(self) -> bool:
+        """Turn to a search that also finds what the last one did not, if there is one."""
         following = next(self._attempts, None)
         if following is not None:
-            self.engine, attempt = following
-            self._search, self._scans = attempt.search, attempt.scans
-            if isinstance(attempt.search, LosslessSearch):
-                self._lossless = attempt.search
-
-    def _scanned(self, search: RootSearch | LosslessSearch, modes: int, radius: float) -> bool:
-        """Look for roots on the axes; tell whether these are all."""
-
-        def is_complete() -> bool:
-            self._take(search)
-            return self.counted().is_complete
-
-        try:
-            return search.scan(modes, radius, is_complete)
-        except BudgetError:
-            self._take(search)
-            raise
+            self.engine, self._search = following
+            if isinstance(self._search, LosslessSearch):
+                self._lossless = self._search
+        return following is not None
 
     def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
@@ -205,22 +188,17 @@ class Side:
         is_part = low > smallest or right > 0 or left < self._search.left
         if is_part and not self.holes and self._is_sparse(high):
             low, right, left, self._innermost = smallest, 0.0, pi, smallest
-        while self._scans and right <= 0 and left >= self._search.left:
-            # A little beyond, so that roots at the limits are met.
-            bottom, top = low - WIDER, high + 1.1 * WIDER
-            self._domain = Cell(-inf if low <= smallest else bottom, top, 0.0, pi)
-            try:
-                self._set(self._search.on_axes(bottom, top))
-            except RootOnPathError:
-                self._set(())
-            if self.counted().is_complete:
-                return
-            self._next_search()
         if isinstance(self._search, LosslessSearch):
+            if right <= 0 and left >= self._search.left:
+                # A little beyond, so that roots at the limits are met.
+                bottom, top = low - WIDER, high + 1.1 * WIDER
+                self._domain = Cell(-inf if low <= smallest else bottom, top, 0.0, pi)
+                self._set(self._search.between(exp(bottom), exp(top)))
+                if self.counted().is_complete:
+                    return
             self._next_search()
         if not isinstance(self._search, RootSearch):
             return
-        self._scans = False
         ring = self._search.ring(low, high, right, left)
         self.missing, cell = ring.missing, ring.cell
         if cell is not None and not self.function.is_paired:
@@ -284,7 +262,7 @@ class Side:
     def _subdivide(self, region: Region) -> None:
         """Search again, every count proved."""
         reached, modes = self.reached, self.modes
-        self._scans, self.engine, self._search = False, SUBDIVISION, self._sought.search(self._winding)
+        self.engine, self._search = SUBDIVISION, self._sought.search(self._winding)
         if isinstance(region, Modes):
             self.extend(modes, reached)
         else:

@@ -1,8 +1,8 @@
-"""Sums of exponentials: in balls and as series at any s, and in doubles at many points at once.
+"""Sums of exponentials: in balls and as series at any s.
 
 In most of the s plane one of the exponentials is far larger than all others. Taken out, it leaves a function
 that hardly changes, however fast the whole one turns: ``2 sinh(s)`` is ``e^s`` times ``1 - e^(-2s)``, which
-at s = 20 + j y is 1 to 17 digits. Balls prove; doubles are what guesses are made of.
+at s = 20 + j y is 1 to 17 digits.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
 from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra.exponential_sum import (
@@ -23,18 +21,17 @@ from symflex.algebra.exponential_sum import (
     Combination,
     Exponent,
     ExponentialSum,
-    amplitude_of,
     arguments_of,
     exponential_sum,
     parts,
 )
-from symflex.balls import Value, at_centre, ball, raised
+from symflex.balls import Value, at_centre, raised
 from symflex.transfer.enclose_kernels import KernelValues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.algebra import Dispersion, Factored, KernelTable
+    from symflex.algebra import Factored, KernelTable
 
 
 Summed = tuple[tuple[Argument, ...], tuple[tuple[ExponentialSum, int], ...]]
@@ -203,117 +200,3 @@ def _product(powers: tuple[tuple[str, int], ...], place: Place) -> Value:
             known = raised(place.values[name], e)
         place.products[powers] = known
     return known
-
-
-Numbers = npt.NDArray[np.complex128]
-Doubles = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class SampledSum:
-    """One sum at many points."""
-
-    # size and phase: the real and imaginary parts of its logarithm; the latter up to whole turns [rad].
-    size: Doubles
-    phase: Doubles
-    share: Doubles  # size of the sum over the sizes of what is summed: how much cancels
-
-
-class DoubleSums:
-    """Evaluates the same sums of exponentials as :class:`ExponentialValues`, in doubles."""
-
-    def __init__(self, values: ExponentialValues) -> None:
-        evaluator = values.evaluator
-        self._laws: list[tuple[Dispersion, list[_SampledProduct]]] = [
-            (law, [_SampledProduct(values, c) for c in law.characteristic])
-            for law in evaluator.table.dispersions
-            if law.wavenumbers
-        ]
-        self._arguments = [
-            (a.wavenumber, None if a.wavenumber else _SampledProduct(values, a.rate), complex(length))
-            for a, length in zip(values.arguments, values.lengths, strict=True)
-        ]
-        self._sums = [
-            _SampledTerms(values.coefficients[i], terms.combinations, len(self._arguments))
-            for i, (terms, _) in enumerate(values.sums)
-        ]
-
-    def fastest(self, z: complex) -> float:
-        """Return the largest exponent at ``s = exp(z)``, in absolute value."""
-        _, arguments = self._place(np.array([z]))
-        sizes = [np.abs(terms.combinations @ arguments).max(initial=0.0) for terms in self._sums]
-        return float(max(sizes, default=0.0))
-
-    def sampled(self, places: Doubles, angle: float, numbers: Sequence[int]) -> list[SampledSum]:
-        """Return some of the sums on a ray, given ln(abs(s)) and arg(s)."""
-        with np.errstate(all="ignore"):
-            values, arguments = self._place(places + 1j * np.full_like(places, angle))
-            return [self._sums[i].sampled(values, arguments) for i in numbers]
-
-    def _place(self, z: Numbers) -> tuple[dict[str, Numbers], Numbers]:
-        """Return the values of s and of wavenumbers, and the arguments of exponentials."""
-        values = {"s": np.exp(z)}
-        for law, coefficients in self._laws:
-            values.update(law.roots([c.value(values) for c in coefficients], np.sqrt))
-        arguments = np.empty((len(self._arguments), len(z)), dtype=np.complex128)
-        for i, (wavenumber, rate, length) in enumerate(self._arguments):
-            arguments[i] = (values[wavenumber] if rate is None else -rate.value(values)) * length
-        return values, arguments
-
-
-class _SampledProduct:
-    """A product of powers of polynomials in s."""
-
-    def __init__(self, values: ExponentialValues, product: Factored) -> None:
-        self._unit = complex(acb(ball(product.unit)))
-        self._factors = [(_Amplitudes((values.valued(amplitude_of(f)),)), e) for f, e in product.factors]
-
-    def value(self, values: Mapping[str, Numbers]) -> Numbers:
-        total = np.full_like(values["s"], self._unit)
-        for factor, exponent in self._factors:
-            total = total * factor.value(values)[0] ** exponent
-        return total
-
-
-class _Amplitudes:
-    """Polynomials in s and wavenumbers."""
-
-    def __init__(self, polynomials: Sequence[Valued]) -> None:
-        self._powers = list(dict.fromkeys(key for terms in polynomials for _, key in terms))
-        place = {key: i for i, key in enumerate(self._powers)}
-        self._numbers = np.zeros((len(polynomials), len(place)), dtype=np.complex128)
-        for row, terms in enumerate(polynomials):
-            for number, key in terms:
-                self._numbers[row, place[key]] += complex(number)
-
-    def value(self, values: Mapping[str, Numbers]) -> Numbers:
-        monomials = np.ones((len(self._powers), len(values["s"])), dtype=np.complex128)
-        for row, powers in enumerate(self._powers):
-            for name, e in powers:
-                monomials[row] *= values[name] if e == 1 else values[name] ** e
-        sums: Numbers = self._numbers @ monomials
-        return sums
-
-
-class _SampledTerms:
-    """One sum."""
-
-    def __init__(
-        self, amplitudes: Sequence[Valued], combinations: Sequence[Mapping[int, complex]], arguments: int
-    ) -> None:
-        self._amplitudes = _Amplitudes(amplitudes)
-        self.combinations = np.zeros((len(combinations), arguments), dtype=np.complex128)
-        for row, factors in enumerate(combinations):
-            for i, factor in factors.items():
-                self.combinations[row, i] = factor
-
-    def sampled(self, values: Mapping[str, Numbers], arguments: Numbers) -> SampledSum:
-        terms = self._amplitudes.value(values)
-        scale = np.zeros(terms.shape[1])
-        if self.combinations.any():
-            exponents = self.combinations @ arguments
-            scale = exponents.real.max(axis=0)
-            terms = terms * np.exp(exponents - scale)
-        total = terms.sum(axis=0)
-        size = np.abs(total)
-        return SampledSum(scale + np.log(size), np.angle(total), size / np.abs(terms).sum(axis=0))

@@ -9,7 +9,6 @@ about 2 is seen from 0 at 30 degrees on both sides of its middle.
 
 from __future__ import annotations
 
-from cmath import exp as cexp
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -25,7 +24,6 @@ from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.functions.exponential_values import (
-    DoubleSums,
     ExponentialValues,
     Place,
     Summed,
@@ -190,16 +188,10 @@ class KernelFunction:
         monomials = [powers for factor, _ in self.part.factors for powers in factor.monoms()]
         return any(sum(powers[i] for i in places) > 1 for places in along.values() for powers in monomials)
 
-    def at_logarithm(self, z: complex, *, is_simple: bool = False) -> Sample | None:
-        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root.
-
-        With ``is_simple``, every factor in the numerator counts once.
-        """
+    def at_logarithm(self, z: complex) -> Sample | None:
+        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root."""
         settled = self._settled(lambda: acb(z.real, z.imag).exp())
-        if settled is None:
-            return None
-        factors, s = settled
-        return self._sample([(f, d, min(e, 1)) for f, d, e in factors] if is_simple else factors, s)
+        return None if settled is None else self._sample(*settled)
 
     def at_point(self, s: acb) -> Sample | None:
         """Return the sample at an exact ``s``, with the slope in ln(s)."""
@@ -252,10 +244,6 @@ class KernelFunction:
             laws += [x for law in evaluator.table.dispersions for x in divisors_in_s(law)]
             return all(at_centre(evaluator.value(value, values)).is_finite() for value in laws)
 
-    def fastest(self, z: complex) -> float:
-        """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
-        return self.reach(abs(cexp(z))) if self.in_doubles is None else self.in_doubles.fastest(z)
-
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
         """Return how far arg F, of :attr:`power`, turns between two points of a ball that holds the path.
 
@@ -289,12 +277,6 @@ class KernelFunction:
     def exponentials(self) -> Summed | None:
         """The factors as sums of exponentials, where all wavenumbers have formulas and the sums are short."""
         return exponential_sums(self.part, self.bound.kernels)
-
-    @cached_property
-    def in_doubles(self) -> DoubleSums | None:
-        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
-        with precision(FIRST_BITS):
-            return None if self.exponentials is None else DoubleSums(self._sums(FIRST_BITS))
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""

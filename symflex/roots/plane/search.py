@@ -16,13 +16,12 @@ from flint import acb
 from symflex.balls import precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
-from symflex.roots.root import Root, count_modes, count_roots, overlap
+from symflex.roots.root import Root, count_modes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
 
 MARGIN = 0.03
@@ -45,12 +44,6 @@ NEAR = 0.1
 """Size of cells in which a root without a box is enclosed by a circle."""
 NEIGHBOURS = 1e-4
 """Relative radius of the disc about a root in which others are sought that it may not be told from."""
-FEW = 8
-"""Modes from which on a search goes on in smaller rings."""
-UNCHECKED = 12
-"""Octaves searched along the axes between two counts."""
-BARREN = 4 * pi
-"""Growth of the largest kernel argument without a root on the axes, after which roots are counted."""
 FADED = 100.0
 """Width in ln of a ring where kernels do not vary faster further out, and roots are few."""
 HIGHEST = 300.0
@@ -120,52 +113,6 @@ class RootSearch:
             self.missing += ring.missing
             self.reached = high
 
-    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
-        """Search both axes outwards until there are enough modes; see :meth:`extend`.
-
-        ``radius`` is ln of one up to which to go in any case. ``is_complete`` tells whether :attr:`roots` are
-        all up to :attr:`reached`; it is asked every now and then. False when there are roots off the axes.
-        """
-        if self.reached == -inf:
-            self.reached = self.smallest()
-        checked = fruitful = self.reached
-        reach = self._winding.reach
-        while self.reached < radius or count_modes(self.roots) < modes:
-            if self.reached > HIGHEST:
-                self.reached = inf
-                break
-            known = count_modes(self.roots)
-            if self.reached >= radius:
-                entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
-            high = self.reached + (RING if known < FEW else RING / 4)
-            try:
-                on_axes = self.on_axes(self.reached, high)
-            except RootOnPathError:
-                return False
-            self.roots.extend(on_axes)
-            self.reached = high
-            fruitful = high if on_axes else fruitful
-            if high - checked > UNCHECKED * RING or reach(high) - reach(fruitful) > BARREN:
-                if not is_complete():
-                    return False
-                checked = fruitful = high
-        return is_complete()
-
-    def on_axes(self, low: float, high: float) -> list[Root]:
-        """Return the roots on both axes where an even function changes its sign, between ln of two radii."""
-        roots: list[Root] = []
-        for angle in (0.0, pi / 2):
-            last: Root | None = None
-            for z in sign_changes(self._winding, low, high, angle):
-                with precision(FIRST_BITS):
-                    s = acb(z.real, z.imag).exp().mid()
-                root = prove_simple(self.function, s, self.digits, even=True)
-                # Newton's method may have gone to the same root twice.
-                if root is not None and (last is None or not overlap(root, last)):
-                    roots.append(root)
-                    last = root
-        return roots
-
     def passing(self, radius: float) -> float:
         """Return ln of a radius, at least the one given, whose circle passes all holes."""
         for hole in sorted(self.holes, key=lambda hole: hole.low):
@@ -206,21 +153,10 @@ class RootSearch:
         roots: list[Root] = []
         missing = 0
         for part, count in counted:
-            axial = self._axial(part, count)
-            separated, lost = self._separate(part, count) if axial is None else (axial, 0)
+            separated, lost = self._separate(part, count)
             roots.extend(separated)
             missing += lost
         return Found(tuple(roots), missing, cell)
-
-    def _axial(self, cell: Cell, count: int) -> list[Root] | None:
-        """Return the roots on the axes of a cell that reaches both, where it holds many and no others."""
-        if not (self.is_even and cell.right <= 0 and cell.left >= self.left and count > FEW):
-            return None
-        try:
-            roots = [root for root in self.on_axes(cell.low, cell.high) if _is_in(cell, root)]
-        except RootOnPathError:
-            return None
-        return roots if count_roots(roots) * self.function.power == count else None
 
     def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
         """Return the roots in a cell known to hold ``count`` of them."""
