@@ -119,8 +119,8 @@ def energy_proof(
 
     ``values`` are put in place of those the parameters have; those named ``free``, such as a gain, may have
     any positive value. An ``output`` may have poles of its own, as ``x/(T*s + 1)`` has. Nothing is known with
-    parameters that depend on s, elements that are not of this program, fields beside elements or signals, or
-    a value of the wrong sign.
+    loss factors, parameters that depend on s, elements that are not of this program, fields beside elements
+    or signals, or a value of the wrong sign.
 
     Examples
     --------
@@ -136,6 +136,8 @@ def energy_proof(
     >>> [energy_proof(pipeline.loads(text.replace("SIGN", sign))).reason for sign in ("", "-")]
     ['passive, nothing supplies energy', '']
     """
+    if model.imaginary:
+        return EnergyProof()
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
     known = {name: value for name, value in known.items() if name not in free}
     declared = (replace(p, value=None, assume="positive") if p.name in free else p for p in model.parameters)

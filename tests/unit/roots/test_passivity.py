@@ -84,6 +84,12 @@ def test_a_gain_that_elements_hold_is_passive_only_if_they_are_for_all_its_value
         assert closed(model).is_passive is expected, value
 
 
+def test_nothing_is_said_with_loss_factors_which_hold_at_positive_frequencies_alone():
+    lossy = 'spring = { type = "torsion_spring", between = ["hub", "ground"], k = "K", eta_s = 0.02 }'
+    assert not energy_proof(arm(more=lossy)).reason
+    assert energy_proof(arm(more=lossy.replace(", eta_s = 0.02", ""))).reason
+
+
 def test_nothing_is_said_of_a_loop_on_a_compressed_arm():
     pressed = arm(section=UNIFORM + ', N = "-1 N"')
     assert not energy_proof(pressed).reason
