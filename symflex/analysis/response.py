@@ -24,7 +24,7 @@ from fractions import Fraction
 from functools import partial
 from itertools import pairwise
 from math import ceil, exp, inf, log, pi
-from typing import TYPE_CHECKING, NoReturn, cast
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +35,8 @@ from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageErro
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap
 from symflex.roots.counting.winding import Winding, continuous_step
-from symflex.roots.functions.kernel_function import KernelFunction, Sample
+from symflex.roots.functions.entire import Followed, Sample
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.nested_function import NestedFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
@@ -168,10 +169,10 @@ class _Walk:
     """Follows the argument of one function."""
 
     def __init__(self, bound: AnyBoundFunction) -> None:
+        self._name = bound.name
         if not bound.is_reduced:
-            # It has all that paths ask for.
-            self.function = cast("KernelFunction", NestedFunction(bound))
-            sides = [self.function]
+            self.function: Followed = NestedFunction(bound)
+            sides: list[Followed] = [self.function]
         else:
             self.function = KernelFunction(bound, bound.ratio)
             sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
@@ -227,7 +228,7 @@ class _Walk:
 
         def refuse(*_: Point) -> NoReturn:
             hertz = exp(here[0].real) / (2 * pi)
-            message = f"the phase of {self.function.bound.name} cannot be followed past {hertz:g} Hz"
+            message = f"the phase of {self._name} cannot be followed past {hertz:g} Hz"
             raise UncertifiedError(Diagnostic("SF404", message))
 
         points = [here, *self._clear([here[0] + aside, there[0] + aside]), there]

@@ -52,7 +52,7 @@ class Sought:
     """A function with kernels whose roots are searched."""
 
     function: KernelFunction  # the function
-    winding: CertifiedWinding  # counts its roots with proof
+    winding: CertifiedWinding[KernelFunction]  # counts its roots with proof
     order: int  # to which it vanishes at s = 0
     holes: tuple[Cell, ...]  # neighbourhoods of points where roots accumulate, left out
     digits: int  # significant digits of every root
@@ -62,7 +62,7 @@ class Sought:
         """Whether samples on the axes are of one branch, as all branches are alike: their signs then tell."""
         return self.function.is_even and self.function.power == 1 and not self.holes
 
-    def search(self, winding: Winding) -> RootSearch:
+    def search(self, winding: Winding[KernelFunction]) -> RootSearch:
         """Return a search of the plane that counts as told."""
         return RootSearch(winding, self.holes, self.digits)
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 from flint import acb, arb
 
@@ -26,10 +26,8 @@ from symflex.roots.counting.winding import (
     Winding,
     total_turn,
 )
+from symflex.roots.functions.entire import Entire
 from symflex.roots.functions.kernel_function import ROOM, angle
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.kernel_function import KernelFunction
 
 BITS = 64
 """Precision of turns, of which only the nearest integer is wanted."""
@@ -41,6 +39,9 @@ SMALLEST = 1e-12
 """Step [in z] below which a root is said to lie on the path."""
 LOSSY = 0.01
 """Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
+
+
+E_co = TypeVar("E_co", bound=Entire, covariant=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ class LogarithmicLine:
         return ball, centre, ball.abs_upper() * acb(re.rad(), im.rad()).abs_upper()
 
 
-class CertifiedWinding(Winding):
+class CertifiedWinding(Winding[E_co]):
     """Follows one function along paths with proof; every step spends.
 
     With ``tries_series``, where steps are too long for sums of exponentials, power series are tried before
@@ -79,7 +80,7 @@ class CertifiedWinding(Winding):
     anyway on a path where a step turned far less than it might have.
     """
 
-    def __init__(self, function: KernelFunction, *, tries_series: bool = False) -> None:
+    def __init__(self, function: E_co, *, tries_series: bool = False) -> None:
         super().__init__(function)
         self._tries_series = tries_series
         self._bits = BITS

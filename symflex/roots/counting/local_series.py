@@ -22,7 +22,7 @@ from symflex.balls import UndecidedError, covered, precision
 from symflex.roots.functions.kernel_function import ROOM, angle
 
 if TYPE_CHECKING:
-    from symflex.roots.functions.kernel_function import KernelFunction
+    from symflex.roots.functions.entire import Entire
 
 
 TERMS = 16
@@ -92,12 +92,10 @@ class LocalSeries:
         return mean.mid() if mean.is_finite() else None
 
 
-def local_series(
-    function: KernelFunction, centre: acb, reach: arb, bits: int, points: int
-) -> LocalSeries | None:
+def local_series(function: Entire, centre: acb, reach: arb, bits: int, points: int) -> LocalSeries | None:
     """Return a function's series about an exact point, ``None`` where it cannot be bounded on the circle.
 
-    What is expanded is the function's :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power`.
+    What is expanded is the function's :attr:`~symflex.roots.functions.entire.Entire.power`.
     ``reach`` is the exact radius of the circle on which it is bounded [rad/s], ``bits`` the precision of the
     coefficients. Values are taken at so many ``points``; each makes the error that comes of their number
     smaller by ``2^-6``.
@@ -109,7 +107,7 @@ def local_series(
 
 
 def sampled_series(
-    function: KernelFunction,
+    function: Entire,
     centre: acb,
     reach: arb,
     bound: arb,
@@ -144,11 +142,11 @@ def sampled_series(
         return LocalSeries(centre, tuple(coefficients), reach, bound)
 
 
-def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int) -> arb | None:
+def bound_on_circle(function: Entire, centre: acb, reach: arb, arcs: int) -> arb | None:
     """Return at least the size of an analytic function on a circle, ``None`` where none is found.
 
     Centre and radius ``reach`` [rad/s] are exact; the circle is cut into so many ``arcs`` at first. What is
-    bounded is the function's :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power`.
+    bounded is the function's :attr:`~symflex.roots.functions.entire.Entire.power`.
     """
     with precision(WIDE_BITS):
         disc = centre + acb(arb(0, reach), arb(0, reach))
@@ -199,8 +197,8 @@ NOTHING = (inf, arb("nan"))
 class SeriesSteps:
     """Follows one function by its power series."""
 
-    # Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is followed.
-    function: KernelFunction
+    # Its :attr:`~symflex.roots.functions.entire.Entire.power` is followed.
+    function: Entire
     _last: LocalSeries | None = field(default=None, init=False)
     _bits: int = field(default=0, init=False)
 

@@ -11,19 +11,20 @@ from cmath import pi
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import ceil, exp, inf, log
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from flint import arb
 
 from symflex.balls import UndecidedError, covered
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.functions.entire import Followed
 from symflex.roots.functions.kernel_function import ROOM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.functions.kernel_function import KernelFunction, Sample
+    from symflex.roots.functions.entire import Sample
 
 
 RING = log(2)
@@ -49,6 +50,9 @@ WORK_LIMIT = 5_000_000
 """Terms evaluated in one search."""
 SHORTER = "ask for fewer modes or a smaller region"
 TOO_LONG = "the search for roots takes too long"
+
+
+F_co = TypeVar("F_co", bound=Followed, covariant=True)
 
 
 class RootOnPathError(Exception):
@@ -117,10 +121,10 @@ class Cell:
         return tuple(cell for cell in around if cell.low < cell.high and cell.right < cell.left)
 
 
-class Winding:
+class Winding(Generic[F_co]):
     """Follows one function along paths, remembering its values, each of which spends."""
 
-    def __init__(self, function: KernelFunction) -> None:
+    def __init__(self, function: F_co) -> None:
         self.function = function
         self._samples: dict[complex, Sample | None] = {}
         self._reaches: dict[float, float] = {}

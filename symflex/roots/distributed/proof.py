@@ -31,6 +31,7 @@ from symflex.roots.root import FLOAT_BITS, TOUCHING, Root, are_apart, count_root
 if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.roots.axes.lossless import LosslessSearch
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 
 UNPROVED = "the number of roots could not be proved"
@@ -54,7 +55,7 @@ class Proof:
 class Count:
     """Counts the roots of one function with kernels by boundaries."""
 
-    winding: CertifiedWinding  # counts with proof
+    winding: CertifiedWinding[KernelFunction]  # counts with proof
     order: int  # to which the function vanishes at s = 0
     holes: tuple[Cell, ...]  # what is left out of every domain
     left: float  # pi, or pi/2 where roots mirror each other in the imaginary axis
@@ -277,7 +278,12 @@ DEPTHS = (1.0, 4.0, 16.0, 64.0)
 
 
 def roots_at_zero(
-    winding: CertifiedWinding, part: Factored, left: float, holes: Sequence[Cell], *, is_hidden: bool
+    winding: CertifiedWinding[KernelFunction],
+    part: Factored,
+    left: float,
+    holes: Sequence[Cell],
+    *,
+    is_hidden: bool,
 ) -> tuple[list[Root], int]:
     """Return the root at s = 0, and how often the function without powers of s winds about 0 there.
 
@@ -303,7 +309,9 @@ def roots_at_zero(
     return root_at_zero(powers if is_hidden else powers + turns, reach), turns * power
 
 
-def turns_about_zero(winding: CertifiedWinding, left: float, holes: Sequence[Cell]) -> tuple[float, int]:
+def turns_about_zero(
+    winding: CertifiedWinding[KernelFunction], left: float, holes: Sequence[Cell]
+) -> tuple[float, int]:
     """Return ln of a small radius, and how many roots are proved to lie within it."""
     lowest = winding.smallest(left, holes)
     best: tuple[float, int] | None = None

@@ -23,6 +23,7 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.roots.functions.entire import Sample
 from symflex.roots.functions.exponential_values import (
     ExponentialValues,
     Place,
@@ -34,6 +35,7 @@ from symflex.roots.problem import is_complex
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from symflex.roots.functions.entire import FactorBall
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -59,18 +61,6 @@ SINGLE: Final = {"wave": 2, "bending": 4}
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
 MODAL_WORK = 0.15
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
-
-
-FactorBall = tuple[acb, acb, int]
-"""Value and derivative of a factor, and its exponent."""
-
-
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """Value and slope of a function F at a point."""
-
-    log: complex  # ln F, its imaginary part up to whole turns
-    slope: complex  # the logarithmic derivative in the coordinate of the path
 
 
 @dataclass(eq=False)

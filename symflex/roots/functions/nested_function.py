@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_poly
 
 from symflex.balls import precision, precisions
-from symflex.roots.functions.kernel_function import Sample
+from symflex.roots.functions.entire import Sample
 from symflex.transfer.double_value import FIRST_BITS, LAST_BITS
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS
 from symflex.roots.root import GUARD_BITS, Root
 
 if TYPE_CHECKING:
-    from symflex.roots.functions.kernel_function import KernelFunction
+    from symflex.roots.functions.entire import Entire
 
 
 LEAST_BITS = 96
@@ -61,7 +61,7 @@ class Box:
 
 
 def prove_simple(
-    function: KernelFunction,
+    function: Entire,
     s: acb,
     digits: int,
     *,
@@ -119,9 +119,7 @@ def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
     )
 
 
-def _box(
-    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None, *, even: bool
-) -> Box | None:
+def _box(function: Entire, s: acb, levels: tuple[int, int], factor: int | None, *, even: bool) -> Box | None:
     """Return a box about the root next to ``s``, after Newton steps from a first to a last precision."""
     bits = levels[1]
     with precision(bits):
@@ -161,7 +159,7 @@ def _box(
         )
 
 
-def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
+def _is_alone(function: Entire, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
     """Tell whether a function has so many roots near a point: where wavenumbers vanish, boxes do not say."""
     within = (radius * SMALLER).mid()
     reach = within.max((middle.abs_upper() * REACH).mid())
@@ -170,7 +168,7 @@ def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int,
 
 
 def _approached(
-    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None
+    function: Entire, s: acb, levels: tuple[int, int], factor: int | None
 ) -> tuple[acb, int] | None:
     """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
     first, bits = min(levels), levels[1]
@@ -232,7 +230,7 @@ BRANCH_BITS = 128
 
 
 def prove_together(
-    function: KernelFunction,
+    function: Entire,
     s: acb,
     within: arb,
     digits: int,
@@ -282,7 +280,7 @@ def prove_together(
     return None
 
 
-def is_branched(function: KernelFunction, s: acb, within: arb) -> bool:
+def is_branched(function: Entire, s: acb, within: arb) -> bool:
     """Tell whether a disc may hold a point where wavenumbers have branches."""
     with precision(BRANCH_BITS):
         disc = s + acb(arb(0, within), arb(0, within))

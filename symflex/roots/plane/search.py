@@ -23,6 +23,8 @@ from symflex.roots.root import Root, count_modes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.roots.functions.entire import Entire
+
 
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
@@ -71,7 +73,7 @@ class RootSearch:
     up to which it searched.
     """
 
-    def __init__(self, winding: Winding, holes: Sequence[Cell], digits: int) -> None:
+    def __init__(self, winding: Winding[Entire], holes: Sequence[Cell], digits: int) -> None:
         self.function = winding.function
         self.holes = tuple(holes)
         self.digits = digits

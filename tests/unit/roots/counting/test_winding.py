@@ -14,7 +14,8 @@ from symflex.balls import precision
 from symflex.roots.counting.argument_principle import CertifiedWinding, LogarithmicLine, _whole
 from symflex.roots.counting.local_series import BLURRED, LocalSeries, SeriesSteps, _followed
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.functions.kernel_function import ROOM, Sample, angle
+from symflex.roots.functions.entire import Sample
+from symflex.roots.functions.kernel_function import ROOM, angle
 from tests.unit.roots.known_functions import KnownFunction
 
 
