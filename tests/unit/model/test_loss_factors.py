@@ -72,6 +72,17 @@ def test_modes_have_natural_frequencies_and_loss_factors():
     assert factors == pytest.approx([x.imag / x.real for x in squares])
 
 
+def test_all_modes_of_a_chain_are_found_if_no_region_is_given():
+    text = 'symflex = 1\ninputs.F = { force = "x1" }\noutputs.X = "x1"\n[elements]\n'
+    for i, before in enumerate(("ground", "x1", "x2", "x3", "x4", "x5", "x6"), 1):
+        text += f'm{i} = {{ type = "mass", at = "x{i}", m = 1 }}\n'
+        text += f'k{i} = {{ type = "spring", between = ["x{i}", "{before}"], k = 1, eta_s = 0.02 }}\n'
+    poles = symflex.loads(text).transfer_function("X", "F").bind().poles()
+    # omega_k = 2 sin((2 k - 1) pi/(4 n + 2)) of a chain held at one end, and s^2 = -omega^2 (1 + j eta).
+    expected = [1j * 2 * np.sin((2 * k - 1) * np.pi / 30) * np.sqrt(1 + 0.02j) for k in range(1, 8)]
+    assert [complex(p) for p in poles] == pytest.approx(expected, rel=1e-12)
+
+
 def test_formula_prints_j_and_reduces_its_square():
     tf = symflex.loads(TWO_MASSES).transfer_function("X", "F")
     assert "1 + j*eta_1" in str(tf)
