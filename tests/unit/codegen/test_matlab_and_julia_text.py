@@ -116,6 +116,13 @@ def test_the_name_of_a_module_begins_its_words_with_capitals():
     assert {wanted: module_name(wanted) for wanted in names} == names
 
 
+def test_comments_call_an_argument_what_the_code_calls_it():
+    spec = 'symflex = 1\nparameters.function = "2 kg"\ninputs.F = {}\noutputs.x = "F/(function*s^2)"'
+    model = symflex.loads(spec)
+    for text in (model.export_matlab(), model.export_julia(), model.export_js()):
+        assert "function_ = 2.0: 'function' in the model [kg]." in text
+
+
 def test_lines_of_code_end_after_operators():
     text = " + ".join(f"a_{i} .* (b_{i} - c_{i})" for i in range(40))
     lines = in_lines(text, 40)
