@@ -68,7 +68,7 @@ class Exporter(Protocol):
 
     @property
     def suffix(self) -> str:
-        """Of the file's name."""
+        """The end of the file's name."""
         ...
 
     @property
@@ -78,7 +78,7 @@ class Exporter(Protocol):
 
     @property
     def solves(self) -> bool:
-        """True where functions of networks are wanted as equations, which values at points are had of."""
+        """True to get functions of networks as equations, from which values at points are computed."""
         ...
 
     def export(

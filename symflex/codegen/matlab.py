@@ -482,7 +482,7 @@ class RationalSystem:
 
     @staticmethod
     def of(tf: AnyTransferFunction) -> RationalSystem | None:
-        """Return a transfer function as a rational one, None where it is not one or too long to write out."""
+        """Return a transfer function as a rational one; the result is None if it is none, or too long."""
         if not tf.is_reduced or tf.is_large or tf.length > FORMULA_TERMS or tf.is_zero:
             return None
         exponentials = {k.generator: k for k in tf.kernels.kernels if k.function == "exp"}

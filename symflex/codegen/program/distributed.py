@@ -135,7 +135,7 @@ class Pieces:
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.
 
-        ``None`` with losses, and where it would be very long.
+        The result is None with losses, and if it would be very long.
         """
         if (
             self.tf.model.root
@@ -768,10 +768,10 @@ def _longer_and_shorter(
     matrix: Sequence[Sequence[int]],
     values: Sequence[float],
 ) -> tuple[int, int] | None:
-    """Return which length is to be cut by which, ``None`` where the denominator's largest term is largest.
+    """Return which length is to be cut by which, if any.
 
-    Of numerator and denominator in some families that share lengths; ``matrix`` has these in multiples of
-    those with the declared ``values``.
+    The result is None if the denominator's largest term is largest. ``sums`` are numerator and denominator in
+    some families that share lengths; ``matrix`` has these in multiples of those with the declared ``values``.
     """
     count = range(len(values))
     for i in families:

@@ -260,7 +260,7 @@ class RealAxis:
     def real_sum(self, terms: KernelSum, waves: Factored, families: Sequence[Family]) -> RealSum | None:
         """Return a sum, times a product of powers of wavenumbers, in real terms.
 
-        ``None`` when it is not real up to a power of j.
+        The result is None if it is not real up to a power of j.
         """
         powers = {}
         for factor, exponent in waves.factors:

@@ -445,7 +445,7 @@ class Piecewise:
 
     @property
     def far(self) -> Straight | None:
-        """What serves beyond ``limit`` in a lumped program; ``None`` where ``near`` serves everywhere."""
+        """What serves beyond ``limit`` in a lumped program; None if ``near`` serves everywhere."""
         return self.code[0].code if self.conditions else None
 
     @property
