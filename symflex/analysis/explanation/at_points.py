@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, PRIME, Factored, random_point, residue
 from symflex.algebra.propagators import EXPONENTIAL
+from symflex.analysis.explanation.parts import Relation, opened, same_generators, varying
 from symflex.equations.elimination.singular import matrix_of
 from symflex.transfer.equations_at import EquationsAt
 
@@ -76,6 +77,18 @@ class PrimePoints:
         for name, value in self.equations.definitions:
             point[name] = residue(value, point)
         return point
+
+    def relate(self, pair: tuple[str, str], factor: Factored, constrained: Equations) -> Relation | None:
+        """Return what :func:`.parts.relate` does; a transmission that is no power of s is not known."""
+        equations = self.equations
+        ratio = self.ratio(pair, factor, [constrained]) if same_generators(constrained, equations) else None
+        if ratio is None:
+            return None
+        s, own = Factored.generator(equations.ring, LAPLACE), opened(equations, factor)
+        order = own.exponent_of(equations.ring.generator(LAPLACE))
+        transmission = None if ratio.order is None else s**ratio.order
+        filtered = varying(equations, own / s**order)
+        return Relation(order, filtered, transmission, s**0, has_zeros=True, is_delayed=ratio.is_delayed)
 
     def varies(self, system: Equations) -> bool:
         """Tell whether a determinant depends on s."""

@@ -226,7 +226,8 @@ class Relation:
 
     order: int  # the power of s in ``factor``, from what the output does to the coordinate it shows
     filtered: Factored  # the rest of ``factor`` that depends on s
-    transmission: Factored  # what else the numerator has: zeros that are not poles of the constrained system
+    # What else the numerator has: zeros that are not poles of the constrained system; None if not known.
+    transmission: Factored | None
     apart: Factored  # what only the constrained system has: poles of it that are not zeros
     has_zeros: bool  # whether the numerator depends on s but for ``factor``
     is_delayed: bool  # the constant holds exponentials of s besides, which have neither zeros nor poles
@@ -234,7 +235,7 @@ class Relation:
     @property
     def is_equality(self) -> bool:
         """Whether the zeros are the poles of the constrained system, one for one."""
-        return self.transmission.is_constant and self.apart.is_constant
+        return self.transmission is not None and self.transmission.is_constant and self.apart.is_constant
 
 
 def relate(
@@ -246,7 +247,7 @@ def relate(
     equations' ring. ``None`` when the numerator is zero, or when the generators of the two rings differ.
     """
     equations = whole.equations
-    if generators(constrained.equations) != generators(equations):
+    if not same_generators(constrained.equations, equations):
         return None
     num = opened(equations, whole.opened(whole.num(*pair)))
     if num.is_zero:
@@ -264,11 +265,13 @@ def relate(
     return Relation(order, filtered, above, below, has_zeros, is_delayed)
 
 
-def generators(equations: Equations) -> tuple[object, ...]:
-    """Return what tells whether generators of equal names mean the same in two systems."""
-    waves = equations.propagation
-    lengths = () if waves is None else tuple(tuple(map(str, lengths)) for lengths in waves.lengths)
-    return equations.ring.names, lengths
+def same_generators(one: Equations, other: Equations) -> bool:
+    """Tell whether generators of equal names mean the same in two systems."""
+    lengths = [
+        () if waves is None else tuple(tuple(map(str, lengths)) for lengths in waves.lengths)
+        for waves in (one.propagation, other.propagation)
+    ]
+    return one.ring.names == other.ring.names and lengths[0] == lengths[1]
 
 
 def opened(equations: Equations, value: Factored) -> Factored:

@@ -29,8 +29,6 @@ from symflex.analysis.explanation.ends import bending_between, ends_of_element, 
 from symflex.analysis.explanation.parts import (
     Relation,
     Separation,
-    generators,
-    opened,
     relate,
     separate,
     varying,
@@ -58,6 +56,10 @@ LONGEST = 100
 """Characters of a factor that is printed."""
 
 
+System = Determinants | PrimePoints
+"""What is known of a system: its determinants, or their values where these are not multiplied out."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Case:
     """One transfer function with its equations and determinants."""
@@ -65,7 +67,7 @@ class _Case:
     model: Model
     pair: tuple[str, str]
     equations: Equations
-    whole: Determinants | PrimePoints  # of the equations, or where these are not multiplied out
+    whole: System  # of the equations
 
     @property
     def output(self) -> Output:
@@ -75,19 +77,25 @@ class _Case:
     def input(self) -> Input:
         return next(i for i in self.model.inputs if i.name == self.pair[1])
 
-    def constrained(self, constraint: Constraint) -> Determinants | None:
-        """Return the determinants of a constrained model, ``None`` when the constraint repeats another."""
+    def constrained(self, constraint: Constraint) -> System | None:
+        """Return a constrained model as this one is, ``None`` when the constraint repeats another."""
         try:
+            if isinstance(self.whole, PrimePoints):
+                return PrimePoints(assemble_sparse(constraint.model))
             return Determinants.of(assemble(constraint.model))
         except ModelError:
             return None
 
-    def explanation(self) -> ZeroExplanation | None:
-        """Return what the zeros are the poles of; ``None`` if of no constrained system that is tried."""
-        whole = self.whole
-        if isinstance(whole, PrimePoints):
-            return _by_points(self, whole)
-        return _by_coordinate(self, whole) or _by_condition(self, whole) or _by_terminals(self, whole)
+    def relate(self, factor: Factored, held: System) -> Relation | None:
+        """Return how the numerator and the determinant of a constrained system are related."""
+        if isinstance(self.whole, PrimePoints):
+            return self.whole.relate(self.pair, factor, held.equations)
+        return relate(self.whole, self.pair, factor, held) if isinstance(held, Determinants) else None
+
+    def separate(self, equations: Equations) -> Separation:
+        """Return the parts of a constrained system."""
+        points = self.whole if isinstance(self.whole, PrimePoints) else None
+        return separate(equations, self.pair[1], self.model, points)
 
     def explained(
         self, kind: Kind, status: Status, constraint: Constraint, *, is_direct: bool, order: int = 0
@@ -136,58 +144,15 @@ def explain_zeros(model: Model, bound: AnyBoundFunction, located: PoleZeroMap) -
     if bound.is_reduced:
         has_hidden, factors = bool(bound.hidden), bound.ratio.factors
         has_zeros = not bound.is_rational or any(e > 0 and degree_in(f, 0) for f, e in factors)
-    complete = replace(case.explanation() or plain, has_zeros=has_zeros, has_hidden=has_hidden)
+    explained = _by_coordinate(case) or _by_condition(case) or _by_terminals(case)
+    complete = replace(explained or plain, has_zeros=has_zeros, has_hidden=has_hidden)
     return _with_roots(case, complete, located)
 
 
 # ------------------------------------------------------------------------------ what the zeros are poles of
 
 
-def _by_points(case: _Case, points: PrimePoints) -> ZeroExplanation | None:
-    """Hold what the output shows, or open the terminals, of a network that is not multiplied out."""
-    motion = measured(case.equations, case.pair[0])
-    model = case.model
-    constraint = open_circuit(model, case.input) if motion is None else hold(model, motion.coordinates)
-    if constraint is None:
-        return None
-    held = assemble_sparse(constraint.model)
-    one = Factored.number(case.equations.ring, 1)
-    factor = one if motion is None else motion.factor
-    if generators(held) != generators(case.equations):
-        return None
-    ratio = points.ratio(case.pair, factor, [held])
-    if ratio is None:
-        return None
-    separation = separate(held, case.pair[1], model, points)
-    if motion is None:
-        if ratio.order is None:
-            return None
-        kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
-        plain = case.explained(kind, "proved", constraint, is_direct=True, order=ratio.order)
-        return replace(plain, parts=separation.parts)
-    undriven = [part.system for part in separation.parts if not part.has_input]
-    beyond = points.ratio(case.pair, factor, undriven) if undriven else None
-    is_direct = acting(case.model, case.input) == motion.coordinates
-    if ratio.order == 0:
-        kind = "colocated"
-    elif beyond is not None and (beyond.order == 0 or beyond.is_rational):
-        kind, ratio = "beyond" if beyond.order == 0 else "partly", beyond
-    else:
-        return case.explained("colocated", "not shown", constraint, is_direct=True) if is_direct else None
-    s = Factored.generator(case.equations.ring, LAPLACE)
-    own = opened(case.equations, factor)
-    order = own.exponent_of(case.equations.ring.generator(LAPLACE))
-    return replace(
-        case.explained(kind, "proved", constraint, is_direct=is_direct, order=order),
-        filtered=_text(case.equations, varying(case.equations, own / s**order)),
-        is_delayed=ratio.is_delayed,
-        transmission="..." if kind == "partly" else "",
-        parts=separation.parts,
-        ends=_end_changes(case, separation),
-    )
-
-
-def _by_coordinate(case: _Case, whole: Determinants) -> ZeroExplanation | None:
+def _by_coordinate(case: _Case) -> ZeroExplanation | None:
     """Hold the coordinate that the output shows."""
     motion = measured(case.equations, case.pair[0])
     if motion is None:
@@ -197,11 +162,11 @@ def _by_coordinate(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     if held is None:
         return None
     is_direct = acting(case.model, case.input) == motion.coordinates
-    relation = relate(whole, case.pair, motion.factor, held)
+    relation = case.relate(motion.factor, held)
     if relation is None:
         return case.explained("colocated", "not shown", constraint, is_direct=True) if is_direct else None
-    separation = separate(held.equations, case.pair[1], case.model)
-    kind, rest = _kind(case, relation, separation)
+    separation = case.separate(held.equations)
+    kind, transmission = _kind(case, relation, separation, motion.factor)
     plain = replace(
         case.explained(kind, "proved", constraint, is_direct=is_direct, order=relation.order),
         filtered=_text(case.equations, relation.filtered),
@@ -212,19 +177,25 @@ def _by_coordinate(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     return replace(
         plain,
         extra="" if kind == "partly" else _text(case.equations, relation.apart),
-        transmission=_text(case.equations, rest),
+        transmission=transmission,
         parts=separation.parts,
         ends=_end_changes(case, separation),
     )
 
 
-def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind, Factored]:
+def _kind(case: _Case, relation: Relation, separation: Separation, factor: Factored) -> tuple[Kind, str]:
     """Return what kind of pair it is, and the factor of the numerator that no undriven part accounts for."""
     one = Factored.number(case.equations.ring, 1)
     if relation.is_equality:
-        return "colocated", one
-    if not relation.has_zeros:
-        return "noncolocated", one
+        return "colocated", ""
+    undriven = [part.system for part in separation.parts if not part.has_input]
+    if isinstance(case.whole, PrimePoints):
+        ratio = case.whole.ratio(case.pair, factor, undriven) if undriven else None
+        if ratio is None or not (ratio.order == 0 or ratio.is_rational):
+            return "noncolocated", ""
+        return ("beyond", "") if ratio.order == 0 else ("partly", "...")
+    if not relation.has_zeros or relation.transmission is None:
+        return "noncolocated", ""
     driven = one
     for part in separation.parts:
         if part.has_input:
@@ -232,14 +203,13 @@ def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind
     rest, _ = cancel(relation.transmission * driven, relation.apart)
     rest = varying(case.equations, rest)
     if any(exponent < 0 for _, exponent in rest.factors):
-        return "noncolocated", one
+        return "noncolocated", ""
     if rest.is_constant:
-        return "beyond", one
-    undriven = any(not part.has_input for part in separation.parts)
-    return ("partly", rest) if undriven else ("noncolocated", one)
+        return "beyond", ""
+    return ("partly", _text(case.equations, rest)) if undriven else ("noncolocated", "")
 
 
-def _by_condition(case: _Case, whole: Determinants) -> ZeroExplanation | None:
+def _by_condition(case: _Case) -> ZeroExplanation | None:
     """Let a field's condition that holds the input give way to one that keeps the output at zero."""
     replaced = replace_condition(case.model, case.input, case.output.expression)
     if replaced is None:
@@ -250,10 +220,10 @@ def _by_condition(case: _Case, whole: Determinants) -> ZeroExplanation | None:
         return None
     # The factor that cleared the denominators of the condition with the input is not part of the numerator.
     scale = _coefficient(case.equations, case.pair[1])
-    relation = relate(whole, case.pair, scale, held)
+    relation = case.relate(scale, held)
     if relation is None and replaced.is_dual:
         return case.explained("colocated", "not shown", constraint, is_direct=True)
-    if relation is None or not relation.apart.is_constant:
+    if relation is None or relation.transmission is None or not relation.apart.is_constant:
         return None
     # What the output does to the value it shows is all that is left of the numerator.
     s = case.equations.ring.generator(LAPLACE)
@@ -265,7 +235,7 @@ def _by_condition(case: _Case, whole: Determinants) -> ZeroExplanation | None:
     return replace(
         case.explained(kind, "proved", constraint, is_direct=replaced.is_dual, order=order),
         filtered=_text(case.equations, filtered),
-        parts=separate(held.equations, case.pair[1], case.model).parts,
+        parts=case.separate(held.equations).parts,
         ends=(EndChange(replaced.field.name, *ends),) if all(ends) else (),
     )
 
@@ -276,15 +246,15 @@ def _coefficient(equations: Equations, source: str) -> Factored:
     return next(c for v, c in terms if v.kind == "input" and v.owner == source)
 
 
-def _by_terminals(case: _Case, whole: Determinants) -> ZeroExplanation | None:
+def _by_terminals(case: _Case) -> ZeroExplanation | None:
     """Open the terminals of a voltage input whose current the output shows; free what an input moves."""
     constraint = open_circuit(case.model, case.input)
     held = None if constraint is None else case.constrained(constraint)
     if constraint is None or held is None:
         return None
     one = Factored.number(case.equations.ring, 1)
-    relation = relate(whole, case.pair, one, held)
-    if relation is None or not relation.apart.is_constant:
+    relation = case.relate(one, held)
+    if relation is None or relation.transmission is None or not relation.apart.is_constant:
         return None
     s = case.equations.ring.generator(LAPLACE)
     order = relation.transmission.exponent_of(s)
@@ -292,7 +262,7 @@ def _by_terminals(case: _Case, whole: Determinants) -> ZeroExplanation | None:
         return None
     kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
     plain = case.explained(kind, "proved", constraint, is_direct=True, order=order)
-    return replace(plain, parts=separate(held.equations, case.pair[1], case.model).parts)
+    return replace(plain, parts=case.separate(held.equations).parts)
 
 
 # --------------------------------------------------------------------------------------------- in words
@@ -313,8 +283,7 @@ def _text(equations: Equations, value: Factored) -> str:
 
 def _end_changes(case: _Case, separation: Separation) -> tuple[EndChange, ...]:
     """Return the line elements whose ends the constraint changes, parts with the input left out."""
-    points = case.whole if isinstance(case.whole, PrimePoints) else None
-    before = separate(case.equations, case.pair[1], points=points).resting
+    before = case.separate(case.equations).resting
     driven = {name for part in separation.parts if part.has_input for name in part.elements}
     changes = []
     for use in case.model.elements:
