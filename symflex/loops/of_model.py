@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import pi
 from typing import TYPE_CHECKING
 
-from symflex.errors import BudgetError
+from symflex.budget import spend
+from symflex.errors import BudgetError, UncertifiedError
 from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
@@ -25,6 +27,7 @@ from symflex.options import (
 )
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import (
+    CODE_PRODUCTS,
     assemble,
     assemble_sparse,
     derive_all,
@@ -119,8 +122,25 @@ def stability(
     """
     limits = gain_ends(given.limits, _gain_of(model, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
-    loop = characteristic_loop(model, given.gain, values, "stability of a loop")
-    return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, radians)
+    digits, what = given.digits or model.analysis.digits or 15, "stability of a loop"
+    check_causal(model, what)
+    quick: StabilityMap | None = None
+    # The formula of two or three members may take minutes, and their equations a second.
+    if is_large_network(model, CODE_PRODUCTS) and not is_large_network(model):
+        network = _of_network(model, _gain_of(model, given.gain), dict(values or {}))
+        with suppress(UncertifiedError):
+            quick = None if network is None else find_stable_gains(network, limits, digits, radians)
+    if quick is not None and quick.certified:
+        return quick
+    try:
+        loop = characteristic_loop(model, given.gain, values, what)
+        written = find_stable_gains(loop, limits, digits, radians)
+    except BudgetError:
+        if quick is None:
+            raise
+        spend()  # the time may be over
+        return quick
+    return written if quick is None or written.certified else quick
 
 
 def colocation(model: Model, given: ColocationOptions) -> DynamicColocation:

@@ -234,11 +234,11 @@ def _kernel_products(tf: TransferFunction) -> int:
     )
 
 
-def is_large_network(model: Model) -> bool:
-    """Tell whether a distributed model's expanded form is too large."""
+def is_large_network(model: Model, most: int = EXPANDED_PRODUCTS) -> bool:
+    """Tell whether a distributed model's expanded form has more terms; by default, is too large."""
     if not model.is_distributed or not _may_be_large(model):
         return False
-    return _expanded_terms(assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
+    return _expanded_terms(assemble_sparse(model), model.transfer_functions[0]) > most
 
 
 def _some(terms: float) -> str:

@@ -12,7 +12,7 @@ from flint import acb
 
 from symflex import pipeline
 from symflex.budget import Budget
-from symflex.errors import ModelError
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.figures import draw_loop
 from symflex.loops import NetworkLoop, loop_gain, of_model, trace_locus
 from symflex.loops.of_model import stability
@@ -127,8 +127,21 @@ def test_a_passive_loop_of_a_network_is_stable_for_all_gains():
     assert [interval.poles.is_stable for interval in network.intervals] == [True]
 
 
+@pytest.mark.slow
+def test_a_loop_whose_formula_takes_too_long_is_answered_from_its_equations(monkeypatch):
+    def refuse(*_):
+        raise BudgetError(Diagnostic("SF505", "the search takes too long"))
+
+    monkeypatch.setattr(of_model, "characteristic_loop", refuse)
+    network = found(chain(3), "200 Hz")
+    assert network.intervals
+    for interval in network.intervals:
+        gain = (float(interval.low.mid()) + float(interval.high.mid())) / 2
+        assert unstable(3, gain, 2 * pi * 200) == interval.poles.right
+
+
 def test_a_locus_of_a_search_whose_time_is_over_is_refused(monkeypatch):
-    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    monkeypatch.setattr(of_model, "is_large_network", lambda *_: True)
     loop = of_model.characteristic_loop(pipeline.loads(chain(1)), "K")
     found = replace(loop.located(Fraction(0), Modes(1)), poles=(), unstable=(), hidden=())
 
@@ -145,7 +158,7 @@ def test_a_locus_of_a_search_whose_time_is_over_is_refused(monkeypatch):
 def test_a_locus_is_that_of_the_formula(monkeypatch):
     model, limits = pipeline.loads(chain(1)), (Fraction(0), Fraction(20))
     written = trace_locus(of_model.characteristic_loop(model, "K"), limits, modes=2)
-    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    monkeypatch.setattr(of_model, "is_large_network", lambda *_: True)
     network = trace_locus(of_model.characteristic_loop(model, "K"), limits, modes=2)
     for a, b in ((network.start, written.start), (network.end, written.end)):
         assert [complex(r.re, r.im) for r in a.all_poles] == pytest.approx(
@@ -159,7 +172,7 @@ def test_a_locus_is_that_of_the_formula(monkeypatch):
 def test_a_loop_gain_is_that_of_the_formula(monkeypatch):
     model = pipeline.loads(chain(1))
     written = loop_gain(of_model.characteristic_loop(model, "K"), Fraction(3))
-    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    monkeypatch.setattr(of_model, "is_large_network", lambda *_: True)
     network = of_model.characteristic_loop(model, "K").gains(Fraction(3), [50.0])
     assert network == pytest.approx([complex(written.enclosed(96)(acb(0, 50)).mid())], rel=1e-12)
 
