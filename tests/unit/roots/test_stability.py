@@ -11,6 +11,7 @@ import pytest
 from symflex.print.roots import roots_text
 from symflex.roots import Band, Mode, Modes, Rectangle
 from symflex.roots.locate import locate
+from symflex.roots.pole_zero_map import ON_AXIS
 from tests.unit.roots.distributed_models import bound
 from tests.unit.roots.known_roots import UNIT, along, elements, late, member
 
@@ -250,6 +251,8 @@ def test_a_part_not_told_from_zero_is_not_printed_as_zero():
     shown = locate(bound(hayes("pi/2")), Modes(1))
     assert shown.poles[0].decimal(15).re.startswith("0e-")
     assert "  ~0" in roots_text(shown, 15)
+    # All others are proved to lie left of the axis, though the count along it meets these two.
+    assert (shown.verdict.word, shown.verdict.reason) == ("unknown", ON_AXIS)
 
 
 def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):

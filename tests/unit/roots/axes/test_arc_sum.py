@@ -1,8 +1,8 @@
 """Turns of sums of exponentials on an arc where they are known: of one term, about roots, and bounds."""
 
-from cmath import rect
+from cmath import exp, rect
 from itertools import product
-from math import pi
+from math import cos, pi, sin
 from random import Random
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm
+from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm, _most
 from symflex.roots.counting.winding import RootOnPathError
 
 
@@ -126,3 +126,13 @@ def test_the_turn_on_a_long_arc_takes_no_longer():
     turn = ArcSum(tuple(term(p, 0, {0: c}) for p, c in rates.items())).turn(radius)
     assert abs(turn - 2 * radius / arb(2).sqrt()) < arb.pi() / 2
     assert turn.rad() < 1e-6
+
+
+def test_a_number_turned_by_up_to_an_angle_is_bounded():
+    for angle, value in product([0.0, 0.3, 1.2], [3 + 4j, 3 - 4j, -3 + 4j, -3 - 4j, -5, 5j]):
+        bound = float(_most(acb(value), (arb(angle).sin(), arb(angle).cos())))
+        turned = [(value * exp(1j * angle * k / 50)).real for k in range(-50, 51)]
+        assert max(turned) <= bound + 1e-12, (angle, value)
+        # Where the part along the axis is negative it is the bound itself.
+        largest = value.real if value.real > 0 else value.real * cos(angle)
+        assert bound == pytest.approx(largest + abs(value.imag) * sin(angle), abs=1e-12)

@@ -128,3 +128,14 @@ def test_the_middle_of_some_roots_is_their_mean_if_the_highest_term_is_known():
         assert complex(found) == pytest.approx(mean + 3j), values
         assert float(found.real.rad()) == 0, values
     assert told(1, 1, 0).middle(2) is None
+
+
+def test_the_error_of_few_values_is_cauchys():
+    # a_(n + points) r^points is what n values cannot tell from a_n, at most bound (r/R)^points / R^n.
+    function = known(*offsets(0.5))
+    series = sampled_series(function, CENTRE, arb(8), arb(1000), 400, 10, 10, 0.25)
+    with precision(400):
+        for n, coefficient in enumerate(series.coefficients):
+            aliased = 1000 * 0.25**10 / (1 - 0.25**10) / 8.0**n
+            assert float(coefficient.real.rad()) == pytest.approx(aliased, rel=1e-6)
+            assert float(coefficient.imag.rad()) == pytest.approx(aliased, rel=1e-6)
