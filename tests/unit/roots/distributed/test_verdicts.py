@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi
+from types import SimpleNamespace
 
 import pytest
 
 from symflex import pipeline
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed import right_half_plane
+from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import RightHalfPlane, gaps_text
 from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
@@ -160,3 +165,35 @@ def test_a_string_held_at_both_ends_has_hidden_poles_without_number_and_none_tha
     assert found.verdict.hidden == "hidden poles on the imaginary axis"
     assert [float(h.root.im.mid()) / pi for h in found.hidden[::2]] == pytest.approx([1, 2, 3, 4])
     assert not any(pole.on_imaginary_axis for pole in found.poles)
+
+
+@dataclass
+class Half:
+    """A side whose count along the imaginary axis meets a root, or, searched again, its roots and proof."""
+
+    roots: tuple = ()
+    proof: Proof | None = None
+    is_finite: bool = False
+    holes: tuple = ()
+
+    @property
+    def function(self):
+        part = SimpleNamespace(factors=[("factor", 1)])
+        return SimpleNamespace(is_even=False, part=part, bound="bound", frequency_of=lambda waves: waves)
+
+    def count_right(self, z):
+        raise RootOnPathError
+
+    def search(self, region):
+        """Search nothing: the roots are there."""
+
+    def prove(self, region):
+        return self.proof
+
+
+def test_with_a_root_on_the_path_the_half_plane_is_searched_and_what_that_proves_is_said(monkeypatch):
+    monkeypatch.setattr(right_half_plane, "right_tail", lambda *_: 7.0)
+    for proof, unproved in [(Proof(1, 1), ""), (Proof(2, 1), right_half_plane.NOT_COUNTED)]:
+        monkeypatch.setattr(right_half_plane, "Side", lambda *_, p=proof: Half((RIGHT, ON), p))
+        found = right_half_plane.search_right("bound", "part", Half(), (), 0.0, 10)
+        assert found == RightHalfPlane((RIGHT, ON), unproved), proof
