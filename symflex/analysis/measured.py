@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from symflex.analysis.response import respond
+from symflex.analysis.response import evaluate, respond
 from symflex.data.fitting import Base, ResonanceFit, fit_resonances
 from symflex.data.measurement import MeasuredResponse, MeasurementPlan, synthesise
 from symflex.errors import Diagnostic, UsageError
@@ -62,8 +62,8 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
     bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
 
     def base_of(bound: BoundTransferFunction) -> Base:
-        def function(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
-            return respond(bound, omega).values
+        def function(omega: npt.NDArray[Any]) -> npt.NDArray[np.complex128]:
+            return evaluate(bound, omega) if omega.dtype.kind == "c" else respond(bound, omega).values
 
         return Base(function, bound.name, str(path), bound.source.unit, taken=taken, folders=folders)
 

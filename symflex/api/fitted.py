@@ -145,7 +145,7 @@ def fit(
     columns: str = "",
     axis: tuple[float, float] | None = None,
     averages: float | None = None,
-    window: Literal["hann", "none"] | None = None,
+    window: str | None = None,
     gain: bool = False,
     lag: bool | Literal["signed"] = False,
     delay: bool = False,
@@ -180,7 +180,7 @@ def fit(
     averages : float, optional
         Independent averages, where the data do not say.
     window : str, optional
-        ``hann`` or ``none``, where the data do not say.
+        ``hann``, ``none`` or ``exponential:0.5`` (time constant [s]), where the data do not say.
     gain : bool
         Fit a gain in addition to the base.
     lag : bool or "signed"

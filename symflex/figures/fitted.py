@@ -163,8 +163,8 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
     top.plot(frequency, _decibels(model), color=COLOURS[0], label=words)
     bottom.plot(frequency, fitted, color=COLOURS[0])
     if test.bands and not test.is_minimum_phase:
-        alone = model * test.resonances.factor(0, line.omega)
-        alone = alone / fit.resonances.factor(response, line.omega)
+        alone = model * test.resonances.factor(0, line.omega_seen)
+        alone = alone / fit.resonances.factor(response, line.omega_seen)
         phase = np.degrees(np.unwrap(np.angle(alone)))
         phase = phase + 360 * np.round((fitted[0] - phase[0]) / 360)
         bottom.plot(frequency, phase, color=COLOURS[1], linestyle=DASHES[1])

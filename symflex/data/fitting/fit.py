@@ -32,7 +32,16 @@ from symflex.data.fitting.order import (
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase, not_judged
 from symflex.data.fitting.problem import FitProblem, fit_problem
-from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Real, Resonances, Whole
+from symflex.data.fitting.resonances import (
+    LOGARITHMIC,
+    UNITS,
+    Complex,
+    Free,
+    Mask,
+    Resonances,
+    Values,
+    Whole,
+)
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
@@ -80,7 +89,7 @@ class Base:
     """What the resonances are multiplied by."""
 
     # Of angular frequencies [rad/s], shape (n,), to complex values.
-    function: Callable[[Real], Complex] = field(repr=False)
+    function: Callable[[Values], Complex] = field(repr=False)
     tf: str = ""  # ``OUT/IN`` of the specification it comes from; empty for a bare power of s
     path: str = ""  # the specification; empty likewise
     unit: str = ""  # of its values, empty when unknown
@@ -146,7 +155,7 @@ class ResonanceFit:
     def values(self, response: int, resonances: Resonances | None = None) -> Complex:
         """Return the fitted (or another) model on the lines of one response, without the window's effect."""
         line = self.problem.lines[response].every
-        return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
+        return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega_seen)
 
     def real_poles(self) -> list[tuple[float, float]]:
         """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""
@@ -272,7 +281,7 @@ def _fit(
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
-            place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
+            place = float(line.observation.omega[int(np.argmax(wrong))].real) / (2 * np.pi)
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
             hint = "add damping to the base, or choose a --band without this frequency"
             raise FitError(Diagnostic("SF615", message, None, hint))
@@ -508,7 +517,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 )
     for line in fit.problem.lines:
         spacing = line.measured.spacing_hz
-        if spacing is None or line.observation.matrix is not None:
+        if spacing is None or line.measured.window:
             continue
         widths = (modes.zeta_p * modes.omega_p / np.pi)[fit.modes]
         narrow = (np.flatnonzero(widths < 4 * spacing) + 1).tolist()

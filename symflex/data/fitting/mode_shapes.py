@@ -20,7 +20,7 @@ from scipy.optimize import least_squares
 from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.lines import isolated, wild_lines
 from symflex.data.fitting.observation import Observation, observe
-from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.fitting.resonances import Complex, Real, Values
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
 from symflex.quantities import parse_unit
@@ -139,7 +139,7 @@ class _SolvedShapes:
 def _system(response: MeasuredResponse, motion: _Motion) -> _ResponseSystem:
     wild = wild_lines(response.omega, response.values)
     kept = np.delete(np.arange(response.omega.size), isolated(wild, response.omega.size))
-    observation = observe(response.frequency_hz, response.spacing_hz, response.window).at(kept)
+    observation = observe(response).at(kept)
     relative = response.relative_deviation()
     deviation = (np.abs(response.values) * (1.0 if relative is None else relative))[kept]
     values = response.values[kept] / deviation
@@ -231,7 +231,7 @@ def _poles(logarithms: Real) -> Complex:
     return np.asarray(omega * (-zeta + 1j * np.sqrt(np.maximum(1 - zeta**2, 0.0))), np.complex128)
 
 
-def _basis(omega: Real, poles: Complex, derivative: int) -> Complex:
+def _basis(omega: Values, poles: Complex, derivative: int) -> Complex:
     """Return what responses are made of: residues' real and imaginary parts, modes below and above."""
     s = 1j * omega[:, None]
     one, other = 1 / (s - poles), 1 / (s - poles.conj())

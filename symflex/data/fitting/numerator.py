@@ -124,7 +124,7 @@ class _System:
 
     def __init__(self, problem: FitProblem, response: int, poles: Complex, every: int = 1) -> None:
         line = problem.lines[response]
-        omega, self.values, self.parts = line.omega[::every], line.ratio[::every], line.parts
+        omega, self.values, self.parts = line.omega_seen[::every], line.ratio[::every], line.parts
         weight = 1 / np.abs(self.values)
         if line.deviation is not None:
             weight = weight / line.deviation[::every]

@@ -43,7 +43,7 @@ REACH_IN_LINES = 4
 class Observation:
     """Where a response has to be known, and how the lines of a measurement follow from that."""
 
-    omega: Real  # shape (k,): Positive angular frequencies [rad/s]
+    omega: Values  # shape (k,): Positive angular frequencies [rad/s], as :attr:`MeasuredResponse.omega_seen`
     # shape (n, k): Its real and conjugating part; None when the lines are the values themselves.
     matrix: csr_array | None = None
     # shape (n, k): Acts on the conjugate values: what negative frequencies give to the lowest lines.
@@ -74,7 +74,7 @@ class Observation:
         return np.where(self.places < 0, np.conj(seen), seen)
 
 
-def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observation:
+def observe(response: MeasuredResponse) -> Observation:
     """Return how lines of a measurement follow from the response seen through a ``hann`` window, or none.
 
     Lines have a distance of one over the length of a record; where that is not the same throughout, None,
@@ -82,12 +82,14 @@ def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observ
 
     Examples
     --------
-    >>> seen = observe(np.arange(10.0, 20.0), 1.0, "hann")
+    >>> from symflex.data.measurement import MeasuredResponse
+    >>> seen = observe(MeasuredResponse("Y/U", np.arange(10.0, 20.0), np.ones(10), window="hann"))
     >>> bool(np.allclose(seen(np.ones(seen.omega.size)), 1))
     True
     """
-    if window != "hann" or spacing_hz is None or frequency_hz.size < REACH_IN_LINES:
-        return Observation(2 * np.pi * frequency_hz)
+    frequency_hz, spacing_hz = response.frequency_hz, response.spacing_hz
+    if response.window != "hann" or spacing_hz is None or frequency_hz.size < REACH_IN_LINES:
+        return Observation(response.omega_seen)
     steps = np.arange(-REACH_IN_LINES * STEPS_PER_LINE, REACH_IN_LINES * STEPS_PER_LINE + 1)
     power = seen_amplitudes() ** 2
     step = spacing_hz / STEPS_PER_LINE
@@ -195,6 +197,11 @@ class FittedLines:
     def omega(self) -> Real:
         """Angular frequencies of the lines [rad/s]."""
         return self.measured.omega
+
+    @property
+    def omega_seen(self) -> Values:
+        """``s/j`` of the lines [rad/s]."""
+        return self.measured.omega_seen
 
     @property
     def ratio(self) -> Complex:

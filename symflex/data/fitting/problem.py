@@ -9,7 +9,7 @@ import numpy as np
 
 from symflex.data.fitting.lines import telling_lines
 from symflex.data.fitting.observation import FittedLines, Observation, observe
-from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
+from symflex.data.fitting.resonances import Complex, Free, Resonances, Values, Whole
 from symflex.data.measurement import MeasuredResponse
 
 FEWEST_FOR_SLOPE = 5
@@ -106,14 +106,14 @@ class FitProblem:
 
     def without_window(self) -> FitProblem:
         """Return the same problem with lines taken as the values themselves."""
-        plain = [(line, Observation(line.omega), line.base_at_lines) for line in self.lines]
+        plain = [(line, Observation(line.omega_seen), line.base_at_lines) for line in self.lines]
         return replace(self, lines=tuple(replace(x, observation=o, base=base) for x, o, base in plain))
 
     def quotient(self, response: int) -> Complex:
         """Return measured values over the base, the dead time to begin with, and s to a known power."""
         line = self.lines[response]
         slope = self.slopes[0] if len(self.slopes) == 1 else 0
-        s = 1j * line.omega
+        s = 1j * line.omega_seen
         return np.asarray(line.ratio * np.exp(s * self.delays[response]) / s ** float(slope), np.complex128)
 
     def guessed_slope(self) -> int:
@@ -127,7 +127,7 @@ class FitProblem:
         """Return the problem on a base that has this power of s already, and the dead times to begin with."""
         lines = []
         for line, delay in zip(self.lines, self.delays, strict=True):
-            inside, at_lines = 1j * line.observation.omega, 1j * line.omega
+            inside, at_lines = 1j * line.observation.omega, 1j * line.omega_seen
             base = line.base * inside ** float(slope) * np.exp(-inside * delay)
             at_lines = line.base_at_lines * at_lines ** float(slope) * np.exp(-at_lines * delay)
             lines.append(replace(line, base=base, base_at_lines=at_lines))
@@ -149,7 +149,7 @@ class FitProblem:
 
 def fit_problem(
     measured: Sequence[MeasuredResponse],
-    bases: Sequence[Callable[[Real], Complex]],
+    bases: Sequence[Callable[[Values], Complex]],
     free: Free,
     *,
     has_base: bool = True,
@@ -162,8 +162,8 @@ def fit_problem(
     """
     lines = []
     for response, base in zip(measured, bases, strict=True):
-        observation = observe(response.frequency_hz, response.spacing_hz, response.window)
-        at_lines = base(response.omega)
+        observation = observe(response)
+        at_lines = base(response.omega_seen)
         everywhere = at_lines if observation.matrix is None else base(observation.omega)
         lines.append(FittedLines(response, observation, everywhere, at_lines, response.relative_deviation()))
     return FitProblem(tuple(lines), free, has_base, slopes)

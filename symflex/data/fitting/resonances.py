@@ -186,7 +186,7 @@ class Resonances:
         r = slice(response, response + 1)
         return replace(self, **{name: getattr(self, name)[r] for name in (*UNITS, "slope")})
 
-    def factor(self, response: int, omega: Real) -> Complex:
+    def factor(self, response: int, omega: Values) -> Complex:
         """Return the product with the response's gain at ``1j*omega``, shape (k,)."""
         s = 1j * omega
         lag = self.lag[response]
@@ -264,7 +264,7 @@ class Resonances:
         own |= {name: np.exp(logarithms) for name, logarithms in shared.items()}
         return replace(self, **own)  # type: ignore[arg-type]
 
-    def log_derivatives(self, response: int, omega: Real, free: Free) -> Complex:
+    def log_derivatives(self, response: int, omega: Values, free: Free) -> Complex:
         """Return d ln(factor) by the packed parameters that :meth:`columns` names, shape (k, p)."""
         n, shared = self.count, self.shared()
         slopes = np.zeros((omega.size, shared + self._own(response, free)), dtype=np.complex128)
@@ -286,14 +286,14 @@ class Resonances:
         return slopes
 
 
-def _quadratic(omega: Real, centre: float, zeta: float) -> Complex:
+def _quadratic(omega: Values, centre: float, zeta: float) -> Complex:
     """Return 1 + 2 zeta s/centre + (s/centre)^2 at s = j omega; a negative centre negates the square."""
     x = omega / abs(centre)
     value: Complex = 1 - np.sign(centre) * x * x + 2j * zeta * x
     return value
 
 
-def _log_slopes(omega: Real, centre: float, zeta: float) -> tuple[Complex, Complex]:
+def _log_slopes(omega: Values, centre: float, zeta: float) -> tuple[Complex, Complex]:
     """Return the derivatives of ln of :func:`_quadratic` by ln(centre) and by zeta."""
     x = omega / abs(centre)
     value = _quadratic(omega, centre, zeta)

@@ -24,7 +24,7 @@ from scipy.linalg import eig
 from scipy.signal import find_peaks, savgol_filter
 
 from symflex.budget import spend
-from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
@@ -224,7 +224,7 @@ def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
     line = problem.lines[0]
     low, high = problem.band
     for degree in (2 * count, 2 * count + SPARE, 3 * count + SPARE):
-        poles = _aaa_poles(line.omega, problem.quotient(0), degree)
+        poles = _aaa_poles(line.omega_seen, problem.quotient(0), degree)
         inside = [(size, pole) for size, pole in poles if low <= abs(pole) <= high]
         wanted = [(size, pole) for size, pole in inside if abs(pole.real) < 0.5 * abs(pole)]
         chosen = sorted(wanted, key=lambda item: -item[0])[:count]
@@ -249,7 +249,7 @@ def generous_fit(
         poles = poles if is_given else relocated(problem, poles, GENEROUS)
         values = []
         for r, line in enumerate(problem.lines):
-            basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
+            basis, weight = _local(problem, line.omega_seen, poles), _weights(problem, r)
             solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
             values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
         problem = problem.rephased(values)
@@ -262,7 +262,7 @@ def _conspicuous(problem: FitProblem, poles: Complex, order: int) -> Complex:
     ends = np.cumsum(_widths(poles))
     for r, line in enumerate(problem.lines):
         weight = _weights(problem, r)
-        basis = _local(problem, line.omega, poles)
+        basis = _local(problem, line.omega_seen, poles)
         solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
         for i, (end, width) in enumerate(zip(ends, _widths(poles), strict=True)):
             share = np.abs(basis[:, end - width : end] @ solved[end - width : end]) * weight
@@ -290,7 +290,7 @@ def _powers(problem: FitProblem) -> tuple[int, ...]:
 
 
 def _local(
-    problem: FitProblem, omega: Real, poles: Complex, powers: tuple[int, ...] | None = None
+    problem: FitProblem, omega: Values, poles: Complex, powers: tuple[int, ...] | None = None
 ) -> Complex:
     middle = np.exp(np.mean(np.log(problem.band)))
     x = 1j * omega[:, None] / middle
@@ -322,7 +322,7 @@ def _weights(problem: FitProblem, response: int) -> Real:
     return np.asarray(1 / (size if line.deviation is None else size * np.hypot(line.deviation, 0.01)))
 
 
-def _basis(omega: Real, poles: Complex) -> Complex:
+def _basis(omega: Values, poles: Complex) -> Complex:
     """Return 1/(s - p) of real poles and of the pairs in real combinations, shape (k, order)."""
     s = 1j * omega[:, None]
     ends = np.cumsum(_widths(poles))
@@ -363,8 +363,8 @@ def relocated(
         total = 0.0
         for r, line in enumerate(problem.lines):
             weight = _weights(problem, r)
-            local = _local(problem, line.omega, poles, powers)
-            shared = np.concatenate((_basis(line.omega, poles), np.ones((line.omega.size, 1))), axis=1)
+            local = _local(problem, line.omega_seen, poles, powers)
+            shared = np.concatenate((_basis(line.omega_seen, poles), np.ones((line.omega.size, 1))), axis=1)
             block = weight[:, None] * np.concatenate((local, -quotients[r][:, None] * shared), axis=1)
             block = np.concatenate((block.real, block.imag))
             # Only what the shared part needs is kept of each response (Deschrijver et al. 2008).
@@ -374,7 +374,7 @@ def relocated(
             total += float(np.linalg.norm(weight * np.abs(quotients[r]))) ** 2
         size = sum(line.omega.size for line in problem.lines)
         mean = np.sqrt(total) / size
-        sums = [np.append(_basis(x.omega, poles).real.sum(axis=0), x.omega.size) for x in problem.lines]
+        sums = [np.append(_basis(x.omega_seen, poles).real.sum(axis=0), x.omega.size) for x in problem.lines]
         rows.append(mean * np.sum(sums, axis=0)[None, :])
         right.append(np.array([mean * size]))
         matrix, target = np.concatenate(rows), np.concatenate(right)
@@ -404,9 +404,9 @@ def _upper(roots: Complex) -> Complex:
     return poles[np.argsort(np.abs(poles), kind="stable")]
 
 
-def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, complex]]:
+def _aaa_poles(omega: Values, values: Complex, degree: int) -> list[tuple[float, complex]]:
     """Return poles of an AAA approximant of data at s = j omega and its mirror, each with its weight."""
-    points = np.concatenate((1j * omega, -1j * omega))
+    points = np.concatenate((1j * omega, np.conj(1j * omega)))
     data = np.concatenate((values, np.conj(values)))
     free = np.ones(points.size, dtype=bool)
     chosen: list[int] = []

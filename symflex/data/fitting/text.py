@@ -274,7 +274,9 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
         parts.append(f"coherence {shares.min():.3f} or more, median {np.median(shares):.3f}")
         if measured.averages:
             parts.append(f"{measured.averages:g} averages")
-    if measured.window:
+    if rate := measured.decay_rate:
+        parts.append(f"exponential window: {rate:.4g} 1/s that it adds are subtracted from every decay rate")
+    elif measured.window:
         parts.append("Hann window")
     return ", ".join(parts)
 

@@ -21,7 +21,7 @@ where its spectrum is lowest (Bendat & Piersol, Random Data, 4th ed. 2010, secti
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,8 +29,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.measurement.columns import minimum_phase
-from symflex.data.measurement.measured_response import MeasuredResponse
-from symflex.errors import DataError, Diagnostic
+from symflex.data.measurement.measured_response import MeasuredResponse, window_of
+from symflex.errors import DataError, Diagnostic, UsageError
 
 if TYPE_CHECKING:
     from symflex.data.measurement.record import TimeRecord
@@ -47,6 +47,10 @@ LEVELS: Final = 0.02
 """Share of a step or pulse by which a level may be off."""
 PULSE: Final = 0.1
 """Share of a record in which a pulse ends."""
+SETTLED: Final = 1e-4
+"""The same, below which what is left needs no window, noise or not."""
+BELOW_NOISE: Final = 0.1
+"""Share of the smallest amplitude that noise lets see to which a window takes what is left."""
 AT_REST: Final = 0.02
 """Share of the largest amplitude below which the end of a record is at rest, noise aside."""
 EXCITED: Final = 1e-3
@@ -69,7 +73,12 @@ class Estimate:
 
     estimator: str = "h1"
     segments: int | None = None  # by default as the input asks
-    window: str = "hann"  # or none
+    window: str = "hann"  # or none, exponential, or exponential: and its time constant [s]
+
+    def __post_init__(self) -> None:
+        if self.window not in ("none", "exponential") and not window_of(self.window):
+            message = f"the window '{self.window[:40]}' is neither hann nor none nor exponential:SECONDS"
+            raise UsageError(Diagnostic("SF902", message, None, "such as --window exponential:0.5"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +88,6 @@ class _Channel:
     u: Real
     y: Real
     step_s: float
-
-    @property
-    def frequency_hz(self) -> Real:
-        return np.asarray(np.fft.rfftfreq(self.u.size, self.step_s), np.float64)
 
     @cached_property
     def level(self) -> tuple[int, float] | None:
@@ -95,12 +100,13 @@ class _Channel:
         jump = int(np.argmax(high))
         return (jump, float(u[-1] - u[0])) if np.all(high[jump:]) and np.all(low[:jump]) else None
 
-    @property
-    def is_pulse(self) -> bool:
-        """Tell whether the input is zero but for a short pulse."""
+    @cached_property
+    def pulse(self) -> int | None:
+        """Where a short pulse begins, before and after which the input is zero; ``None`` if it is another."""
         rest = np.median(self.u)
         acting = np.flatnonzero(np.abs(self.u - rest) > LEVELS * np.max(np.abs(self.u - rest)))
-        return bool(acting[-1] - acting[0] < PULSE * self.u.size and acting[0] < self.u.size / 2)
+        is_short = acting[-1] - acting[0] < PULSE * self.u.size and acting[0] < self.u.size / 2
+        return int(acting[0]) if is_short else None
 
     @property
     def is_transient(self) -> bool:
@@ -177,73 +183,102 @@ def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
     shorter = _Channel(channel.u[:held], channel.y[:held], channel.step_s)
     if channel.u.size - held <= STOPPED * channel.u.size and (shorter.level or (0, 0.0))[1]:
         channel = shorter
+    is_exponential = how.window.startswith("exponential")
     if how.segments is None and channel.level is not None:
-        return _of_step(channel)
-    if how.segments is None and channel.is_pulse:
-        return _of_pulse(channel)
+        return _of_step(channel, how)
+    if how.segments is None and (channel.pulse is not None or is_exponential):
+        return _of_whole(channel, how, "a record from rest" if channel.pulse is None else "an impact")
     if how.segments is None and (period := channel.period) is not None:
         return _of_periods(channel, period)
     if how.segments is None and channel.is_transient:
-        frequency, response, coherence, reach = _ratio(channel)
-        said = (
-            f"the output begins and ends at rest: its spectrum over that of the input, up to {reach:.4g} Hz"
-        )
-        return frequency, response, coherence, None, "", said
+        return _of_whole(channel, how, "the output begins and ends at rest")
     return _by_segments(channel, how)
 
 
-def _of_step(channel: _Channel) -> _Estimated:
+def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     """Return the response from a step: the spectrum of the output's increments over the jump.
 
     An input that is held between samples gives ``G(s) (1 - exp(-s h))/(s h)`` and what samples fold back.
     """
     assert channel.level is not None
     jump, size = channel.level
-    start = max(jump - 1, 0)
-    before = float(np.mean(channel.y[: start + 1])) if jump else 0.0
+    before = float(np.mean(channel.y[:jump])) if jump else 0.0
     increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
-    n = increments.size
-    frequency = np.fft.rfftfreq(n, channel.step_s)
-    s = 2j * np.pi * frequency * channel.step_s
+    noise = _noise_of(channel.y[jump:])
+    weights, window, said = _weights(increments, 2 * noise, channel.step_s, how)
+    rest = channel.y[-max(channel.y.size // 20, 4) :] if weights[-1] == 1 else channel.y[-1:]
+    increments[-1] += rest.mean() - channel.y[-1]
+    frequency = np.fft.rfftfreq(increments.size, channel.step_s)
+    s = 2j * np.pi * frequency * channel.step_s - np.log(weights[1])
     with np.errstate(all="ignore"):
         hold = np.where(s == 0, 1, (1 - np.exp(-s)) / s)
-    response = np.fft.rfft(increments) / size / hold
-    noise = _noise_of(channel.y[jump:])
-    end = channel.y[-max(n // 20, 4) :]
-    rests = float(np.ptp(end)) <= 2 * AT_REST * float(np.ptp(channel.y)) + 6 * noise
-    said = "a step: spectrum of the output's increments over the jump"
-    said += "" if rests else "; the output does not rest at the end, which changes gains, not poles"
-    kept = frequency <= BELOW_NYQUIST["step"] / channel.step_s
-    deviation = noise * np.abs(1 - np.exp(-s)) * np.sqrt(n) / abs(size) / np.maximum(np.abs(hold), 1e-3)
-    return frequency[kept], response[kept], _coherence(response, deviation)[kept], None, "", said
-
-
-def _of_pulse(channel: _Channel) -> _Estimated:
-    frequency, response, coherence, _ = _ratio(channel)
-    kept = frequency <= BELOW_NYQUIST["impact"] / channel.step_s
-    end = channel.y[-max(int(ENDS * channel.y.size), 4) :]
-    left = float(np.sqrt(np.mean((end - np.median(channel.y)) ** 2)) / np.max(np.abs(channel.y)))
-    said = (
-        "an impact: spectrum of the output over that of the input, without a window, which would add damping"
-    )
-    if left > AT_REST:
-        said += f"; {left:.0%} of the output is left at the end, which changes gains, not poles"
-    return frequency[kept], response[kept], coherence[kept], None, "", said
-
-
-def _ratio(channel: _Channel) -> tuple[Real, Complex, Real, float]:
-    """Return the ratio of the spectra of a whole record where the input excites, and up to where that is."""
-    begin = channel.u[:4]
-    offset = float(begin[0]) if np.ptp(begin) <= LEVELS * np.ptp(channel.u) else 0.0
-    u, y = np.fft.rfft(channel.u - offset), np.fft.rfft(channel.y - np.median(channel.y[:4]))
-    size = np.abs(u)
-    kept = size > EXCITED * size.max()
-    frequency = channel.frequency_hz
-    with np.errstate(all="ignore"):
-        response = y / u
-        deviation = _noise_of(channel.y) * np.sqrt(channel.y.size) / size
+    response = np.fft.rfft(increments * weights) / size / hold
+    kept = _apart(weights) & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
+    # Noise of every sample enters twice, but for that of the levels at both ends.
+    variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
+    variance += weights[-1] ** 2 / rest.size
+    deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
     coherence = _coherence(response, deviation)
-    return frequency[kept], response[kept], coherence[kept], float(frequency[kept][-1])
+    said = f"a step: spectrum of the output's increments over the jump{said}"
+    return frequency[kept], response[kept], coherence[kept], None, window, said
+
+
+def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
+    """Return the ratio of the spectra of a whole record where the input excites."""
+    first = channel.u[:4]
+    offset = float(first[0]) if np.ptp(first) <= LEVELS * np.ptp(channel.u) else 0.0
+    before = max(channel.pulse or 0, 4)
+    noise, y = _noise_of(channel.y), channel.y - channel.y[:before].mean()
+    is_plain = channel.pulse is None and how.window == "hann"  # it would weigh little what acts late
+    weights, window, said = _weights(
+        y, noise, channel.step_s, replace(how, window="none") if is_plain else how
+    )
+    above, below = np.fft.rfft(y * weights), np.fft.rfft((channel.u - offset) * weights)
+    frequency, size = np.fft.rfftfreq(y.size, channel.step_s), np.abs(below)
+    kept = _apart(weights) & (size > EXCITED * size.max())
+    if channel.pulse is not None:
+        kept &= frequency <= BELOW_NYQUIST["impact"] / channel.step_s
+    with np.errstate(all="ignore"):
+        response = above / below
+        # The level before the input acts is a mean of few samples, and is taken from all.
+        variance = np.sum(weights**2) + np.abs(np.fft.rfft(weights)) ** 2 / before
+        coherence = _coherence(response, noise * np.sqrt(variance) / size)
+    reach = f", up to {frequency[kept][-1]:.4g} Hz" if kept.any() and channel.pulse is None else ""
+    said = f"{kind}: spectrum of the output over that of the input{reach}{said}"
+    return frequency[kept], response[kept], coherence[kept], None, window, said
+
+
+def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real, str, str]:
+    """Return an exponential window over a response that begins at rest, its name, and what is said of it.
+
+    ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
+    asked for, it is as long as it may be to take what the output still does at the end below the noise. Noise
+    that it lets through correlates lines: ``1/(1 + j pi k tau/T)`` on those k apart.
+    """
+    from scipy.signal.windows import exponential  # as below
+
+    length = y.size * step_s
+    end = y[-max(y.size // 10, 8) :]
+    left = 2 * float(np.max(np.abs(np.fft.rfft(end)))) / end.size
+    # The largest of m lines of noise hardly exceeds its mean power (ln m + 5)-fold.
+    limit = max(2 * noise * np.sqrt((np.log(end.size) + 5) / end.size), SETTLED * float(np.max(np.abs(y))))
+    # Whole decades, so that records of one kind have one window and can be averaged.
+    decays = np.log(10) * np.ceil(np.log10(left / limit / BELOW_NOISE)) if left > limit else 0.0
+    if how.window == "none" or (how.window == "hann" and decays == 0):
+        share = left / float(np.max(np.abs(y)))
+        said = f"; {share:.0%} of it is left at the end, which changes gains, not poles"
+        return np.ones(y.size), "", said if share > AT_REST else ""
+    asked = how.window.partition(":")[2]
+    tau = float(asked or f"{length / (decays if how.window == 'hann' else np.log(100)):.4g}")
+    said = f", both with an exponential window of {tau:.4g} s: a fit subtracts its decay rate from the poles"
+    weights = exponential(y.size, center=0, tau=tau / step_s, sym=False)
+    return np.asarray(weights, np.float64), f"exponential:{tau:.4g}", said
+
+
+def _apart(weights: Real) -> npt.NDArray[np.bool_]:
+    """Return which lines are kept behind a window: every so many that noise has half forgotten."""
+    lines = np.arange(weights.size // 2 + 1)
+    return np.asarray(lines % max(round(-np.log(weights[-1]) / 1.5), 1) == 0)
 
 
 def _of_periods(channel: _Channel, period: int) -> _Estimated:
@@ -335,8 +370,13 @@ def _noise_of(values: Real) -> float:
     turn = 4 * np.sin(np.pi * np.arange(size.size) / (2 * max(size.size - 1, 1))) ** 2
     with np.errstate(all="ignore"):
         power = size[1:] / turn[1:]
-    parts = [float(np.median(part)) for part in np.array_split(power, min(20, max(power.size // 8, 1)))]
-    return float(np.sqrt(min(parts) / np.log(2) / values.size))
+    parts = np.array_split(power, min(20, max(power.size // 8, 1)))
+    medians = np.sort([float(np.median(part)) for part in parts])
+    # The lowest of many is too low: all that lie within the scatter of the mean of those below are noise.
+    limit = 1 + 3 / np.sqrt(parts[0].size)
+    means = np.cumsum(medians) / np.arange(1, medians.size + 1)
+    above = np.flatnonzero(medians[1:] > limit * means[:-1])
+    return float(np.sqrt(means[above[0] if above.size else -1] / np.log(2) / values.size))
 
 
 def _smoothed(power: Real) -> Real:

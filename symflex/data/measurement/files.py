@@ -21,7 +21,7 @@ from symflex.data.measurement.arrays import responses_of as responses_of_arrays
 from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
-from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
+from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse, window_of
 from symflex.data.measurement.record import TimeRecord, read_record
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
@@ -48,6 +48,8 @@ READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, .
 Each takes what messages call the file, its bytes, a name, and what ``--columns`` says. Files with other
 endings are read as text in columns where they are text.
 """
+CERTAIN: Final = 0.95
+"""Coherence of one average that noise alone has on one line in 200 million: ``exp(-0.95/0.05)``."""
 SAVE_AS: Final = {
     **dict.fromkeys((".xls", ".ods"), "save the sheet as .xlsx or .csv"),
     **dict.fromkeys((".s3p", ".s4p"), "save two of its ports as .s2p"),
@@ -160,7 +162,7 @@ def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
     """
     groups: dict[tuple[str, bytes], list[MeasuredResponse]] = {}
     for i, one in enumerate(responses):
-        key = (one.name, one.frequency_hz.tobytes()) if one.is_record else (str(i), b"")
+        key = (one.name + one.window, one.frequency_hz.tobytes()) if one.is_record else (str(i), b"")
         groups.setdefault(key, []).append(one)
     averaged = []
     for same in groups.values():
@@ -195,8 +197,9 @@ def prepared(
 ) -> tuple[MeasuredResponse, ...]:
     """Return responses with what is known of them, and the lines in a band [Hz] alone.
 
-    ``window`` is ``hann`` or ``none``. SF902 a band whose ends are not in order, an unknown window, or no
-    number of averages; SF605 when a response has no lines in the band.
+    ``window`` is ``hann``, ``none`` or ``exponential:`` and a time constant [s]. A record keeps
+    the lines from the first to the last that is no noise. SF902 a band whose ends are not in order, an
+    unknown window, or no number of averages; SF605 when a response has no lines in the band.
 
     Examples
     --------
@@ -205,8 +208,7 @@ def prepared(
     >>> one.frequency_hz.tolist(), one.averages
     ([2.0, 3.0], 8)
     """
-    if window not in (None, "hann", "none"):
-        raise UsageError(Diagnostic("SF902", f"the window '{window[:40]}' is neither hann nor none"))
+    Estimate(window=window or "none")
     if averages is not None and not 1 <= averages <= MOST_AVERAGES:
         message = f"the number of averages is {averages:g}; it must lie between 1 and {MOST_AVERAGES:g}"
         raise UsageError(Diagnostic("SF902", message))
@@ -217,8 +219,14 @@ def prepared(
         known = response
         if averages is not None and not known.is_record:
             known = replace(known, averages=averages)
+        if window == "exponential" and not known.is_record:
+            hint = "say its time constant: --window exponential:SECONDS"
+            raise UsageError(Diagnostic("SF902", f"'{response.name}' is no record in time", None, hint))
         if window is not None and not known.is_record:
-            known = replace(known, window=window.replace("none", ""))
+            known = replace(known, window=window_of(window))
+        if known.is_record and known.coherence is not None and not known.averages:
+            certain = np.flatnonzero(known.coherence > CERTAIN)
+            known = known.taken(np.arange(certain[0], certain[-1] + 1)) if certain.size else known
         if band is not None:
             known = known.between(*band)
             if not known.values.size:

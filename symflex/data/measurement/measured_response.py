@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final, Self
+from typing import Any, Final, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,9 @@ import numpy.typing as npt
 from symflex.errors import DataError, Diagnostic, Span, SpecError, Text
 from symflex.quantities import parse_unit
 
+_EXPONENTIAL = re.compile(
+    r"exponential[\s:=]+((?=[\d.]*[1-9])(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)\s*s?", re.I
+)
 SMALLEST_NOISE = 1e-6
 """The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""
 SHARE_OF_MEDIAN = 0.02
@@ -35,7 +39,8 @@ class MeasuredResponse:
     averages : float, optional
         The number of independent averages behind each value.
     window : str
-        The time window of the estimate, ``hann``; empty when it is unknown or there was none.
+        The time window of the estimate, ``hann``, or ``exponential:0.5`` with a time constant of 0.5 s; empty
+        when it is unknown or there was none.
     unit : str
         Of the values; empty when unknown.
     is_synthetic : bool
@@ -96,6 +101,16 @@ class MeasuredResponse:
         return 2 * np.pi * self.frequency_hz
 
     @property
+    def decay_rate(self) -> float:
+        """The rate that an exponential window adds to every decay [1/s]: one over its time constant."""
+        return 1 / float(self.window.partition(":")[2] or np.inf)
+
+    @property
+    def omega_seen(self) -> npt.NDArray[Any]:
+        """``s/j`` of the values [rad/s]: an exponential window moves ``s = j omega`` to the right."""
+        return self.omega - 1j * self.decay_rate if self.decay_rate else self.omega
+
+    @property
     def spacing_hz(self) -> float | None:
         """The spacing of lines [Hz] if it is uniform, else None."""
         steps = np.diff(self.frequency_hz)
@@ -113,7 +128,8 @@ class MeasuredResponse:
         if self.coherence is None:
             return None
         share = np.maximum(1 - self.coherence, SMALLEST_NOISE) / np.maximum(self.coherence, SMALLEST_NOISE)
-        share = np.maximum(share, SHARE_OF_MEDIAN * float(np.median(share)))
+        if not self.is_record or self.averages:
+            share = np.maximum(share, SHARE_OF_MEDIAN * float(np.median(share)))
         return np.sqrt(share / (2 * (self.averages or 1.0)))
 
     def misfit_db(self, model: npt.NDArray[np.complex128]) -> float:
@@ -321,13 +337,15 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
 
 
 def window_of(text: str) -> str:
-    """Return ``hann`` for the names analysers give that window, else nothing.
+    """Return ``hann``, ``exponential:`` and the time constant [s], or nothing for any other window.
 
     Examples
     --------
-    >>> window_of(" Hanning"), window_of("flat top")
-    ('hann', '')
+    >>> window_of(" Hanning"), window_of("exponential: 0.5 s"), window_of("flat top")
+    ('hann', 'exponential:0.5', '')
     """
+    if match := _EXPONENTIAL.fullmatch(text.strip()):
+        return f"exponential:{match[1]}"
     return "hann" if text.strip().lower() in ("hann", "hanning", "von hann") else ""
 
 

@@ -23,6 +23,7 @@ from symflex.data.measurement.measured_response import (
     MeasuredResponse,
     checked_response,
     unit_of,
+    window_of,
 )
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.errors.optional import installed
@@ -202,7 +203,7 @@ def _response(
     fields = dict(part.split("=", 1) for part in str(entry.get("id4", "")).split() if "=" in part)
     count = fields.get("averages", "")
     averages = float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None
-    window, is_synthetic = "hann" if fields.get("window") == "hann" else "", "synthetic" in note.lower()
+    window, is_synthetic = window_of(fields.get("window", "")), "synthetic" in note.lower()
     notes = (note,) if note else ()
     response = MeasuredResponse(
         tf, lines, values, weights, averages, window, unit, is_synthetic, notes, guesses

@@ -53,18 +53,26 @@ def of_lines(random, number, kind):
 
 
 def of_records(random, number, kind):
-    """Return a text of a step that comes to rest, or of a system that noise drives, and the poles.
+    """Return a text of a record in time, and the poles; white noise is added.
 
-    White noise is added, 0.1 to 1 % of the step, 1 to 5 % of the noise.
+    A step comes to rest, a hammer's decay does in every second record, noise drives all of its record, and a
+    chirp all but the last fifth; noise is 0.1 to 1 % of the output, 1 to 5 % where noise drives.
     """
-    count, over = 1 + number % 3, 4
+    count, over = 1 + number % 3, 4 if kind in ("step", "noise") else 16
     f_p, zeta_p = modes_apart(random, count, 1.3), random.uniform(0.01, 0.04, count)
     poles, sizes = np.column_stack((2 * np.pi * f_p, zeta_p)), random.uniform(0.5, 1.0, count)
     slowest = np.min(poles[:, 0] * zeta_p)
-    step = 1 / f_p[-1] / (random.uniform(16, 30) if kind == "step" else 8)
-    n = int(np.clip((6 if kind == "step" else 400) / slowest / step, 500, 40_000))
+    step = 1 / f_p[-1] / (8 if kind == "noise" else random.uniform(16, 30))
+    times = {"step": 6, "noise": 400, "hammer": 6 if number % 2 else 2.5, "chirp": 30}[kind]
+    n = int(np.clip(times / slowest / step, 500, 40_000)) + 20
+    t = (np.arange(n * over) - 20 * over) * step / over
     if kind == "step":
-        n, u = n + 20, (np.arange((n + 20) * over) >= 20 * over).astype(float)
+        u = (t >= 0).astype(float)
+    elif kind == "hammer":
+        u = np.where((t > 0) & (t < 6 * step), np.sin(np.pi * t / (6 * step)) ** 2, 0)
+    elif kind == "chirp":
+        u = signal.chirp(t, 0.3 * f_p[0], 0.8 * t[-1], 1.6 * f_p[-1])
+        u *= np.interp(t / t[-1], [0, 0.02, 0.78, 0.8], [0, 1, 1, 0])
     else:
         u = signal.lfilter(*signal.butter(6, 0.8 / over), random.standard_normal((n + 4000) * over))
     y = np.zeros(u.size)
@@ -74,12 +82,12 @@ def of_records(random, number, kind):
         top, bottom, _ = signal.cont2discrete(([size * w * w], [1, 2 * z * w, w * w]), step / over, how)
         y += signal.lfilter(top.ravel(), bottom, u)
     u, y = u[-n * over :: over], y[-n * over :: over]
-    noise = random.uniform(*((0.001, 0.01) if kind == "step" else (0.01, 0.05)))
+    noise = random.uniform(*((0.01, 0.05) if kind == "noise" else (0.001, 0.01)))
     return table("time,u,y", np.arange(n) * step, u, y + noise * np.std(y) * random.standard_normal(n)), poles
 
 
 KINDS = dict.fromkeys(("complex", "magnitude", "exact", "coherence"), of_lines)
-KINDS |= dict.fromkeys(("step", "noise"), of_records)
+KINDS |= dict.fromkeys(("step", "noise", "chirp", "hammer"), of_records)
 
 
 def study(kind, count, seed=1, show=None):

@@ -11,7 +11,7 @@ from scipy import signal
 
 import symflex
 from symflex.cli import run
-from symflex.data.measurement import Estimate, prepared, read_measurement
+from symflex.data.measurement import Estimate, measurement_bytes, prepared, read_measurement
 from symflex.data.measurement.record import read_record
 from symflex.errors import DataError, UsageError
 
@@ -93,6 +93,39 @@ def test_noise_is_averaged_by_welch_with_a_coherence_that_explains_the_error(tmp
         np.abs(response.values / true(response.frequency_hz) - 1) / response.relative_deviation() / np.sqrt(2)
     )
     assert 0.5 < np.sqrt(np.mean(error**2)) < 1.5
+
+
+def test_an_impact_that_does_not_die_away_is_seen_through_an_exponential_window(tmp_path):
+    u, y = simulated(inputs("impact", 512, 16), 16)
+    path = written(tmp_path, u, y)
+    (plain,) = read_measurement(path, estimate=Estimate(window="none"))
+    assert "of it is left at the end, which changes gains" in plain.guesses[0] and not plain.window
+    for window in ("hann", "exponential", "exponential:0.3"):
+        (response,) = read_measurement(path, estimate=Estimate(window=window))
+        assert "a fit subtracts its decay rate" in response.guesses[0] and response.decay_rate > 3, window
+        low = response.between(4.0, 40.0)
+        error = np.abs(low.values / true(low.omega_seen / (2 * np.pi)) - 1)
+        assert np.max(error) < (0.03 if window == "exponential:0.3" else 0.01), window
+    with pytest.raises(UsageError, match="neither hann nor none nor exponential:SECONDS"):
+        Estimate(window="exponential:0")
+
+
+def test_the_damping_of_an_exponential_window_is_taken_out_of_a_fit(tmp_path):
+    f = np.arange(2.0, 60.0, 0.25)
+    h = true(f - 1j / (2 * np.pi * 0.4))
+    rows = "\n".join(f"{a:.9g},{b.real:.9g},{b.imag:.9g}" for a, b in zip(f, h, strict=True))
+    path, made = tmp_path / "frf.csv", tmp_path / "again.uff"
+    for head, window in (("# window: exponential 0.4 s\n", None), ("", "exponential:0.4")):
+        path.write_text(f"{head}frequency_hz,re,im\n{rows}\n", encoding="utf-8")
+        fit = symflex.fit(path, window=window)
+        assert np.allclose(fit.frequencies_hz, [12.0, 31.0], rtol=1e-6)
+        assert np.allclose(fit.found.resonances.zeta_p, [0.03, 0.02], rtol=1e-5)
+        assert "2.5 1/s that it adds are subtracted" in str(fit)
+    (response,) = prepared(read_measurement(path), window="exponential:0.4")
+    made.write_bytes(measurement_bytes(response, made))
+    assert read_measurement(made)[0].window == "exponential:0.4"
+    with pytest.raises(UsageError, match="is no record in time"):
+        prepared(read_measurement(path), window="exponential")
 
 
 @pytest.mark.slow
