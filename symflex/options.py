@@ -459,9 +459,9 @@ ESTIMATOR: Final = {
     "help": "Records in time: h1 for noise at the output, h2 for noise at the input.",
 }
 WINDOW_OF_DATA: Final = {
-    "metavar": "hann|none|exponential[:TAU]",
-    "help": "Time window of the estimate, if the file does not give it; of a record in time the one to use. "
-    "TAU is a time constant in seconds.",
+    "metavar": "NAME",
+    "help": "Window of the estimate, hann, none or exponential:SECONDS (its time constant), if the file does "
+    "not give it; of a record in time the one to use.",
 }
 
 

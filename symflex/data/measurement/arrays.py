@@ -434,7 +434,7 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=; or t=, u=, y=)"
         key, matrix = largest_matrix(arrays)
         timed = option_in_time(list(matrix.T)) if key else ""
-        timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format("u=NAME,y=NAME")
+        timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format("u=NAME,y=NAME,dt=SECONDS")
         alone = WITHOUT_AXIS if complexes else f"{timed}; {WITHOUT_AXIS}"
         raise DataError(Diagnostic("SF602", message, None, hint if rising else alone))
     ((f, h),) = pairs

@@ -104,7 +104,7 @@ _SUFFIX = re.compile(
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
-WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {},dt=SECONDS"
+WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {}"
 WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ say them"
 UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
@@ -940,6 +940,8 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
     return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
 
 
+SINCE_1970: Final = 1e11
+"""Numbers above which an axis without a name is rather a time in milliseconds than a frequency."""
 MOST_COMPARED: Final = 1000
 """Lines by which readings are compared."""
 _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
@@ -955,8 +957,9 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
     is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
-    if re.search(r"\b(?:time|zeit|temps|tiempo)\b|^t\b", columns[axis].name, re.I):
-        return f"'{columns[axis].name[:30]}' is no frequency: --columns t,u,y reads a record in time"
+    if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t\b", columns[axis].name, re.I):
+        timed = option_in_time([c.numbers for c in columns[axis:]], axis)
+        return f"'{columns[axis].name[:30]}' is no frequency: {timed or HINT}"
     if columns[axis].meaning.kind not in ("", "frequency"):
         return WITHOUT_AXIS
     if _NO_WORD.search(columns[axis].name):
@@ -965,10 +968,11 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     most = max(np.sum(steps > 0), np.sum(steps < 0))
     is_counter = not steps.all() and np.mean(np.diff(columns[axis].numbers) == 1) > MOST_ALIKE
     if not columns[axis].meaning.kind and (is_counter or most < MOST_ALIKE * steps.size):
-        return WITHOUT_TIME.format(signals([c.numbers for c in columns]))
-    is_open = not columns[axis].name and steps.size >= FEWEST_TO_DECIDE
+        return WITHOUT_TIME.format(signals([c.numbers for c in columns], ",dt=SECONDS"))
+    is_open = not columns[axis].meaning.kind and steps.size >= FEWEST_TO_DECIDE
     timed = option_in_time([c.numbers for c in columns[axis:]], axis) if is_open else ""
-    is_held = any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
+    is_held = columns[axis].numbers.real[0] > SINCE_1970
+    is_held |= any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
     open_ones: list[int] = []
     for i, c in enumerate(columns):
         if (
@@ -1001,22 +1005,29 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     return f"say what the columns are: {timed}, or {alone}" if timed else alone
 
 
-def signals(columns: Sequence[npt.NDArray[Any]]) -> str:
-    """Return the words of ``--columns`` for an input and an output: columns that change and do not count."""
+def signals(columns: Sequence[npt.NDArray[Any]], end: str = "") -> str:
+    """Return the words of ``--columns`` for an input and an output: columns that change and do not count.
+
+    ``end`` follows them. If more columns change, the text says which these are.
+    """
     do_count = [np.sum(np.diff(x) == 1) > MOST_ALIKE * x.size for x in columns]
-    changing = [i for i, x in enumerate(columns) if np.ptp(x.real) and not do_count[i]]
+    changing = [i for i, x in enumerate(columns) if np.ptp(x.real) > 0 and not do_count[i]]
     places = dict(zip(changing, "uy" if len(changing) > 1 else "y", strict=False))
-    return ",".join(places.get(i, "-") for i in range(max(places, default=-1) + 1)) or "y"
+    words = ",".join(places.get(i, "-") for i in range(max(places, default=-1) + 1)) or "y"
+    more = " (u and y are the first two columns that change: move them, with - for what is left out)"
+    return words + end + more * (len(changing) > 2)  # noqa: PLR2004
 
 
 @np.errstate(all="ignore")
 def option_in_time(columns: Sequence[npt.NDArray[Any]], before: int = 0) -> str:
     """Return the option that reads columns as a record in time, nothing where the first is no time."""
     times = columns[0].real
+    if counts(times):
+        return f"--columns {'-,' * (before + 1)}{signals(columns[1:], ',dt=SECONDS of a record in time')}"
     steps, usual = np.diff(times), np.median(np.diff(times))
     if times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual:
         return ""
-    return f"--columns {'-,' * before}t,{signals(columns[1:])} of a record in time"
+    return f"--columns {'-,' * before}t,{signals(columns[1:], ' of a record in time')}"
 
 
 def _is_same(values: Real, other: Real) -> bool:

@@ -92,7 +92,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     blocks = table.blocks()
     if not blocks:
         are_alone = sum(number(line, table.decimal) is not None for line in table.lines) >= FEWEST_ROWS
-        hint = f"{WITHOUT_AXIS}; {WITHOUT_TIME.format('y')}" if are_alone else HINT
+        hint = f"{WITHOUT_AXIS}; {WITHOUT_TIME.format('y,dt=SECONDS')}" if are_alone else HINT
         raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, hint))
     if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))

@@ -35,16 +35,16 @@ ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)
 """Ends of the names of files that are inputs."""
 _UNITS: Final = {
     Fraction(1): "s sec secs second seconds sekunde sekunden",
-    Fraction(1, 10**3): "ms msec millisecond milliseconds",
-    Fraction(1, 10**6): "us usec \u00b5s \u03bcs microsecond microseconds",
+    Fraction(1, 10**3): "ms msec millis millisecond milliseconds",
+    Fraction(1, 10**6): "us usec \u00b5s \u03bcs micros microsecond microseconds",
     Fraction(1, 10**9): "ns nanosecond nanoseconds",
 }
 SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in words.split()}
 _UNIT: Final = "|".join(SECONDS)
 TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
-    r"(?:t|tout|times?|time[ _]?stamp|zeit|temps|tiempo|tempo|tid|tijd|"
-    r"\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
+    r"(?:t|tout|(?:date|datum)[ _/]*(?:time|zeit|uhrzeit)|uhrzeit|times?|time[ _]?stamp|zeit|temps|"
+    r"tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
     rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT})[\])]?)?|x_value|"
     rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
     re.I,
@@ -165,13 +165,16 @@ def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, 
         if start is not None and step:
             return ["X", "CH1"], 0, step, start
     below: list[str] = []
-    for line in reversed(table.lines[:first]):
+    for line, above in pairwise([*reversed(table.lines[:first]), ""]):
         text = line.strip().lstrip(SIGNS) if line.strip().startswith(COMMENTS) else line
         ways = cut(text, table.delimiter), re.split(r"\s*[,;\t]\s*|\s{2,}|(?<=[\])])\s+", text.strip())
         for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
             for i, name in enumerate(names[:-1]):
                 match = TIME.fullmatch(name.strip("\"' _"))
+                named = cut(above, table.delimiter)[i : i + 1]
+                if match and match["alone"] and named and TIME.fullmatch(named[0]):
+                    continue  # a row of units: the names are above
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):
                     said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
                     return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1)), Fraction(0)

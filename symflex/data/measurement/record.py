@@ -58,6 +58,18 @@ _INPUT = re.compile(
     r"stimulus|reference|command|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
     re.I,
 )
+_MARKER = re.compile(r"(?:\w+[ _])?(?:trigger|trig|tacho\w*|keyphasor|marker|event|gate)(?:[ _]?\w+)?", re.I)
+"""Names of channels that say when something happens, and are neither input nor output."""
+_CLOCK = re.compile(
+    rb"(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}([T ,;\t])\s*)?(?<!\d)(\d\d?):(\d\d):(\d\d)(\.\d+|,\d+(?=[;\t\"]))?"
+    rb"(?:Z|[-+]\d\d:?\d\d)?"
+)
+"""A time of day, perhaps behind a date: 2024-01-05T10:00:00.010Z, 05.01.2024 10:00:00,010, 10:00:00.010."""
+DAY: Final = 86_400
+_EPOCHS: Final = {1e-3: (1e11, 1e13), 1e-6: (1e14, 1e16), 1e-9: (1e17, 1e19)}
+"""Where times since 1970 are if they are not in seconds, of this century."""
+_DAYS: Final = (36_526, 73_050)
+"""Numbers of days by which workbooks write the dates from 2000 to 2099."""
 _RATE = re.compile(r"(?:sampl\w*|scan)[ _.]*(?:rate|freq\w*)|(?<![a-z])f_?s(?![a-z])|abtastrate", re.I)
 _INTERVAL = re.compile(
     r"sampl\w*[ _.]*(?:interval|period|time)|"  # "record length" is a number of samples
@@ -118,8 +130,10 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         return _asked_arrays(arrays, words, told, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
-    table = TextTable.of(name, data)
+    table = TextTable.of(name, timed := _without_clock(data))
     first = next((i for i in range(min(SEARCHED, len(table.lines))) if _is_row(table, i)), None)
+    if first is None and asked:
+        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, "one row a sample"))
     if first is None:
         return None
     width = len(cut(table.lines[first], table.delimiter))
@@ -131,6 +145,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
         channels = list(zip(_names(table, first, width) or [*words, *["-"] * width], columns, strict=False))
         return _asked(channels, words, told, stem, guesses, (table, lines))
+    if not names and timed is not data:  # nothing names the times of day: behind a date of zero, or first
+        names, at = [f"column {i + 1}" for i in range(width)], int(table.lines[first].startswith("0"))
     step = None if names else _told_step(table, first)
     if not names and step is None:
         return None
@@ -141,7 +157,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if names and np.isfinite(columns[at]).sum() == 1 and np.nansum(columns[at]) > 0:  # the sampling time
         names, step = [], float(np.nansum(columns[at])) * float(unit)
     if names:
-        times = columns[at] * float(unit) + float(start)
+        times = _seconds(columns[at] * float(unit), guesses) + float(start)
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i != at]
         step, kept = _even(times, table, lines, guesses)
         if step > LONG:
@@ -154,6 +170,36 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     return _sorted(channels, step, stem, name, guesses, "t,u,y" if names else f"u,y,dt={step:.6g}")
 
 
+def _without_clock(data: bytes) -> bytes:
+    """Return a text with times of day, and dates before them, as seconds; days go on after midnight."""
+    if len(_CLOCK.findall(data, 0, 20_000)) < BEGIN:
+        return data
+    last, days = 0.0, 0
+
+    def seconds(match: re.Match[bytes]) -> bytes:
+        nonlocal last, days
+        now = 3600.0 * int(match[2]) + 60 * int(match[3]) + int(match[4])
+        days += now < last - DAY / 2
+        last = now
+        date = b"0" + match[1] if (match[1] or b" ") not in b"T " else b""  # it has a column of its own
+        return b"%s%d%s" % (date, now + DAY * days, match[5] or b"")
+
+    return _CLOCK.sub(seconds, data)
+
+
+def _seconds(times: Real, guesses: list[str]) -> Real:
+    """Return times in seconds: large numbers count since 1970, and those of workbooks are days."""
+    begin, end = float(times[0]), float(times[-1])
+    unit = next((unit for unit, (low, high) in _EPOCHS.items() if low < begin < high), None)
+    if unit is not None:
+        guesses.append(f"times are read as multiples of {unit:g} s since 1970")
+        return (times - begin) * unit
+    if _DAYS[0] < begin < _DAYS[1] and end - begin < 1 and 0 < (end - begin) / times.size < 1 / DAY:
+        guesses.append("times are read as days, as workbooks count them; --columns t_s,u,y for seconds")
+        return (times - begin) * DAY
+    return times
+
+
 def _is_frequency(name: str) -> bool:
     """Tell whether a name is that of a frequency or of a spectrum; a force may be called F."""
     is_named = meaning_of(name).kind == "frequency" and bare(name).lower() != "f"
@@ -163,7 +209,7 @@ def _is_frequency(name: str) -> bool:
 def _may_be_record(data: bytes) -> bool:
     """Tell whether a text may be a record: its head says time, and none of it speaks of a frequency."""
     head = data[:20_000].decode("latin-1")
-    if not (TIME.search(head) or _RATE.search(head) or _INTERVAL.search(head)):
+    if not (any(p.search(head) for p in (TIME, _RATE, _INTERVAL)) or _CLOCK.search(data, 0, len(head))):
         return False
     lower = data.lower()
     if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q", b"omega")):
@@ -258,6 +304,8 @@ def _even(
         i = int(np.argmax(~(steps > 0))) + 1
         place = table.line(lines[i]) if table else None
         hint = "one record per file; sort its lines, or leave out what was recorded before"
+        if np.all(steps >= 0):
+            hint = "several samples have one time: say how far they are apart, --columns -,u,y,dt=SECONDS"
         message = f"the time {times[i]:.9g} s follows {times[i - 1]:.9g} s"
         raise DataError(Diagnostic("SF604", message, place, hint))
     step = float(np.median(steps))
@@ -295,6 +343,7 @@ def _asked(
     step, kept, times = number(told[3:]), False, np.empty(0)
     if not told and at is not None:
         times = channels[at][1] * float(SECONDS.get(words[at].partition("_")[2], 1))
+        times = _seconds(times, guesses) if words[at] == "t" else times
         step, kept = _even(times, *place, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
         message = f"--columns: '{told[:40]}' is no sampling time in seconds"
@@ -375,6 +424,10 @@ def _sorted(
             break
     dead = [channel for channel, values in channels if np.ptp(values) == 0]
     channels = [(c, x) for c, x in channels if c not in dead]
+    markers = [channel for channel, _ in channels if _MARKER.fullmatch(channel)]
+    if markers and len(channels) > len(markers) + 1:
+        channels = [(c, x) for c, x in channels if c not in markers]
+        guesses.append(f"'{markers[0][:30]}' marks times and is left out; --columns {option} says otherwise")
     if dead:
         guesses.append(f"'{dead[0][:30]}' never changes and is left out")
     if not channels:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -303,6 +304,36 @@ def test_hints_followed_to_the_letter_read_the_record(tmp_path):
         assert len(record.outputs) == 1 and np.allclose(record.outputs[0][1], y, atol=1e-3), name
     with pytest.raises(UsageError, match="'dt=SECONDS' is no sampling time"):
         read_record("a.csv", cases["named.csv"][0], "a", "u,y,dt=SECONDS")
+
+
+def test_times_of_day_dates_and_times_since_1970_are_read():
+    noise = np.random.default_rng(1).normal(size=(64, 2))
+    since = [datetime(2024, 1, 5, 23, 59, 59, 700_000) + timedelta(seconds=i / 100) for i in range(64)]
+    milliseconds = [1_704_499_199_700 + 10 * i for i in range(64)]
+    cases = {
+        "timestamp,u,y": [f"{d:%Y-%m-%dT%H:%M:%S.%f}Z" for d in since],
+        "": [f"{d:%Y-%m-%d %H:%M:%S.%f}" for d in since],
+        "Date,Time,u,y": [f"{d:%m/%d/%Y,%H:%M:%S.%f}" for d in since],
+        "Datum/Zeit;Eingang;y": [f"{d:%d.%m.%Y %H:%M:%S,%f}" for d in since],
+        "time,trigger,u,y": [f"{x},{int(x > 1_704_499_200_000)}" for x in milliseconds],
+        "millis,u,y": [f"{x}" for x in range(0, 640, 10)],
+        "Time,u,y\nms,N,mm": [f"{x}" for x in range(0, 640, 10)],
+        "time,u,y": [f"{45296.4 + i / 8_640_000:.11f}" for i in range(64)],
+    }
+    for head, times in cases.items():
+        sep = ";" if ";" in head else ","
+        cells = [[f"{x:.9f}".replace(".", "," if sep == ";" else ".") for x in row] for row in noise.tolist()]
+        rows = (sep.join([t, *row]) for t, row in zip(times, cells, strict=True))
+        record = read_record("a.csv", "\n".join([head, *rows]).encode(), "a")
+        assert record is not None, head
+        assert record.step_s == pytest.approx(0.01, rel=2e-3), head
+        assert np.allclose(record.input[1][:9], noise[:9, 0], atol=0.2 if head == "time,u,y" else 1e-8), head
+        assert len(record.outputs) == 1, head
+    whole = "\n".join(f"{d:%H:%M:%S},{a},{b}" for d, (a, b) in zip(since, noise.tolist(), strict=True))
+    with pytest.raises(DataError) as caught:
+        read_record("a.csv", f"time,u,y\n{whole}".encode(), "a")
+    assert "--columns -,u,y,dt=SECONDS" in caught.value.diagnostics[0].hint
+    assert read_record("a.csv", f"time,u,y\n{whole}".encode(), "a", "-,u,y,dt=0.01").step_s == 0.01
 
 
 def test_odd_columns_of_loggers_are_read():
