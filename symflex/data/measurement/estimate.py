@@ -5,17 +5,17 @@ Output: a :class:`~symflex.data.measurement.MeasuredResponse` per output; its gu
 
     kind        known by                                    response
     step        the input has two levels                    spectrum of y' over that of u'
-    impact      the input is zero but for a pulse           Y U*/abs(U)^2 of the whole record
+    impact      the input is zero but for a pulse           spectrum of y over that of u
     transient   the output begins and ends at rest          the same
     periodic    the input repeats two times or more         the mean over whole periods, at excited lines
     noise       anything else                               Welch (1967), H1 or H2
     decay       no input, and the output dies away          spectrum of y, for its poles alone
     response    no input, and it does not die away          root of its power spectrum, likewise
 
-The spectrum of a record that ends while the response decays has the poles of the response, and no others: at
-lines ``omega_k = 2 pi k/T`` a mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. So no window is
-put over an impact or a decay: it would add damping that had to be taken out again. The error of an estimate
-is in its coherence: of Welch's method and of periods from their scatter, else from the noise of the output
+The spectrum of a decay that a record cuts off has its poles, and no others: at lines ``omega_k = 2 pi k/T`` a
+mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. Its gain is wrong. Under a window ``exp(-t/tau)``
+over y and u their ratio is the transfer function at ``s = 1/tau + j omega``, where a fit evaluates its model
+(Laplace transforms, shifted). The error of an estimate is in its coherence: of Welch's method and of periods from their scatter, else from the noise of the output
 where its spectrum is lowest (Bendat & Piersol, Random Data, 4th ed. 2010, sections 5.3 and 9.1).
 """
 
