@@ -13,10 +13,11 @@ Output: a :class:`~symflex.data.measurement.MeasuredResponse` per output; its gu
     response    no input, and it does not die away          root of its power spectrum, likewise
 
 The spectrum of a decay that a record cuts off has its poles, and no others: at lines ``omega_k = 2 pi k/T`` a
-mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. Its gain is wrong. Under a window ``exp(-t/tau)``
-over y and u their ratio is the transfer function at ``s = 1/tau + j omega``, where a fit evaluates its model
-(Laplace transforms, shifted). The error of an estimate is in its coherence: of Welch's method and of periods from their scatter, else from the noise of the output
-where its spectrum is lowest (Bendat & Piersol, Random Data, 4th ed. 2010, sections 5.3 and 9.1).
+mode ``r exp(p t)`` gives ``r (1 - exp(p T))/(j omega_k - p)``. Its gain is wrong. Under a window
+``exp(-t/tau)`` over y and u their ratio is the transfer function at ``s = 1/tau + j omega``, where a fit
+evaluates its model (Laplace transforms, shifted). The error of an estimate is in its coherence: of Welch's
+method and of periods from their scatter, else from the noise of the output where its spectrum is lowest
+(Bendat & Piersol, Random Data, 4th ed. 2010, sections 5.3 and 9.1).
 """
 
 from __future__ import annotations
