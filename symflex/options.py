@@ -57,6 +57,11 @@ def file_option(about: str) -> str | None:
 ONE_TF: Final = {"metavar": "OUT/IN", "help": "Transfer function.  [default: the first one]"}
 SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True}
 ONLY_TFS: Final = {**SOME_TFS, "help": "Only this transfer function; may be repeated."}
+RECORD: Final = {
+    "metavar": "FILE",
+    "help": "Record in time: its input drives the model, its output is compared and drawn.",
+}
+COLUMNS_OF_RECORD: Final = {"metavar": "WORDS", "help": "Columns of the record: t,u,y."}
 JSON: Final = {"help": "Print the result as JSON."}
 OUTSIDE: Final = {
     "multiple": True,
@@ -241,13 +246,8 @@ class RespondOptions:
         metavar="step|impulse|ramp|free|FILE.csv",
         help="Input from t = 0 on; a file has two columns, time_s and the value; free: no input.",
     )
-    record: str | None = option(
-        None,
-        "--record",
-        metavar="FILE",
-        help="Record in time: its input drives the model, its output is compared and drawn.",
-    )
-    columns: str = option("", "--columns", metavar="WORDS", help="Columns of the record: t,u,y.")
+    record: str | None = option(None, "--record", **RECORD)
+    columns: str = option("", "--columns", **COLUMNS_OF_RECORD)
     hold: bool = option(
         False, "--hold", help="Hold every value of a file until the next one, as digital controllers do."
     )
@@ -423,6 +423,8 @@ class PlotOptions:
     until: str | None = option(
         None, "--until", metavar="TIME", help="Last time of a step or impulse response: 0.5s."
     )
+    record: str | None = option(None, "--record", **RECORD)
+    columns: str = option("", "--columns", **COLUMNS_OF_RECORD)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

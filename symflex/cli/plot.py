@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note
+from symflex.cli.respond import show_response
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.options import DrawOptions, PlotOptions, duration, gain_ends
+from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 SWEEP = "sweep"
 IN_TIME = ("step", "impulse")
+FRAME = ("xlim", "ylim", "width", "font")
 
 
 @command_of("draw", DrawOptions)
@@ -60,7 +62,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     --band sets the frequencies of bode and nyquist curves, and which modes are drawn. Figures in the s plane
     show everything up to the end of the band. --xlim, --ylim and --phase set the ends of axes. Frequencies
     and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim
-    [s], by default until the slowest motion has died away.
+    [s], by default until the slowest motion has died away. step --record FILE drives the model with the
+    input of a record in time instead, and draws the measured output over the model's, as 'symflex respond'.
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
@@ -74,8 +77,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
 
-    if SWEEP in (spec.path, given.kind):
-        return _plot_sweep(spec, given)
+    if given.record or SWEEP in (spec.path, given.kind):
+        return (_plot_record if given.record else _plot_sweep)(spec, given)
     if given.kind.endswith(".toml") and not Path(spec.path).exists():
         raise _exchanged(spec, given)
     path = check_place(given.output, PICTURES) if given.output else None
@@ -136,6 +139,16 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 def _exchanged(spec: Specification, given: PlotOptions) -> UsageError:
     hint = f"the file comes first: symflex plot {given.kind} {spec.path}"
     return UsageError(Diagnostic("SF902", f"there is no file '{spec.path}'", None, hint))
+
+
+def _plot_record(spec: Specification, given: PlotOptions) -> int:
+    """Draw the measured output of a record over the model's."""
+    if given.kind != "step" or len(given.tfs) > 1:
+        raise UsageError(Diagnostic("SF902", "--record is for step, and one --tf"))
+    path = check_place(given.output or f"{Path(spec.path).stem}_step.pdf", PICTURES)
+    shared = {name: getattr(given, name) for name in ("record", "columns", "until", *FRAME)}
+    tf = next(iter(given.tfs), None)
+    return show_response(spec, RespondOptions(tf=tf, output=str(path), **shared))
 
 
 def _plot_sweep(spec: Specification, given: PlotOptions) -> int:

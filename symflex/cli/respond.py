@@ -50,6 +50,11 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     Exit code 4: the response could not be found, or, with --strict, is not certified.
     """
+    return show_response(spec, given)
+
+
+def show_response(spec: Specification, given: RespondOptions) -> int:
+    """Print, write or draw a response in time."""
     from symflex import pipeline
     from symflex.analysis.response import roots_if_found
     from symflex.analysis.time_response import (

@@ -391,5 +391,9 @@ def test_a_record_drives_the_model_and_its_output_is_compared(oscillator, tmp_pa
     assert rms == pytest.approx(np.sqrt(np.mean((measured / 11) ** 2)), rel=1e-3)
     assert f"measured X less the model: rms {rms:.4g}" in oscillator(*asked).out
     assert oscillator(*asked, "-o", "axis.svg").code == 0
+    drawn = ("osc.toml", "step", "--tf", "X/F", "--record", "axis.csv", "-o", "step.svg")
+    assert oscillator("plot", *drawn).code == 0
+    assert "measured" in (tmp_path / "step.svg").read_text(encoding="utf-8")
+    assert oscillator("plot", "osc.toml", "bode", *drawn[2:]).code == 2
     assert oscillator(*asked, "--to", "ramp").code == 2
     assert oscillator("respond", "osc.toml", "--tf", "X/F", "--record", "osc.toml").code == 2
