@@ -250,9 +250,9 @@ def fit_resonances(
     [62.8] [0.02] [3.]
     """
     choices = ((given.start, ("auto", *STARTS), "start"), (given.criterion, CRITERIA, "criterion"))
-    for name, known, what in choices:
-        if name not in known:
-            hint = nearest(name, known) or f"choose from: {', '.join(known)}"
+    for name, allowed, what in choices:
+        if name not in allowed:
+            hint = nearest(name, allowed) or f"choose from: {', '.join(allowed)}"
             raise UsageError(Diagnostic("SF902", f"there is no {what} '{name[:64]}'", None, hint))
     if bases is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "a power of s is for fits without a base"))
@@ -392,7 +392,6 @@ def _seen(problem: FitProblem, response: int, resonances: Resonances) -> Whole:
 
 
 def _kept(line: FittedLines, wild: Whole) -> Whole:
-    """Return the lines that are not wild."""
     return np.delete(np.arange(line.omega.size), isolated(wild, line.omega.size))
 
 
@@ -411,7 +410,6 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
 
 
 def _poor(fit: ResonanceFit) -> tuple[str, ...]:
-    """Return why a fit is poor."""
     modes, errors = fit.resonances, fit.standard_errors()
     low, high = fit.problem.band
     reasons = []

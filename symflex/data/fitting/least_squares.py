@@ -230,7 +230,6 @@ def _reduced(problem: FitProblem, modes: Resonances, rest: list[Values], kind: s
 
 
 def _parts(values: Values) -> Real:
-    """Return real and imaginary parts, where there are such."""
     return np.concatenate((values.real, values.imag)) if np.iscomplexobj(values) else values.real
 
 
@@ -245,7 +244,6 @@ def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[V
 
 
 def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> Iterator[Values]:
-    """Yield the derivatives of each response by the parameters it depends on."""
     for r, line in enumerate(problem.lines):
         model, slopes = problem.linearised(resonances, r)
         scale = model * _capped(line.deviation)
@@ -262,7 +260,6 @@ def _capped(deviation: Real | None) -> Real:
 
 
 def _absolute(line: FittedLines) -> Real:
-    """Return the standard deviation of each part of each line."""
     return (np.ones(1) if line.deviation is None else line.deviation) * np.abs(line.measured.values)
 
 
@@ -325,9 +322,9 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
     scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))[:, np.newaxis]
     cross = np.hstack(crosses)
     moved = np.linalg.lstsq(normal / (scale * scale.T), cross / scale, rcond=SINGULAR)[0] / scale
-    told, turned = np.linalg.eigh(block_diag(*squares) - cross.T @ moved)
+    stiffness, turned = np.linalg.eigh(block_diag(*squares) - cross.T @ moved)
     noise = max(refined.reduced, np.finfo(float).tiny)
-    variance = 1 / (1 + np.maximum(told, 0.0) / noise)
+    variance = 1 / (1 + np.maximum(stiffness, 0.0) / noise)
     moved, pull = moved @ turned, turned.T @ (np.concatenate(pulls) - moved.T @ gradient)
     way = moved @ (variance * pull / noise)
     return replace(refined, covariance=covariance + moved * variance @ moved.T + np.outer(way, way))
@@ -377,7 +374,8 @@ def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int
 def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | None, float]:
     """Return the covariance of the parameters, and the factor of correlation.
 
-    None where it is no number. Parameters that the lines do not determine have infinite variance.
+    The first is ``None`` if it is no number. Parameters that the lines do not determine have infinite
+    variance.
 
     Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
     promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and

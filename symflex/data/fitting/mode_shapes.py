@@ -189,7 +189,6 @@ def _shown_poles(fit: ResonanceFit) -> tuple[Real, Real]:
 
 
 def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _SolvedShapes:
-    """Return the modal constants of one response."""
     n = logarithms.size // 2
 
     def constants(logarithms: Real) -> tuple[Complex, Real]:
@@ -225,7 +224,6 @@ def _errors(one: _SolvedShapes, driven: _SolvedShapes, poles: Real, *, is_driven
 
 
 def _poles(logarithms: Real) -> Complex:
-    """Return the upper poles for ln omega_p and ln zeta_p."""
     n = logarithms.size // 2
     omega, zeta = np.exp(logarithms[:n]), np.exp(logarithms[n:])
     return np.asarray(omega * (-zeta + 1j * np.sqrt(np.maximum(1 - zeta**2, 0.0))), np.complex128)

@@ -131,10 +131,10 @@ def rounding(line: FittedLines, model: Complex) -> Real:
     return np.stack([row for row in rows if row.any()] or [np.zeros(0)]) / 24  # of two parts, a twelfth
 
 
-def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -> Real:
+def _variance(power: Real, omega: Real, size: Real, rounded: Real | None = None) -> Real:
     """Return the smooth expectation of the power of each part on every line.
 
-    Each row of ``known`` is a part of it, of which at most the whole is there.
+    Each row of ``rounded`` is a part of it, of which at most the whole is there.
     """
     x = omega / np.exp(np.mean(np.log(omega)))
     unit = float(np.mean(size**2))  # whose square may be no number
@@ -142,8 +142,8 @@ def _variance(power: Real, omega: Real, size: Real, known: Real | None = None) -
     shapes = np.stack([size**2 / unit, *(x ** float(p) for p in POWERS)])
     shapes = shapes / np.mean(shapes, axis=1, keepdims=True)
     most = np.full(shapes.shape[0], np.inf)
-    if known is not None and known.size:
-        shapes, most = np.concatenate((shapes, known / unit)), np.append(most, np.ones(known.shape[0]))
+    if rounded is not None and rounded.size:
+        shapes, most = np.concatenate((shapes, rounded / unit)), np.append(most, np.ones(rounded.shape[0]))
     # The square of a variance has to be a number, of exact data too.
     floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny ** 0.4)
     power = np.maximum(power, floor)

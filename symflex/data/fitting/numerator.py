@@ -163,15 +163,15 @@ class _System:
 
     def _coefficients(self, upper: Real, norms: Real, shape: tuple[int, int]) -> tuple[float, Real]:
         at, right = self._at(shape), upper[:, -1]
-        known = np.zeros(0)
+        given = np.zeros(0)
         if not self.has_gain:
-            # What is known stands on the right: the first coefficient.
-            known = np.array([self.middle ** shape[0]])
-            right = right - upper[:, at[0]] * norms[at[0]] * known[0] / norms[-1]
+            # What is given stands on the right: the first coefficient.
+            given = np.array([self.middle ** shape[0]])
+            right = right - upper[:, at[0]] * norms[at[0]] * given[0] / norms[-1]
             at = at[1:]
         solution = np.linalg.lstsq(upper[:, at], right, rcond=None)[0]
         rest = float(np.sum((right - upper[:, at] @ solution) ** 2)) * float(norms[-1]) ** 2
-        return rest, np.concatenate((known, solution * norms[-1] / norms[at]))
+        return rest, np.concatenate((given, solution * norms[-1] / norms[at]))
 
     def polished(self, shape: tuple[int, int], delay: float) -> tuple[float, float, tuple[int, int], Real]:
         """Return sum of squares, dead time, shape and coefficients after a few steps of the dead time."""
@@ -191,8 +191,8 @@ class _System:
 def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real, float] | None:
     """Return frequencies and damping ratios of the pairs of zeros, and the corner of one more real zero.
 
-    They are those of a polynomial with these coefficients of ascending powers of s/middle. None where it has
-    not the degree it seems to have, or more than ``count`` pairs.
+    They are those of a polynomial with these coefficients of ascending powers of s/middle. They are
+    ``None`` if it has not the degree it seems to have, or more than ``count`` pairs.
     """
     if coefficients[0] == 0 or coefficients[-1] == 0 or not np.isfinite(coefficients).all():
         return None

@@ -131,9 +131,9 @@ OVERLAPPING = (0, 1, -1)
 def score_covariance(line: FittedLines, inside: Complex, slopes: Complex) -> Real | None:
     """Return the covariance of J'e for the lines of one response, in units of their variance.
 
-    It is J'J where lines are independent and their errors circular; None where they were not seen through a
-    window. ``inside`` is the response at ``line.observation.omega``, ``slopes`` (n, p) is J: derivatives on
-    the lines over the standard deviation of each part.
+    It is J'J where lines are independent and their errors circular, and ``None`` without a Hann window.
+    ``inside`` is the response at ``line.observation.omega``, ``slopes`` (n, p) is J: derivatives on the lines
+    over the standard deviation of each part.
 
     The noise is what coherence says less the leakage that the response implies. Records are taken to overlap
     by half; how many there are follows from the number of independent averages (Welch 1967).

@@ -147,12 +147,12 @@ def _from_peaks(problem: FitProblem, order: int) -> Iterator[Resonances]:
 
 def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
     """Return the likeliest functions over all choices of poles, the best first."""
-    known: list[Complex] = []
+    distinct: list[Complex] = []
     starts: list[tuple[float, Resonances]] = []
     for poles in choices:
-        alike = (other for other in known if other.size == poles.size)
+        alike = (other for other in distinct if other.size == poles.size)
         if not any(np.all(abs(other - poles) < SAME * abs(poles)) for other in alike):
-            known.append(poles)
+            distinct.append(poles)
             starts += over_poles(problem, poles, MOST_NUMERATORS)
     for _, resonances in sorted(starts, key=lambda one: one[0])[:MOST_STARTS]:
         yield resonances
@@ -457,7 +457,7 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
 
 
 def _without_zeros(now: Resonances, r: int, i: int | None, low: float, high: float) -> Resonances | None:
-    """Return a fit without a pair of zeros, or the real one, outside the band; None where it is inside."""
+    """Return a fit without a pair of zeros, or the real one, outside the band; ``None`` if it is inside."""
     omega_z, real_z = now.omega_z.copy(), now.real_z.copy()
     gain, slope = now.gain.copy(), now.slope.copy()
     zeros, place = (real_z, r) if i is None else (omega_z, (r, i))

@@ -226,7 +226,6 @@ class Resonances:
                 yield name, (r, shown) if name in ("omega_z", "zeta_z") else single, place
 
     def _own(self, response: int, free: Free) -> int:
-        """Return how many parameters a response has beside the poles."""
         shown = int(self.has_zeros[response].sum())
         return 2 * shown + int(np.isfinite(self.real_z[response])) + free.count
 

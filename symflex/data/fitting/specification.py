@@ -252,7 +252,6 @@ def _loop(
 
 
 def _output_of(copied: Mapping[str, object], tf: str) -> str:
-    """Return the expression of the output of a base."""
     outputs = copied["outputs"]
     entry = outputs[tf.split("/", maxsplit=1)[0]] if isinstance(outputs, dict) else ""
     return str(entry["expr"] if isinstance(entry, dict) else entry)
@@ -299,8 +298,8 @@ def _ratio(value: float, error: float) -> dict[str, object]:
 
 
 def _said_error(error: float, unit: str = "") -> str:
-    known = f"standard error {error:.2g} {unit}".rstrip()
-    return known if np.isfinite(error) else "not determined by the data"
+    accuracy = f"standard error {error:.2g} {unit}".rstrip()
+    return accuracy if np.isfinite(error) else "not determined by the data"
 
 
 def _plain(value: float) -> str:

@@ -181,7 +181,6 @@ def _matched(omega: Real, smooth: Real, top: int, trough: int | None) -> tuple[f
 
 
 def _noise(level: Real) -> float:
-    """Return the scatter of a smoothed level from line to line."""
     if level.size < SMOOTHED:
         return 0.0
     # The median size of normal noise is 0.6745 of its deviation; its second differences are sqrt(6) times as
@@ -316,7 +315,6 @@ def spread(low: float, high: float, order: int) -> Complex:
 
 
 def _weights(problem: FitProblem, response: int) -> Real:
-    """Return weights of the quotient's lines: over its standard deviation, or else over its magnitude."""
     line = problem.lines[response]
     size = np.abs(problem.quotient(response))
     return np.asarray(1 / (size if line.deviation is None else size * np.hypot(line.deviation, 0.01)))
@@ -336,7 +334,6 @@ def _basis(omega: Values, poles: Complex) -> Complex:
 
 
 def _state_matrix(poles: Complex) -> tuple[Real, Real]:
-    """Return A and b of the basis in real form."""
     ends = np.cumsum(_widths(poles))
     size = int(np.sum(_widths(poles)))
     a, b = np.zeros((size, size)), np.zeros(size)

@@ -95,7 +95,6 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
 
 
 def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
-    """Return rows of the pole pairs outside the band, and of the real poles."""
     modes, errors = fit.resonances, fit.standard_errors()
     low, high = fit.problem.band
     rows = []
@@ -110,20 +109,18 @@ def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
 
 
 def _orders(fit: ResonanceFit) -> Passage:
-    """Return the numbers of poles that were tried."""
     rows = [("poles", "modes", "parameters", "BIC", "AICc", "residual", "")]
     for s in fit.scores:
         mark = "<" if s.order == fit.resonances.order else s.status.replace("usable", "")
         numbers = (f"{s.bic:.1f}", f"{s.aicc:.1f}", f"{sqrt(s.reduced):.4g}")
         rows.append((str(s.order), str(s.count), str(s.parameters), *numbers, mark))
-    told = "did not fail"
+    condition = "did not fail"
     if any(s.status == "weak" for s in fit.scores):
-        told += " and are not weak (a resonance lost in noise)"
-    return Passage([f"{INDENT}chosen by {fit.criterion.upper()}, the lowest of those that {told}"], rows)
+        condition += " and are not weak (a resonance lost in noise)"
+    return Passage([f"{INDENT}chosen by {fit.criterion.upper()}, the lowest of those that {condition}"], rows)
 
 
 def _shapes(shapes: FittedModeShapes) -> Passage:
-    """Return mode shapes, some rows for each mode."""
     head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
     rows = [("mode", "response", "value", "std. error", "off real [deg]")]
     for i in range(shapes.shapes.shape[1]):

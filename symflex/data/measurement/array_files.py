@@ -255,7 +255,6 @@ def _type(reader: ByteReader) -> str:
 
 
 def _attributes(reader: ByteReader, items: int) -> Attributes:
-    """Return attributes as text."""
     entries: Attributes = {}
     for _ in range(_count(reader, _ATTRIBUTE, items)):
         name, kind = _name(reader), _type(reader)

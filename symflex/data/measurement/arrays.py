@@ -234,11 +234,11 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     responses: list[MeasuredResponse] = []
     for scope in holding:
         parts = scope.split(".") if scope else []
-        known: dict[str, Array] = {}
+        inherited: dict[str, Array] = {}
         for outer in (scopes.get(".".join(parts[:depth]), {}) for depth in range(len(parts))):
-            known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
+            inherited |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
         called = stem if len(holding) == 1 else scope or stem
-        responses += _from_scope(known | scopes[scope], name, called, scope)
+        responses += _from_scope(inherited | scopes[scope], name, called, scope)
     return tuple(responses) if responses else _from_unknown(arrays, name, stem)
 
 
@@ -278,15 +278,15 @@ def _meaning(key: str) -> ColumnMeaning:
 def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
     """Return the arrays that ``f=freq,h=G`` names; SF902 where there is none, or the left side is unknown."""
     words = {"f": "frequency_hz", "omega": "omega", "w": "omega", "h": "values", "coh": "coherence"}
-    known = {*words, "re", "im", "mag", "mag_db", "phase", "phase_deg", "phase_rad"}
+    kinds = {*words, "re", "im", "mag", "mag_db", "phase", "phase_deg", "phase_rad"}
     renamed: dict[str, Array] = {}
     for part in asked.split(","):
         kind, _, key = (text.strip() for text in part.partition("="))
-        if kind not in known or key not in arrays:
-            what = f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
+        if kind not in kinds or key not in arrays:
+            what = f"no array '{key[:40]}'" if kind in kinds else f"unknown '{kind}'"
             message = f"'{name}': --columns {part[:60]}: {what}"
             names = listed_names(list(arrays))
-            hint = f"the names left of '=' are {', '.join(sorted(known))}; those right of it are {names}"
+            hint = f"the names left of '=' are {', '.join(sorted(kinds))}; those right of it are {names}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         renamed[words.get(kind, kind)] = arrays[key]
     return renamed
@@ -297,40 +297,40 @@ def _has_values(own: Arrays) -> bool:
     return "complex" in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds
 
 
-def _from_scope(known: Arrays, name: str, stem: str, scope: str = "") -> list[MeasuredResponse]:
+def _from_scope(arrays: Arrays, name: str, stem: str, scope: str = "") -> list[MeasuredResponse]:
     guesses: list[str] = []
-    lines = _frequency(known, name, guesses)
+    lines = _frequency(arrays, name, guesses)
     if lines is None:
-        message = f"'{name}' has no array frequency_hz; it has {listed_names(list(known)) or 'none'}"
+        message = f"'{name}' has no array frequency_hz; it has {listed_names(list(arrays)) or 'none'}"
         raise DataError(Diagnostic("SF602", message, None, f"{_HINT}; {WITHOUT_AXIS}"))
     columns = [DataColumn("frequency", ColumnMeaning("frequency"), lines)]
     kinds = ("complex", "real", "imaginary", "magnitude", "phase")
-    used = [key for key in known if _meaning(key).kind in kinds and key != "values"]
+    used = [key for key in arrays if _meaning(key).kind in kinds and key != "values"]
     if used:
         guesses.append(f"the values are {listed_names(used)}{f' of {scope}' if scope else ''}")
-    for key, array in known.items():
+    for key, array in arrays.items():
         meaning = _meaning(key)
         is_whole = meaning.kind == "complex" or lines.size in array.shape
         if meaning.kind not in ("", "frequency") and is_whole:
             rows = _rows(_numeric(array, name, key), lines.size, name, key)
             columns += [DataColumn(key, meaning, r if meaning.kind == "complex" else r.real) for r in rows]
     made, said = assembled(columns, name, None)
-    return _responses(known, made, name, stem, guesses + said)
+    return _responses(arrays, made, name, stem, guesses + said)
 
 
-def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
-    """Return the frequencies [Hz], None where no array is called so."""
-    key = next((n for n in (*FREQUENCY, *ANGULAR) if n in known), None)
+def _frequency(arrays: Arrays, name: str, guesses: list[str]) -> Array | None:
+    """Return the frequencies [Hz]; ``None`` if no array is called so."""
+    key = next((n for n in (*FREQUENCY, *ANGULAR) if n in arrays), None)
     if key is None:
         return None
-    lines = np.asarray(_numeric(known[key], name, key).real.ravel(), np.float64)
-    unit = next((_word(known[u]).lower() for u in UNITS if u in known), "")
+    lines = np.asarray(_numeric(arrays[key], name, key).real.ravel(), np.float64)
+    unit = next((_word(arrays[u]).lower() for u in UNITS if u in arrays), "")
     if key in ANGULAR:
         guesses.append(f"'{key}' is read in rad/s")
         return lines / (2 * np.pi)
     if "rad" in unit:
         return lines / (2 * np.pi)
-    if key == "frequency" and "responsedata" in known and unit not in ("hz", "khz", "mhz", "ghz"):
+    if key == "frequency" and "responsedata" in arrays and unit not in ("hz", "khz", "mhz", "ghz"):
         guesses.append("'Frequency' beside 'ResponseData' is read in rad/s, MATLAB's default")
         return lines / (2 * np.pi)
     scale = {"khz": 1e3, "mhz": 1e6, "ghz": 1e9}.get(unit, 1.0)
@@ -340,16 +340,18 @@ def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
 
 
 def _responses(
-    known: Arrays, made: Sequence[Assembled], name: str, stem: str, guesses: Sequence[str]
+    arrays: Arrays, made: Sequence[Assembled], name: str, stem: str, guesses: Sequence[str]
 ) -> list[MeasuredResponse]:
-    told = {
-        key: _word(known[key]) for key in ("averages", "window", "unit", "synthetic", "note") if key in known
+    words = {
+        key: _word(arrays[key])
+        for key in ("averages", "window", "unit", "synthetic", "note")
+        if key in arrays
     }
-    averages = averages_of(told["averages"], name) if "averages" in told else None
-    window, unit = window_of(told.get("window", "")), unit_of(told.get("unit", ""), name)
-    is_synthetic = told.get("synthetic", "").lower() in ("yes", "true", "1", "1.0")
-    notes = (told["note"],) if "note" in told else ()
-    names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
+    averages = averages_of(words["averages"], name) if "averages" in words else None
+    window, unit = window_of(words.get("window", "")), unit_of(words.get("unit", ""), name)
+    is_synthetic = words.get("synthetic", "").lower() in ("yes", "true", "1", "1.0")
+    notes = (words["note"],) if "note" in words else ()
+    names = [str(n) for n in np.atleast_1d(arrays["tf"]).ravel()] if "tf" in arrays else []
     if len(names) != len(made):
         names = names_of(made, stem)
     responses = []

@@ -149,7 +149,7 @@ class ColumnMeaning:
     """What a column is."""
 
     kind: str = ""  # of _WORDS without omega, or complex; empty where it is none of these
-    factor: float | None = 1.0  # to Hz or radians; None where no unit is said
+    factor: float | None = 1.0  # to Hz or radians; None if no unit is said
     scale: str = "linear"  # or decibel, logarithm (of a frequency, to base 10), unknown
     label: str = ""  # of which response
     unit: str = ""  # as written
@@ -354,8 +354,8 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
     words = [word.strip() for word in asked.split(",")]
     hint = "such as f,re,im or f_khz,-,mag_db,phase_deg: f, omega, re, im, mag, mag_db, phase, coh, h, psd, -"
     if len(words) > width:
-        known = [name[:30] for name in names if name]
-        listed = f": {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""  # noqa: PLR2004
+        called = [name[:30] for name in names if name]
+        listed = f": {', '.join(called[:12])}{', ...' if len(called) > 12 else ''}" if called else ""  # noqa: PLR2004
         message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
         raise UsageError(Diagnostic("SF902", message, None, hint))
     columns = []
@@ -458,8 +458,8 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
     made = []
     for number, (k, same) in enumerate(groups.items(), 1):
         way = {1: " up", -1: " down"}[ways[runs[k].start]] if is_both_ways else f" sweep {number}"
-        known = (x for x in (one.values, np.abs(one.values), one.coherence) if x is not None)
-        values, size, *shares = (np.mean([x[run] for run in same], axis=0) for x in known)
+        arrays = (x for x in (one.values, np.abs(one.values), one.coherence) if x is not None)
+        values, size, *shares = (np.mean([x[run] for run in same], axis=0) for x in arrays)
         made.append(
             replace(
                 one,
@@ -476,7 +476,6 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
 
 
 def _below(column: DataColumn, rows: slice) -> DataColumn:
-    """Return some rows of a column."""
     wrong = tuple(row - rows.start for row in column.wrong if rows.start <= row < rows.stop)
     place = column.place
     return replace(column, wrong=wrong, place=lambda row: place(row + rows.start))
@@ -489,9 +488,9 @@ def _with_frequency(
     for c in columns:
         is_unknown = c.meaning.kind in ("frequency", "phase") and c.meaning.factor is None
         if is_unknown and c.meaning.unit not in ("-", ""):
-            known = _FREQUENCY_UNITS if c.meaning.kind == "frequency" else _PHASE_UNITS
+            units = _FREQUENCY_UNITS if c.meaning.kind == "frequency" else _PHASE_UNITS
             said = f"unknown unit '{c.meaning.unit[:20]}' of column '{c.name[:40]}'"
-            problems.append(Diagnostic("SF602", said, c.span, f"units: {', '.join(list(known)[:5])}"))
+            problems.append(Diagnostic("SF602", said, c.span, f"units: {', '.join(list(units)[:5])}"))
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
     lines = [c for c in columns if c.meaning.kind == "frequency"]
@@ -624,7 +623,7 @@ def _hertz(column: DataColumn, guesses: list[str]) -> Real:
 
 
 def unit_by_round_ends(lines: Real) -> str | None:
-    """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; None where it is not one.
+    """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; ``None`` if unclear.
 
     Examples
     --------
@@ -643,7 +642,6 @@ def unit_by_round_ends(lines: Real) -> str | None:
 def _groups(
     rest: Sequence[DataColumn], *, is_asked: bool, guesses: list[str]
 ) -> list[tuple[str, dict[str, DataColumn]]]:
-    """Return label and columns by kind of every response."""
     labels = dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind)
     alike = {label: [c for c in rest if c.meaning.label == label] for label in labels}
     groups = [(label, group) for label in labels for group in _pairs(alike[label])]
@@ -839,15 +837,15 @@ def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
 
 def _possible_units(turn: Real) -> list[float]:
     """Return the units [rad] that phases may be in; wrapped ones that fill a turn say it themselves."""
-    known = turn[np.isfinite(turn)]
-    span, jump = np.ptp(known) if known.size else 0.0, np.max(np.abs(np.diff(known)), initial=0.0)
+    finite = turn[np.isfinite(turn)]
+    span, jump = np.ptp(finite) if finite.size else 0.0, np.max(np.abs(np.diff(finite)), initial=0.0)
     units = [np.pi / 180, 1.0]
     said = [u for u in units if FILLED * WRAPPED < span * u <= WRAPPED and jump * u > np.pi]
     return said[:1] or units
 
 
 def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
-    """Return what is least unlike, None where another one is close by a margin, or all are unlike."""
+    """Return what is least unlike; ``None`` if another one is close by a margin, or all are unlike."""
     (best, choice), *others = sorted((cost, choice) for choice, cost in costs.items())
     is_clear = not others or (best < FITS and others[0][0] - best > margin)
     return choice if is_clear else None

@@ -99,17 +99,17 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     guesses = list(table.guesses)
     made, guessed = _responses(name, table, blocks, asked, guesses)
     guesses += guessed + _skipped(table, blocks)
-    told = {key: span.text.strip() for key, span in fields.items()}
-    averages = averages_of(told["averages"], name, fields["averages"]) if "averages" in told else None
+    words = {key: span.text.strip() for key, span in fields.items()}
+    averages = averages_of(words["averages"], name, fields["averages"]) if "averages" in words else None
     signs = (line.strip() for line in table.lines)
     comments = tuple(line.lstrip("#%!/*; ") for line in signs if line.startswith(COMMENTS))
-    unit = unit_of(told.get("unit", ""), name, fields.get("unit"))
-    is_said = told.get("synthetic", "").lower() in ("yes", "true", "1")
+    unit = unit_of(words.get("unit", ""), name, fields.get("unit"))
+    is_said = words.get("synthetic", "").lower() in ("yes", "true", "1")
     is_synthetic = is_said or "synthetic" in " ".join(comments).lower()
     responses = []
-    for one, called in zip(made, names_of(made, (len(made) == 1 and told.get("tf")) or stem), strict=True):
+    for one, called in zip(made, names_of(made, (len(made) == 1 and words.get("tf")) or stem), strict=True):
         response = MeasuredResponse(
-            called, one.frequency_hz, one.values, one.coherence, averages, window_of(told.get("window", "")),
+            called, one.frequency_hz, one.values, one.coherence, averages, window_of(words.get("window", "")),
             unit or one.unit, is_synthetic, comments, tuple(dict.fromkeys(guesses)),
             is_magnitude=one.is_magnitude,
         )  # fmt: skip
@@ -177,7 +177,7 @@ def _citi(table: TextTable) -> _Rewritten | None:
 
 
 def _with_axis(head: str, axis: Iterable[str], rows: str) -> _Rewritten | None:
-    """Return rows with a frequency in front of each; None where there are none."""
+    """Return rows with a frequency in front of each; ``None`` if there are no rows."""
     written = [row.strip() for row in rows.split("\n") if row.strip()]
     lines = "".join(f"{x}\t{row}\n" for x, row in zip(axis, written, strict=False))
     said = ("the frequencies are those that the header gives",)
@@ -302,7 +302,7 @@ def _skipped(table: TextTable, blocks: Sequence[NumberBlock]) -> list[str]:
 def _columns(
     table: TextTable, block: NumberBlock, guesses: list[str]
 ) -> tuple[list[DataColumn], Span | None]:
-    """Return the columns of a block, and the line that names them, None where there is none."""
+    """Return the columns of a block, and the line that names them; ``None`` if no line does."""
     width = block.width
     numbers = [block.numbers(i) for i in range(width)]
     if numbers[0][0].dtype.kind == "c" and not np.any(numbers[0][0].imag):  # numpy writes all as complex
@@ -380,12 +380,12 @@ def _header(
             named = meanings_of(cells[:width])
             kinds = ["complex" if is_complex[i] else m.kind for i, m in enumerate(named)]
             values = sum(kind not in ("", "frequency") for kind in kinds)
-            known = values + ("frequency" in kinds) if values else 0
+            recognised = values + ("frequency" in kinds) if values else 0
             # A row of units, Hz and deg, names columns where nothing else does.
             is_units = sum(c.strip("[]() ").lower() in UNITS for c in cells) >= 2  # noqa: PLR2004
-            score = known + (len(cells) == width) / 2 - is_units
+            score = recognised + (len(cells) == width) / 2 - is_units
             is_better = best is None or score > best[0] or (score == best[0] and line > best[1])
-            if known >= 2 and is_better:  # noqa: PLR2004
+            if recognised >= 2 and is_better:  # noqa: PLR2004
                 best = score, line, cells[:width]
     if best is None:
         listed = [(i, m[1]) for i in block.above if (m := _LISTED.fullmatch(table.lines[i].strip()))]

@@ -84,8 +84,6 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class _Channel:
-    """An input and one output."""
-
     u: Real
     y: Real
     step_s: float
@@ -225,7 +223,6 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
 
 
 def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
-    """Return the ratio of the spectra of a whole record where the input excites."""
     first = channel.u[:4]
     offset = float(first[0]) if np.ptp(first) <= LEVELS * np.ptp(channel.u) else 0.0
     before = max(channel.pulse or 0, 4)

@@ -167,11 +167,11 @@ def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
     averaged = []
     for same in groups.values():
         deviations = [one.relative_deviation() for one in same]
-        known = [d * np.abs(one.values) for d, one in zip(deviations, same, strict=True) if d is not None]
-        if len(same) == 1 or len(known) < len(same):
+        absolute = [d * np.abs(one.values) for d, one in zip(deviations, same, strict=True) if d is not None]
+        if len(same) == 1 or len(absolute) < len(same):
             averaged += same
             continue
-        weights = np.array([1 / np.maximum(d, 1e-300) ** 2 for d in known])
+        weights = np.array([1 / np.maximum(d, 1e-300) ** 2 for d in absolute])
         values = np.sum(weights * np.array([one.values for one in same]), axis=0) / weights.sum(axis=0)
         count = sum(one.averages for one in same if one.averages) or 1.0
         share = 2 * count / (weights.sum(axis=0) * np.abs(values) ** 2)
@@ -216,23 +216,23 @@ def prepared(
         raise UsageError(Diagnostic("SF902", "give a band as two frequencies in Hz, the lower one first"))
     prepared_ones = []
     for response in _averaged(responses):
-        known = response
-        if averages is not None and not known.is_record:
-            known = replace(known, averages=averages)
-        if window == "exponential" and not known.is_record:
+        chosen = response
+        if averages is not None and not chosen.is_record:
+            chosen = replace(chosen, averages=averages)
+        if window == "exponential" and not chosen.is_record:
             hint = "say its time constant: --window exponential:SECONDS"
             raise UsageError(Diagnostic("SF902", f"'{response.name}' is no record in time", None, hint))
-        if window is not None and not known.is_record:
-            known = replace(known, window=window_of(window))
-        if known.is_record and known.coherence is not None and not known.averages:
-            certain = np.flatnonzero(known.coherence > CERTAIN)
-            known = known.taken(np.arange(certain[0], certain[-1] + 1)) if certain.size else known
+        if window is not None and not chosen.is_record:
+            chosen = replace(chosen, window=window_of(window))
+        if chosen.is_record and chosen.coherence is not None and not chosen.averages:
+            certain = np.flatnonzero(chosen.coherence > CERTAIN)
+            chosen = chosen.taken(np.arange(certain[0], certain[-1] + 1)) if certain.size else chosen
         if band is not None:
-            known = known.between(*band)
-            if not known.values.size:
+            chosen = chosen.between(*band)
+            if not chosen.values.size:
                 message = f"'{response.name}' has no lines between {band[0]:g} and {band[1]:g} Hz"
                 raise DataError(Diagnostic("SF605", message))
-        prepared_ones.append(known)
+        prepared_ones.append(chosen)
     return tuple(prepared_ones)
 
 
@@ -240,13 +240,13 @@ def csv_bytes(response: MeasuredResponse) -> bytes:
     """Return a response as text in columns, with what else is known in comment lines."""
     lines = [f"# {note}" for note in response.notes]
     lines.append(f"# tf: {response.name}")
-    known = (
+    fields = (
         ("unit", response.unit),
         ("averages", f"{response.averages:g}" if response.averages else ""),
         ("window", response.window),
         ("synthetic", "yes" if response.is_synthetic else ""),
     )
-    lines += [f"# {key}: {value}" for key, value in known if value]
+    lines += [f"# {key}: {value}" for key, value in fields if value]
     lines.append("frequency_hz,re,im" + ",coherence" * (response.coherence is not None))
     shares = [""] * len(response.values)
     if response.coherence is not None:
@@ -265,8 +265,8 @@ def npz_bytes(response: MeasuredResponse) -> bytes:
         "synthetic": np.array("yes" if response.is_synthetic else "no"),
         "note": np.array("; ".join(response.notes)),
     }
-    known = {"averages": response.averages, "window": response.window, "unit": response.unit}
-    arrays |= {name: np.array(value) for name, value in known.items() if value}
+    fields = {"averages": response.averages, "window": response.window, "unit": response.unit}
+    arrays |= {name: np.array(value) for name, value in fields.items() if value}
     if response.coherence is not None:
         arrays["coherence"] = response.coherence
     buffer = BytesIO()
@@ -279,8 +279,8 @@ def universal_bytes(response: MeasuredResponse) -> bytes:
     """Return a response, and its coherence, as datasets 58 of a universal file; SF902 without pyuff."""
     pyuff = installed("pyuff")
     lines = response.frequency_hz
-    told = [f"averages={response.averages:g}"] if response.averages else []
-    told += [f"window={response.window}"] if response.window else []
+    remarks = [f"averages={response.averages:g}"] if response.averages else []
+    remarks += [f"window={response.window}"] if response.window else []
     header: dict[str, object] = {
         **dict.fromkeys(("id3", "id5", "rsp_ent_name", "ref_ent_name"), "NONE"),
         **dict.fromkeys(("binary", "abscissa_spacing"), 0),
@@ -289,7 +289,7 @@ def universal_bytes(response: MeasuredResponse) -> bytes:
         "abscissa_spec_data_type": FREQUENCY_AXIS,
         "id1": response.name[:80],
         "id2": "SYNTHETIC data" if response.is_synthetic else "NONE",
-        "id4": " ".join(told) or "NONE",
+        "id4": " ".join(remarks) or "NONE",
     }
     sets = [(RESPONSE, response.values)]
     if response.coherence is not None:

@@ -120,14 +120,14 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     SF602 to SF605: columns without a value, what is no number, times that do not increase, too few samples.
     """
     given = [word.strip() for word in asked.split(",")] if asked else []
-    told = next((word for word in given if word.lower().startswith("dt=")), "")
-    words = [word for word in given if word != told]
-    if asked and not (told or any(re.fullmatch(r"(?:t|time)(?:[_=].*)?", word, re.I) for word in words)):
+    interval = next((word for word in given if word.lower().startswith("dt=")), "")
+    words = [word for word in given if word != interval]
+    if asked and not (interval or any(re.fullmatch(r"(?:t|time)(?:[_=].*)?", word, re.I) for word in words)):
         return None
     suffix = format_of(name, data)
     if suffix in ARRAYS:
         arrays = arrays_in(name, data, suffix)
-        return _asked_arrays(arrays, words, told, name, stem) if asked else _of_arrays(arrays, name, stem)
+        return _asked_arrays(arrays, words, interval, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
     table = TextTable.of(name, timed := _without_clock(data))
@@ -144,10 +144,10 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         # A plain t has the unit of the header.
         columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
         channels = list(zip(_names(table, first, width) or [*words, *["-"] * width], columns, strict=False))
-        return _asked(channels, words, told, stem, guesses, (table, lines))
+        return _asked(channels, words, interval, stem, guesses, (table, lines))
     if not names and timed is not data:  # nothing names the times of day: behind a date of zero, or first
         names, at = [f"column {i + 1}" for i in range(width)], int(table.lines[first].startswith("0"))
-    step = None if names else _told_step(table, first)
+    step = None if names else _stated_step(table, first)
     if not names and step is None:
         return None
     if any(_is_frequency(cell) for cell in (*names, *_names(table, first, width))):
@@ -234,22 +234,21 @@ def _names(table: TextTable, first: int, width: int) -> list[str]:
     return []
 
 
-def _told_step(table: TextTable, first: int) -> float | None:
-    """Return the sampling time that a line above the first row tells, or makes with a rate [s]."""
+def _stated_step(table: TextTable, first: int) -> float | None:
+    """Return the sampling time that a line above the first row states, perhaps as a rate [s]."""
     for line in table.lines[:first]:
         for pattern, units in ((_RATE, _HERTZ), (_INTERVAL, SECONDS)):
             match = pattern.search(line)
-            told = match and _NUMBER_WITH_UNIT.search(line[match.end() :])
-            if not told or (unit := told[2].lower()) not in {"", *units}:
+            written = match and _NUMBER_WITH_UNIT.search(line[match.end() :])
+            if not written or (unit := written[2].lower()) not in {"", *units}:
                 continue
-            value = number(told[1], table.decimal)
+            value = number(written[1], table.decimal)
             if isinstance(value, float) and 0 < value < np.inf:
                 return value * float(SECONDS.get(unit, 1)) if units is SECONDS else 1 / (value * _HERTZ[unit])
     return None
 
 
 def _plain(cell: str, index: int) -> str:
-    """Return the name of a channel without its unit."""
     return _IN_BRACKETS.sub("", bare(cell)).strip() or f"channel {index + 1}"
 
 
@@ -331,22 +330,21 @@ def _resampled(times: Real, values: Real, step: float) -> Real:
 
 
 def _asked(
-    channels: Sequence[tuple[str, Real]], words: Sequence[str], told: str, stem: str, guesses: list[str],
+    channels: Sequence[tuple[str, Real]], words: Sequence[str], interval: str, stem: str, guesses: list[str],
     place: tuple[TextTable | None, Sequence[int]] = (None, ()),
 ) -> TimeRecord:  # fmt: skip
-    """Return the record whose columns are those that ``--columns`` names."""
     words = [word.lower() for word in words]
     if len(words) > len(channels):
         message = f"--columns has {len(words)} words, and there are {len(channels)} columns"
         raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y or t_ms,-,u,y"))
     at = next((i for i, word in enumerate(words) if word.partition("_")[0] in ("t", "time")), None)
-    step, kept, times = number(told[3:]), False, np.empty(0)
-    if not told and at is not None:
+    step, kept, times = number(interval[3:]), False, np.empty(0)
+    if not interval and at is not None:
         times = channels[at][1] * float(SECONDS.get(words[at].partition("_")[2], 1))
         times = _seconds(times, guesses) if words[at] == "t" else times
         step, kept = _even(times, *place, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
-        message = f"--columns: '{told[:40]}' is no sampling time in seconds"
+        message = f"--columns: '{interval[:40]}' is no sampling time in seconds"
         raise UsageError(Diagnostic("SF902", message, None, "such as u,y,dt=0.01"))
     made: dict[str, list[tuple[str, Real]]] = {"u": [], "y": []}
     for i, word in enumerate(words):
@@ -366,7 +364,7 @@ def _asked(
     return TimeRecord(stem, step, tuple(made["y"]), next(iter(made["u"]), None), tuple(guesses))
 
 
-def _asked_arrays(arrays: Arrays, words: Sequence[str], told: str, name: str, stem: str) -> TimeRecord:
+def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str, stem: str) -> TimeRecord:
     """Return the record of the arrays that ``--columns`` names, or of the columns of the largest matrix."""
     keys = [key for _, is_named, key in (word.partition("=") for word in words) if is_named]
     whole, matrix = largest_matrix(arrays)
@@ -377,7 +375,7 @@ def _asked_arrays(arrays: Arrays, words: Sequence[str], told: str, name: str, st
         raise UsageError(Diagnostic("SF902", message, None, f"it has {listed_names(list(arrays))}"))
     channels = [(c, np.asarray(x, np.float64)) for c, x in zip(keys or words, chosen, strict=False)]
     words, guesses = [word.partition("=")[0] for word in words], [f"the columns are those of '{whole[:30]}'"]
-    return _asked(channels, words, told, stem, [] if keys else guesses)
+    return _asked(channels, words, interval, stem, [] if keys else guesses)
 
 
 def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
@@ -410,7 +408,6 @@ def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
 def _sorted(
     channels: list[tuple[str, Real]], step: float, stem: str, name: str, guesses: list[str], option: str
 ) -> TimeRecord:
-    """Return the record with its input chosen among the channels."""
     channels = [(c, x) for c, x in channels if 2 * np.isnan(x).sum() <= x.size and np.any(np.diff(x) != 1)]
     for channel, values in channels:
         if not np.isfinite(values).all():

@@ -78,8 +78,8 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
         # Every letter of a name in another alphabet may be wrong then, but its unit may be right.
-        known = (name for name, word in _EASTERN.items() if word.encode(name) in data)
-        encoding = next(known, "Latin-1 (Windows-1252)")
+        encodings = (name for name, word in _EASTERN.items() if word.encode(name) in data)
+        encoding = next(encodings, "Latin-1 (Windows-1252)")
         text = data.decode(encoding if encoding in _EASTERN else "cp1252", "replace")
         guesses = (f"the file is not UTF-8 and is read as {encoding}",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")

@@ -126,10 +126,10 @@ def _chosen(parameters: Complex, kind: str, chosen: str, resistance: float, name
     ports = parameters.shape[1]
     match = re.fullmatch(r"([szy])([12])([12])", chosen)
     if match is None or max(int(match[2]), int(match[3])) > ports:
-        known = ", ".join(
+        names = ", ".join(
             f"{k}{i}{j}" for k in "szy" for i in range(1, ports + 1) for j in range(1, ports + 1)
         )
-        raise UsageError(Diagnostic("SF902", f"'{name}': --columns {chosen[:20]}", None, f"one of {known}"))
+        raise UsageError(Diagnostic("SF902", f"'{name}': --columns {chosen[:20]}", None, f"one of {names}"))
     one = np.eye(ports)
     wanted = match[1].upper()
     matrices: npt.NDArray[np.complexfloating] = parameters
