@@ -204,9 +204,7 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     before = float(np.mean(channel.y[:jump])) if jump else 0.0
     increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
     noise = _noise_of(channel.y[jump:])
-    weights, window, said = _weights(increments, 2 * noise, channel.step_s, how)
-    rest = channel.y[-max(channel.y.size // 20, 4) :] if weights[-1] == 1 else channel.y[-1:]
-    increments[-1] += rest.mean() - channel.y[-1]
+    weights, window, said = _weights(increments, 2 * noise, channel.step_s, how, decades=2)
     frequency = np.fft.rfftfreq(increments.size, channel.step_s)
     s = 2j * np.pi * frequency * channel.step_s - np.log(weights[1])
     with np.errstate(all="ignore"):
@@ -215,7 +213,7 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     kept = _apart(weights) & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
     # Noise of every sample enters twice, but for that of the levels at both ends.
     variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
-    variance += weights[-1] ** 2 / rest.size
+    variance += weights[-1] ** 2
     deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
     coherence = _coherence(response, deviation)
     said = f"a step: spectrum of the output's increments over the jump{said}"
@@ -246,7 +244,7 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
     return frequency[kept], response[kept], coherence[kept], None, window, said
 
 
-def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real, str, str]:
+def _weights(y: Real, noise: float, step_s: float, how: Estimate, decades: int = 0) -> tuple[Real, str, str]:
     """Return an exponential window over a response that begins at rest, its name, and what is said of it.
 
     ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
@@ -261,7 +259,8 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real,
     # The largest of m lines of noise hardly exceeds its mean power (ln m + 5)-fold.
     limit = max(2 * noise * np.sqrt((np.log(end.size) + 5) / end.size), SETTLED * float(np.max(np.abs(y))))
     # Whole decades, so that records of one kind have one window and can be averaged.
-    decays = np.log(10) * np.ceil(np.log10(left / limit / BELOW_NOISE)) if left > limit else 0.0
+    decades = max(int(np.ceil(np.log10(left / limit / BELOW_NOISE))) if left > limit else 0, decades)
+    decays = np.log(10) * decades
     if how.window == "none" or (how.window == "hann" and decays == 0):
         share = left / float(np.max(np.abs(y)))
         said = f"; {share:.0%} of it is left at the end, which changes gains, not poles"

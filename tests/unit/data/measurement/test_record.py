@@ -80,7 +80,7 @@ def test_a_response_is_the_true_one_where_the_record_is_without_noise(tmp_path, 
     low = response.between(4.0, 40.0)
     assert low.values.size > 30
     away = np.abs(low.frequency_hz - 12.0) > 1.5
-    assert np.max(np.abs(low.values / true(low.frequency_hz) - 1)[away]) < 5 * error
+    assert np.max(np.abs(low.values / true(low.omega_seen / (2 * np.pi)) - 1)[away]) < 5 * error
 
 
 def test_noise_is_averaged_by_welch_with_a_coherence_that_explains_the_error(tmp_path):
