@@ -60,6 +60,8 @@ SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+FEWEST_LINES: Final = 40
+"""Lines that are kept, however a window correlates them: with few, a criterion chooses too many poles."""
 STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
@@ -210,7 +212,7 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     with np.errstate(all="ignore"):
         hold = np.where(s == 0, 1, (1 - np.exp(-s)) / s)
     response = np.fft.rfft(increments * weights) / size / hold
-    kept = _apart(weights) & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
+    kept = _apart(weights, "step") & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
     # Noise of every sample enters twice, but for that of the levels at both ends.
     variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
     variance += weights[-1] ** 2
@@ -231,7 +233,7 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
     )
     above, below = np.fft.rfft(y * weights), np.fft.rfft((channel.u - offset) * weights)
     frequency, size = np.fft.rfftfreq(y.size, channel.step_s), np.abs(below)
-    kept = _apart(weights) & (size > EXCITED * size.max())
+    kept = _apart(weights, "impact") & (size > EXCITED * size.max())
     if channel.pulse is not None:
         kept &= frequency <= BELOW_NYQUIST["impact"] / channel.step_s
     with np.errstate(all="ignore"):
@@ -272,10 +274,11 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate, decades: int =
     return np.asarray(weights, np.float64), f"exponential:{tau:.4g}", said
 
 
-def _apart(weights: Real) -> npt.NDArray[np.bool_]:
+def _apart(weights: Real, kind: str) -> npt.NDArray[np.bool_]:
     """Return which lines are kept behind a window: every so many that noise has half forgotten."""
     lines = np.arange(weights.size // 2 + 1)
-    return np.asarray(lines % max(round(-np.log(weights[-1]) / 1.5), 1) == 0)
+    most = int(BELOW_NYQUIST[kind] * weights.size) // FEWEST_LINES
+    return np.asarray(lines % max(min(round(-np.log(weights[-1]) / 1.5), most), 1) == 0)
 
 
 def _of_periods(channel: _Channel, period: int) -> _Estimated:
