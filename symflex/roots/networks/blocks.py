@@ -43,6 +43,8 @@ def blocks_of(entries: Sequence[Mapping[int, object]]) -> list[tuple[list[int], 
     --------
     >>> blocks_of([{0: "k", 1: "b"}, {1: "m"}])
     [([1], [1]), ([0], [0])]
+    >>> blocks_of([])
+    []
     """
     from scipy.sparse import csr_array  # takes 0.2 s, and only functions of networks need it
     from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
@@ -54,8 +56,8 @@ def blocks_of(entries: Sequence[Mapping[int, object]]) -> list[tuple[list[int], 
     if (matched < 0).any():
         return None
     # Row i needs the unknowns of its columns, which the rows matched to them give.
-    _, block_of = connected_components(pattern[:, matched], directed=True, connection="strong")
-    rows = [np.flatnonzero(block_of == block).tolist() for block in range(max(block_of) + 1)]
+    count, block_of = connected_components(pattern[:, matched], directed=True, connection="strong")
+    rows = [np.flatnonzero(block_of == block).tolist() for block in range(count)]
     return [(own, [int(matched[i]) for i in own]) for own in rows]
 
 
