@@ -60,8 +60,6 @@ SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
-FEWEST_LINES: Final = 40
-"""Lines that are kept, however a window correlates them: with few, a criterion chooses too many poles."""
 STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
@@ -206,16 +204,18 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     before = float(np.mean(channel.y[:jump])) if jump else 0.0
     increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
     noise = _noise_of(channel.y[jump:])
-    weights, window, said = _weights(increments, 2 * noise, channel.step_s, how, decades=2)
+    weights, window, said = _weights(increments, 2 * noise, channel.step_s, how)
+    rest = channel.y[-max(channel.y.size // 20, 4) :] if weights[-1] == 1 else channel.y[-1:]
+    increments[-1] += rest.mean() - channel.y[-1]
     frequency = np.fft.rfftfreq(increments.size, channel.step_s)
     s = 2j * np.pi * frequency * channel.step_s - np.log(weights[1])
     with np.errstate(all="ignore"):
         hold = np.where(s == 0, 1, (1 - np.exp(-s)) / s)
     response = np.fft.rfft(increments * weights) / size / hold
-    kept = _apart(weights, "step") & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
+    kept = _apart(weights) & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
     # Noise of every sample enters twice, but for that of the levels at both ends.
     variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
-    variance += weights[-1] ** 2
+    variance += weights[-1] ** 2 / rest.size
     deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
     coherence = _coherence(response, deviation)
     said = f"a step: spectrum of the output's increments over the jump{said}"
@@ -233,7 +233,7 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
     )
     above, below = np.fft.rfft(y * weights), np.fft.rfft((channel.u - offset) * weights)
     frequency, size = np.fft.rfftfreq(y.size, channel.step_s), np.abs(below)
-    kept = _apart(weights, "impact") & (size > EXCITED * size.max())
+    kept = _apart(weights) & (size > EXCITED * size.max())
     if channel.pulse is not None:
         kept &= frequency <= BELOW_NYQUIST["impact"] / channel.step_s
     with np.errstate(all="ignore"):
@@ -246,7 +246,7 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
     return frequency[kept], response[kept], coherence[kept], None, window, said
 
 
-def _weights(y: Real, noise: float, step_s: float, how: Estimate, decades: int = 0) -> tuple[Real, str, str]:
+def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real, str, str]:
     """Return an exponential window over a response that begins at rest, its name, and what is said of it.
 
     ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
@@ -261,8 +261,7 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate, decades: int =
     # The largest of m lines of noise hardly exceeds its mean power (ln m + 5)-fold.
     limit = max(2 * noise * np.sqrt((np.log(end.size) + 5) / end.size), SETTLED * float(np.max(np.abs(y))))
     # Whole decades, so that records of one kind have one window and can be averaged.
-    decades = max(int(np.ceil(np.log10(left / limit / BELOW_NOISE))) if left > limit else 0, decades)
-    decays = np.log(10) * decades
+    decays = np.log(10) * np.ceil(np.log10(left / limit / BELOW_NOISE)) if left > limit else 0.0
     if how.window == "none" or (how.window == "hann" and decays == 0):
         share = left / float(np.max(np.abs(y)))
         said = f"; {share:.0%} of it is left at the end, which changes gains, not poles"
@@ -274,11 +273,10 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate, decades: int =
     return np.asarray(weights, np.float64), f"exponential:{tau:.4g}", said
 
 
-def _apart(weights: Real, kind: str) -> npt.NDArray[np.bool_]:
+def _apart(weights: Real) -> npt.NDArray[np.bool_]:
     """Return which lines are kept behind a window: every so many that noise has half forgotten."""
     lines = np.arange(weights.size // 2 + 1)
-    most = int(BELOW_NYQUIST[kind] * weights.size) // FEWEST_LINES
-    return np.asarray(lines % max(min(round(-np.log(weights[-1]) / 1.5), most), 1) == 0)
+    return np.asarray(lines % max(round(-np.log(weights[-1]) / 1.5), 1) == 0)
 
 
 def _of_periods(channel: _Channel, period: int) -> _Estimated:
