@@ -364,7 +364,7 @@ class StabilityOptions:
     Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz.
     """
 
-    gain: str = option("", "--gain", metavar="K", help="Parameter that is the loop's gain; required.")
+    gain: str = option("", "--gain", metavar="K", help="Parameter that is the loop's gain.")
     limits: tuple[Stated | None, Stated | None] | None = option(
         None,
         "--range",
@@ -380,6 +380,20 @@ class StabilityOptions:
     )
     digits: int | None = option(
         None, "--digits", least=1, most=1000, help="Correct significant digits.  [default: 15]"
+    )
+    over: Sequence[str] = option(
+        (),
+        "--over",
+        multiple=True,
+        metavar="P",
+        help="Any parameter in place of a gain, a dead time or a length; twice: a chart. For "
+        "a chart --range takes the name first: --range T 0 '5 ms'.",
+    )
+    ranges: Sequence[tuple[str, Stated, Stated]] = option(
+        (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
+    )
+    resolve: Stated = option(
+        "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
     as_json: bool = option(False, "--json", **JSON)
 
@@ -766,6 +780,16 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
     if isinstance(given, str) and not 0 < value < inf:
         raise refused(f"{flag} takes a positive number such as '{example}', found '{given[:40]}'")
     return value
+
+
+def resolution(given: Stated) -> float:
+    """Return a share of one, given in percent or as a number."""
+    value = plain_number(given, ("%",))
+    share = value / 100 if isinstance(given, str) and "%" in given else value
+    if not 0 < share < 1:
+        message = f"--resolve takes a share such as '1 %', found '{str(given)[:40]}'"
+        raise refused(message)
+    return share
 
 
 def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> tuple[float, float] | None:

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, overload
 
 from symflex import pipeline
 from symflex.api.analyses import budget_of
@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
     from symflex.figures import AxesGiven
     from symflex.loops import DynamicColocation
+    from symflex.loops.chart import StabilityChart
     from symflex.model import Setting
     from symflex.options import Ends
 
@@ -335,16 +336,49 @@ class Model:
         pairs = pipeline.pick_pairs(self.resolved, wanted)
         return StateSpace.of(self.resolved, pairs, minimal=minimal)
 
+    @overload
     def stability(
         self,
-        gain: str,
+        gain: str = "",
         limits: tuple[float | None, float | None] | None = None,
         *,
         digits: int = 15,
         budget: float | None = None,
         up_to_hz: float | None = None,
+        over: str = "",
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        resolve: float = 0.01,
         **values: Number,
-    ) -> Stability:
+    ) -> Stability: ...
+
+    @overload
+    def stability(
+        self,
+        gain: str = "",
+        limits: None = None,
+        *,
+        over: tuple[str, str],
+        digits: int = 15,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        resolve: float = 0.01,
+        budget: float | None = None,
+        up_to_hz: float | None = None,
+        **values: Number,
+    ) -> StabilityChart: ...
+
+    def stability(
+        self,
+        gain: str = "",
+        limits: tuple[float | None, float | None] | None = None,
+        *,
+        digits: int = 15,
+        budget: float | None = None,
+        up_to_hz: float | None = None,
+        over: str | tuple[str, str] = "",
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        resolve: float = 0.01,
+        **values: Number,
+    ) -> Stability | StabilityChart:
         """Return the gains for which all closed-loop poles are in the open left half plane, proved.
 
         Parameters
@@ -360,8 +394,20 @@ class Model:
             Time [s].
         up_to_hz : float, optional
             If infinitely many poles lie along the axis: how far they are counted [Hz].
+        over : str or pair of str, optional
+            Any parameter in place of a gain: a dead time, a length, a mass. Two of them make a chart.
+        ranges : mapping, optional
+            Of the parameters of a chart, in SI units. By default the ``range`` declared; else from 0, or half
+            the value, to ten times or twice the value.
+        resolve : float
+            Share of the chart that may stay undecided.
         **values : number or str
             In place of declared values, as for :meth:`TransferFunction.bind`.
+
+        Returns
+        -------
+        Stability or StabilityChart
+            A chart for two parameters.
 
         Raises
         ------
@@ -378,12 +424,27 @@ class Model:
         >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> model.stability("K")
         <Stability: 0.0 < K < 6.0, certified>
+        >>> delayed = {"y": "K/s*exp(-s*T)*(r - y)"}
+        >>> given = {"K": 1, "T": 0.1}
+        >>> model = Model(parameters=given, signals=delayed, inputs={"r": {}}, outputs={"Y": "y"})
+        >>> model.stability(over="T", limits=(0, 3))  # up to pi/2
+        <Stability: 0.0 < T < 1.5707963, certified>
+        >>> chart = model.stability(over=("K", "T"), ranges={"K": (0, 4), "T": (0, 2)})
+        >>> chart.at(1, 1.4), chart.at(1, 1.8)
+        ('stable', 'unstable by 2')
         """
+        from symflex.loops.chart import StabilityChart
         from symflex.loops.of_model import stability  # imports numpy
+        from symflex.loops.over import stability_over
 
-        given = StabilityOptions(gain, limits, up_to_hz, checked_digits(digits))
+        names: tuple[str, ...] = tuple(over) if not isinstance(over, str) else (over,) if over else ()
+        each = tuple((name, *ends) for name, ends in (ranges or {}).items())
+        given = StabilityOptions(gain, limits, up_to_hz, checked_digits(digits), names, each, resolve)
         with budget_of(budget).besides().entered():
-            return Stability(stability(self.resolved, given, values))
+            if not names:
+                return Stability(stability(self.resolved, given, values))
+            proved = stability_over(self.resolved, given, values)
+            return proved if isinstance(proved, StabilityChart) else Stability(proved)
 
     def locus(
         self,

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import click
 
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, command_of, first_pair
@@ -16,6 +20,7 @@ if TYPE_CHECKING:
     from symflex.analysis.sensitivity import RootDerivative
 
 
+_NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
 
@@ -108,25 +113,41 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     answer(given.as_json, lambda: rational_json(approximation), lambda: rational_text(approximation))
 
 
-@command_of("stability", StabilityOptions)
+class _Ranged(click.Command):
+    """A command whose ``--range LO HI`` may begin with the name of a parameter."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments, those of a range with a name as of a range of its own."""
+        named = [a == "--range" and _NAME.fullmatch(b) is not None for a, b in pairwise([*args, ""])]
+        plain = ["--range-of" if is_named else a for a, is_named in zip(args, named, strict=True)]
+        return super().parse_args(ctx, plain)
+
+
+@command_of("stability", StabilityOptions, _Ranged)
 def stability(spec: Specification, given: StabilityOptions) -> int:
-    """Print the values of the gain K for which all poles of SPEC are stable.
+    """Print the values of a gain, or of any parameter, for which all poles of SPEC are stable.
 
     Close the loop in [signals]; K is one of [parameters]. Boundaries are enclosed, with the frequency at
     which poles cross the imaginary axis. Poles right of the axis, hidden ones included, are counted between
     boundaries. Gain and phase margins are those of the value that K has in SPEC.
+
+    --over takes any parameter: a dead time, a length, a mass. Two of them make a chart of boxes in which the
+    number of poles right of the axis is proved; boxes about a boundary stay undecided.
 
     Exit code 4: something is not proved; the output says what. Structures without loss have poles all along
     the axis; these are counted up to a frequency, which is printed.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.loops import of_model
-    from symflex.loops.stability_map import stability_text
+    from symflex.loops.over import stability_over
 
     model = spec.load()
+    if bool(given.gain) == bool(given.over):
+        hint = "--gain K of a loop, or --over P for any parameter"
+        raise UsageError(Diagnostic("SF902", "name one gain, or the parameters of a chart", None, hint))
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
-        stable = of_model.stability(model, given)
-    answer(given.as_json, stable.to_json_dict, lambda: stability_text(stable))
+        stable = of_model.stability(model, given) if given.gain else stability_over(model, given)
+    answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
 
 

@@ -153,7 +153,7 @@ def find_stable_gains(
                 reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
     return replace(
         stability,
-        gain_margins=_gain_margins(stability),
+        gain_margins=gain_margins(stability),
         phase_margins=phase_margins,
         bandwidth=bandwidth,
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
@@ -427,7 +427,8 @@ def _sample(low: arb | None, high: arb | None) -> Fraction:
     return value
 
 
-def _gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
+def gain_margins(stability: StabilityMap) -> tuple[GainMargin, ...]:
+    """Return by which factors the nominal value may change until poles meet the axis."""
     interval, nominal = stability.nominal_interval, stability.nominal
     if interval is None or not nominal or not interval.poles.is_stable:
         return ()

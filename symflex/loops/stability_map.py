@@ -22,7 +22,9 @@ SCHEMA = "symflex.stability/1"
 BITS = 128
 NOTHING_APART = PolesApart()
 NO_NOMINAL = "the gain has no value"
-BESIDE = "the gain lies at a boundary, or outside of what was examined"
+BOXES = "boxes"
+"""The method for parameters that need not be gains."""
+BESIDE = "the value lies at a boundary, or outside of what was examined"
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +106,8 @@ class StabilityMap:
     bandwidth: AllowedBandwidth | None = None
     # Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
     margin_beyond: float | None = None
-    # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``.
+    # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``; ``boxes``
+    # of a parameter that need not be a gain.
     method: str = ""
     # Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
     apart: PolesApart = NOTHING_APART
@@ -119,10 +122,18 @@ class StabilityMap:
     beyond: tuple[float, ...] = ()
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
 
+    @property
+    def is_gain(self) -> bool:
+        """Whether the parameter is the gain of a loop."""
+        return self.method != BOXES
+
     def __repr__(self) -> str:
         count = len(self.boundaries)
         status = "certified" if self.certified else "not certified"
         return f"<StabilityMap of {self.gain}: {count} boundar{'y' if count == 1 else 'ies'}, {status}>"
+
+    def __str__(self) -> str:
+        return stability_text(self)
 
     def __post_init__(self) -> None:
         if not self.is_complete and not self.reasons:
@@ -194,6 +205,7 @@ class StabilityMap:
         return {
             "schema": SCHEMA,
             "gain": self.gain,
+            "parameter": self.gain,
             "tf": self.tf,
             "unit": self.unit,
             "range": [None if x is None else str(x) for x in self.limits],
@@ -412,7 +424,8 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
         said = 2 * INDENT + bandwidth_text(stability.gain, stability.bandwidth)
         yield Passage([f"{INDENT}bandwidth with a gain margin of 6 dB", said])
     if stability.boundaries:
-        yield Passage([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
+        value = "gain" if stability.is_gain else "value"
+        yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
 
 
 def _beyond(stability: StabilityMap) -> Iterator[str]:
@@ -501,7 +514,11 @@ def _margins(stability: StabilityMap) -> Passage:
     for margin in stability.gain_margins:
         places = ", ".join(f"{short_hertz(w)} Hz" for w in margin.boundary.frequencies)
         factor, size = figure(margin.factor, SHORT_DIGITS), figure(decibels(margin.factor), SHORT_DIGITS)
-        rows.append(("gain", f"x {factor}", f"{size} dB", places))
+        if stability.is_gain:
+            rows.append(("gain", f"x {factor}", f"{size} dB", places))
+        else:
+            end = figure(margin.boundary.gain, SHORT_DIGITS)
+            rows.append(("up to" if margin.factor > 1 else "down to", end, f"x {factor}", places))
     worst = stability.phase_margin
     for each in stability.phase_margins:
         angle = degrees(each.angle)

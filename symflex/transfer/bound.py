@@ -188,7 +188,8 @@ class BoundTransferFunction:
     def constants(self) -> tuple[tuple[str, Callable[[], arb]], ...]:
         """Per generator after s, how to enclose it at the current precision."""
         values: dict[str, Callable[[], arb]] = {name: enclosure(value) for name, value in self.values}
-        known: dict[str, Callable[[], arb]] = {**values, **dict(self.fixed), "pi": arb.pi}
+        values |= dict(self.fixed)
+        known: dict[str, Callable[[], arb]] = {**values, "pi": arb.pi}
         for constant in self.source.constants:
             if constant.generator not in self.along:
                 known[constant.generator] = later(constant.expression, values)

@@ -133,9 +133,15 @@ def _derive_expanded(
     mixed = [i for i, tf in enumerate(derived) if tf.is_mixed or is_degenerate(tf)]
     if not mixed:
         return derived
-    nameless = equations_room.assemble(model, nested_transfer, is_nameless=True)
-    again = dict(zip(mixed, derive_from(nameless, [wanted[i] for i in mixed], most), strict=True))
+    again = dict(zip(mixed, derive_nameless(model, [wanted[i] for i in mixed], most), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(derived))
+
+
+def derive_nameless(
+    model: Model, pairs: Sequence[tuple[str, str]], most: Terms | None = None
+) -> tuple[TransferFunction, ...]:
+    """Return transfer functions with fundamental functions in place of kernels, which are entire at s = 0."""
+    return derive_from(equations_room.assemble(model, nested_transfer, is_nameless=True), pairs, most)
 
 
 def followed_along_x(tf: TransferFunction) -> TransferFunction:

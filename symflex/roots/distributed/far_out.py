@@ -369,7 +369,8 @@ class _SumFarOut:
             linear = _polynomial(self.kernels, argument.rate)
             if linear is not None and len(linear) == LINEAR + 1:
                 value, decays[i] = linear[1], -linear[0] * length
-            is_delay = power == self.sheets and bool(value.imag == 0) and bool(value.real * length.real > 0)
+            is_late = value.real * length.real > 0 or (value.real > 0 and self._is_late(argument.length))
+            is_delay = power == self.sheets and bool(value.imag == 0) and bool(is_late)
             arguments.append(_Power(Fraction(power), -value * length, is_delay))
         terms: Terms = {}
         for (each, _), coefficients, scale in zip(
@@ -381,6 +382,13 @@ class _SumFarOut:
                 for p, c in _summed(amplitude, named).items():
                     own[p] = own.get(p, acb(0)) + c * scale * decay
         return terms, arguments
+
+    def _is_late(self, length: Factored) -> bool:
+        """Tell whether a dead time is proved not to be negative, though its ball may be about 0."""
+        names, constants = self.kernels.names, self.kernels.constants
+        factors = [f for f, _ in length.factors]
+        used = {names[i] for f in factors for monomial, _ in terms_of(f) for i, _ in monomial}
+        return length.unit > 0 and all(len(f) == 1 for f in factors) and all(constants[n] >= 0 for n in used)
 
 
 def _turned(arguments: Sequence[_Power], sector: int) -> list[_Power]:

@@ -1,0 +1,248 @@
+"""For which values of one parameter, or of two, a model is stable.
+
+Input: a model, and one parameter or two that may stand anywhere: gains, dead times, lengths, masses, losses.
+Output: a :class:`StabilityMap` over one, whose ends are enclosed to all digits, or a :class:`StabilityChart`.
+
+Example: ``m s^2 + b s + k + K k exp(-s T)`` with m = 8, b = 60, k = 20000 and K = 0.1 is stable up to
+T = 8.55... ms, where a pole meets the axis at 7.96 Hz, and again later.
+
+The values of one parameter are halved until no pole meets the axis for any in a part, or the part is as
+narrow as the digits asked for; see :mod:`symflex.loops.boxes`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from math import pi
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.balls import ball, bits_for_digits
+from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
+from symflex.expressions import names_among
+from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, OpenBox
+from symflex.loops.chart import StabilityChart, count_at, find_chart, halved
+from symflex.loops.find import gain_margins
+from symflex.loops.loop import pick_gain
+from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
+from symflex.model import with_numbers
+from symflex.model.along import is_tapered
+from symflex.model.loss_factors import check_causal
+from symflex.options import StabilityOptions, gain_ends, highest_frequency, resolution
+from symflex.transfer.bind import read_values
+from symflex.transfer.of_model import assemble, derive_all
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.model import Model, ModelParameter
+    from symflex.transfer import Given
+
+Interval = tuple[Ends, PoleCount]
+WIDER, WIDER_PART = 10, 2
+"""How many times its value a parameter of signals, or of parts, may have if no range is given."""
+SLIVER = 64
+"""Parts as narrow as the digits, up to which what lies between two boundaries is left to them."""
+LEAST = 10**6
+"""Part of the range to which values about zero are enclosed."""
+MOST_GAPS = 1000
+"""Open parts side by side beyond which they are not halved: a pole touches the axis there, or stays on it."""
+
+
+def stability_over(
+    model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
+) -> StabilityMap | StabilityChart:
+    """Return for which values of one parameter or two a model is stable; ``values`` replace declared ones.
+
+    Raises UsageError: SF902 for a parameter that the model does not have, or too many of them; SF804 for a
+    range that is needed or empty; ModelError: SF801 if no pole depends on a parameter, or it cannot be
+    followed; SF501, SF502 if the characteristic function is too large.
+    """
+    names = tuple(given.over)
+    if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
+        raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
+    check_causal(model, "stability over a parameter")
+    stated = {name: pick_gain(model.parameters, name) for name in values or {}}
+    exact = dict(read_values(tuple(stated.values()), values or {}))
+    model = replace(
+        model,
+        parameters=tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters),
+    )
+    parameters = [pick_gain(model.parameters, name) for name in names]
+    limits = tuple(_limits(model, p, given) for p in parameters)
+    nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
+    if is_tapered(model) or model.root is not None:
+        what = "members that taper" if is_tapered(model) else "roots of s"
+        message = f"stability over a parameter is not available with {what}"
+        raise ModelError(Diagnostic("SF801", message, parameters[0].span, _sweep(names[0])))
+    prepared = with_numbers(model, names, in_kernels=True)
+    plain = {row.name for row in assemble(prepared).outputs if row.divisor.is_one}
+    pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
+    (tf,) = derive_all(prepared, [pair])
+    highest = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
+    function = CharacteristicFunction.of(prepared, tf, names, highest)
+    for parameter in parameters:
+        if not function.depends_on(parameter.name):
+            message = f"no pole of the model depends on '{parameter.name}'"
+            raise ModelError(Diagnostic("SF801", message, parameter.span, _sweep(parameter.name)))
+    if len(names) > 1:
+        return find_chart(function, limits, nominal, [p.unit for p in parameters], resolution(given.resolve))
+    digits = given.digits or model.analysis.digits or 15
+    return find_intervals(function, limits[0], digits, parameters[0], nominal[0])
+
+
+def _sweep(name: str) -> str:
+    return f"follow its poles by value: symflex sweep FILE --over {name}=FROM:TO:lin:20"
+
+
+def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) -> Ends:
+    """Return the range of a parameter: the one asked for, the declared one, or one about its value.
+
+    It begins at 0 for a parameter of signals and blocks alone.
+    """
+    name = parameter.name
+    of_all = given.limits if len(given.over) == 1 else None
+    stated = {n: (low, high) for n, low, high in given.ranges}.get(name, of_all)
+    if stated is not None:
+        low, high = gain_ends(stated, parameter) or (None, None)
+    elif parameter.limits is not None:
+        low, high = (None if x.pi_power else x.rational for x in parameter.limits)
+    elif parameter.value is None or parameter.value.pi_power or not parameter.value.rational:
+        low = high = None
+    else:
+        values = [e for use in model.elements for _, e in use.values] + [
+            d.expression for d in model.definitions
+        ]
+        is_signal = not model.fields and not any(names_among(e, {name}) for e in values)
+        value = parameter.value.rational
+        low, high = sorted(
+            (value * 0, value * WIDER) if is_signal else (value / WIDER_PART, value * WIDER_PART)
+        )
+    if low is None or high is None or not low < high:
+        message = f"'{name}' needs a finite range from a smaller to a larger value"
+        raise UsageError(Diagnostic("SF804", message, None, f"give one: --range {name} LO HI"))
+    return low, high
+
+
+def find_intervals(
+    function: CharacteristicFunction,
+    limits: Ends,
+    digits: int,
+    parameter: ModelParameter,
+    nominal: Fraction | None,
+) -> StabilityMap:
+    """Return for which values of one parameter a model is stable, the ends enclosed to so many digits."""
+    bits, reasons = bits_for_digits(digits) + BITS, list[str]()
+    decided: list[Ends] = []
+    gaps: list[OpenBox] = []
+    pending = [function.whole((limits,))]
+    try:
+        while pending:
+            left = []
+            for box in pending:
+                narrowed = function.narrowed(box, bits) if box.is_bounded else box
+                if narrowed.is_bounded and not any(narrowed.pieces):
+                    decided.append(box.box[0])
+                elif _is_narrow(box.box[0], limits, digits):
+                    gaps.append(narrowed)
+                else:
+                    left.append(narrowed)
+            halves = [half for box in left for half in halved(box, function)]
+            wide = _too_many(halves)
+            for row in wide:
+                ends = f"{float(row[0].box[0][0]):.6g} and {float(row[-1].box[0][1]):.6g}"
+                reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
+                gaps += row
+            frozen = {id(box) for row in wide for box in row}
+            pending = [box for box in halves if id(box) not in frozen]
+    except BudgetError as error:
+        reasons.append(error.diagnostics[0].message)
+    reasons += dict.fromkeys(box.radius for box in (*gaps, *pending) if isinstance(box.radius, str))
+    counted: list[Interval] = []
+    for part in _joined(decided, limits, digits):
+        verdict, axis = count_at(function, ((part[0] + part[1]) / 2,))
+        if verdict.right is None:
+            reasons.append(verdict.reason)
+        else:
+            counted.append((part, PoleCount(verdict.right, axis)))
+    boundaries, intervals = _boundaries(counted, gaps, limits, reasons)
+    stability = StabilityMap(
+        parameter.name,
+        parameter.unit,
+        limits,
+        boundaries if not reasons else (),
+        intervals if not reasons else (),
+        nominal,
+        radius=function.highest,
+        is_complete=not reasons,
+        reasons=tuple(dict.fromkeys(reasons)),
+        digits=digits,
+        method=BOXES,
+        tf=function.tf.name,
+    )
+    return replace(stability, gain_margins=gain_margins(stability))
+
+
+def _is_narrow(ends: Ends, limits: Ends, digits: int) -> bool:
+    """Tell whether a part is as narrow as the digits."""
+    size = max(abs(ends[0]), abs(ends[1]), (limits[1] - limits[0]) / LEAST)
+    return bool((ends[1] - ends[0]) * 10 ** (digits + 3) < size)
+
+
+def _too_many(boxes: Sequence[OpenBox]) -> list[list[OpenBox]]:
+    """Return rows of open parts, side by side, that are too long to be about one boundary."""
+    rows: list[list[OpenBox]] = []
+    for box in boxes:
+        if rows and rows[-1][-1].box[0][1] == box.box[0][0]:
+            rows[-1].append(box)
+        else:
+            rows.append([box])
+    return [row for row in rows if len(row) > MOST_GAPS]
+
+
+def _joined(decided: Sequence[Ends], limits: Ends, digits: int) -> list[Ends]:
+    """Return parts that touch as one, ascending; slivers between open parts are left to these."""
+    joined: list[Ends] = []
+    for low, high in sorted(decided):
+        if joined and joined[-1][1] == low:
+            joined[-1] = (joined[-1][0], high)
+        else:
+            joined.append((low, high))
+    slim = Fraction(1, SLIVER)
+    return [(a, b) for a, b in joined if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
+
+
+def _boundaries(
+    counted: Sequence[Interval], gaps: Sequence[OpenBox], limits: Ends, reasons: list[str]
+) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
+    """Return the ends between parts in which poles are counted, and the parts between these."""
+    boundaries: list[Boundary] = []
+    starts: list[arb] = [ball(limits[0])]
+    poles = [count for _, count in counted]
+    for (before, count), (after, other) in pairwise(counted):
+        own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
+        place = ball(before[1]).union(ball(after[0]))
+        if count == other:
+            reasons.append(
+                f"it could not be decided whether poles touch the axis near {float(before[1]):.6g}"
+            )
+        boundaries.append(Boundary(place, (Crossing(place, _frequencies(own)),)))
+        starts.append(place)
+    ends = [*starts[1:], ball(limits[1])]
+    intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
+    return tuple(boundaries), intervals
+
+
+def _frequencies(gaps: Sequence[OpenBox]) -> tuple[arb, ...]:
+    """Return where on the axis poles may be, pieces that touch as one [rad/s]."""
+    pieces = sorted(piece for gap in gaps for of_factor in gap.pieces for piece in of_factor)
+    joined: list[Ends] = []
+    for low, high in pieces:
+        if joined and low <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
+        else:
+            joined.append((low, high))
+    return tuple(ball(low).union(ball(high)) if low else arb(0) for low, high in joined)

@@ -1,0 +1,181 @@
+"""Stability over any parameter: boundaries from formulas of books, verdicts at random points of charts."""
+
+from math import atan2, pi, sqrt
+from random import Random
+
+import pytest
+
+from symflex import Model
+from symflex.errors import ModelError, UsageError
+
+LAG = Model(
+    parameters={"a": 1, "T": 0.1},
+    signals={"y": "a/s*exp(-s*T)*(r - y)"},
+    inputs={"r": {}},
+    outputs={"Y": "y"},
+)
+
+
+def oscillator(gain: float) -> Model:
+    """Return a mass on a spring with a damper, whose force is fed back late: seed of delayed resonators."""
+    return Model(
+        parameters={"m": "8 kg", "b": "60 N*s/m", "k": "20000 N/m", "K": str(gain), "T": "2 ms"},
+        elements={
+            "body": {"type": "mass", "at": "x", "m": "m"},
+            "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+            "loss": {"type": "damper", "between": ["x", "ground"], "b": "b"},
+            "act": {"type": "force_source", "at": "x", "f": "u"},
+        },
+        signals={"u": "K*k*exp(-s*T)*(r - x)"},
+        inputs={"r": {"unit": "m"}},
+        outputs={"X": "x"},
+    )
+
+
+def test_an_integrator_with_a_dead_time_is_stable_up_to_half_of_pi() -> None:
+    """Hayes 1950: all roots of ``s + a exp(-s T)`` lie on the left exactly if 0 < a T < pi/2."""
+    stable = LAG.stability(over="T", limits=(0, 3), a=0.7)
+    assert stable.certified
+    ((low, high),) = stable.stable
+    assert low == 0
+    assert abs(high - pi / 2 / 0.7) < 1e-14
+    assert abs(stable.boundaries[0].frequencies_hz[0] - 0.7 / (2 * pi)) < 1e-14
+
+
+def test_a_delayed_oscillator_is_stable_again_for_later_dead_times() -> None:
+    """On the axis ``abs(k - m w^2 + j b w) = K k``, and T is the angle over w, plus whole periods."""
+    m, b, k, gain = 8.0, 60.0, 20000.0, 0.2
+    middle, off = (
+        k / m - b * b / (2 * m * m),
+        sqrt(b**4 / (4 * m**4) - b * b * k / m**3 + (gain * k / m) ** 2),
+    )
+    expected = []
+    for omega, change in ((sqrt(middle + off), 2), (sqrt(middle - off), -2)):
+        # exp(-j w T) = -(k - m w^2 + j b w)/(K k)
+        first = -atan2(-b * omega, -(k - m * omega * omega)) % (2 * pi) / omega
+        expected += [(first + n * 2 * pi / omega, change, omega) for n in range(9)]
+    expected = sorted(x for x in expected if x[0] < 0.6)
+    stable = oscillator(gain).stability(over="T", limits=(0, 0.6))
+    assert stable.certified
+    assert [each.entering for each in stable.boundaries] == [change for _, change, _ in expected]
+    for each, (dead_time, _, omega) in zip(stable.boundaries, expected, strict=True):
+        assert abs(each.gain - dead_time) < 1e-12
+        assert abs(each.frequencies_hz[0] * 2 * pi - omega) < 1e-10
+
+
+def test_a_mass_above_which_a_servo_is_unstable() -> None:
+    """Routh: ``m tau s^3 + (m + b tau) s^2 + b s + K`` is stable for ``m (K tau - b) < b^2 tau``."""
+    b, tau, gain = 3.0, 0.5, 10.0
+    model = Model(
+        parameters={"m": 1, "b": b, "tau": tau, "K": gain},
+        signals={"y": "K/(s*(m*s + b)*(1 + tau*s))*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    ((_, high),) = model.stability(over="m", limits=(0.5, 20)).stable
+    assert abs(high - b * b * tau / (gain * tau - b)) < 1e-14
+
+
+def test_a_pole_that_stays_on_the_axis_is_said() -> None:
+    lossless = Model(
+        parameters={"m": "1 kg", "k": "4 N/m"},
+        elements={
+            "body": {"type": "mass", "at": "x", "m": "m"},
+            "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"X": "x"},
+    )
+    stable = lossless.stability(over="k")
+    assert not stable.certified
+    assert "whether poles meet the axis" in stable.reasons[0]
+    assert not stable.stable
+
+
+def test_a_chart_says_at_every_point_what_holds_there() -> None:
+    chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)}, resolve=0.02)
+    assert chart.certified
+    assert chart.decided > 0.98
+    random, open_points = Random(5), 0
+    for _ in range(200):
+        a, late = random.uniform(0, 4), random.uniform(0, 3)
+        said = chart.at(a, late)
+        open_points += said == "undecided"
+        # Poles cross where a = w and w T = pi/2 + 2 pi n.
+        pairs = int((a * late - pi / 2) // (2 * pi)) + 1 if a * late > pi / 2 else 0
+        assert said in ("undecided", f"unstable by {2 * pairs}" if pairs else "stable")
+    assert open_points <= 10
+    assert chart.at(5, 1) == "undecided"
+
+
+def test_the_largest_box_about_the_declared_values_ends_at_the_boundary() -> None:
+    chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)})
+    box = chart.largest_box()
+    assert box is not None
+    (_, a), (_, late) = box
+    assert 0.9 * pi / 2 < a * late < pi / 2
+
+
+def test_the_document_of_a_chart_holds_every_box() -> None:
+    chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)}, resolve=0.1)
+    document = chart.to_json_dict()
+    assert document["schema"] == "symflex.stability_chart/1"
+    area = sum(
+        (high[0] - low[0]) * (high[1] - low[1])
+        for name in ("boxes", "undecided_boxes")
+        for low, high in ((box["low"], box["high"]) for box in document[name])
+    )
+    assert abs(area - 12) < 1e-9
+    assert document["undecided"] <= 0.1
+    assert document["at_nominal"] == "stable"
+
+
+@pytest.mark.parametrize(
+    ("over", "low", "code"),
+    [(("a", "b"), 0, "SF902"), (("a", "a"), 0, "SF902"), (("a", "T"), 3, "SF804")],
+)
+def test_what_is_no_chart_is_refused(over: tuple[str, str], low: float, code: str) -> None:
+    with pytest.raises(UsageError) as error:
+        LAG.stability(over=over, ranges={"a": (low, 1)})
+    assert error.value.diagnostics[0].code == code
+
+
+def test_a_parameter_that_moves_no_pole_is_refused() -> None:
+    model = Model(
+        parameters={"g": 2, "T": 0.1},
+        signals={"y": "g*exp(-s*T)/(s + 1)*r"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    with pytest.raises(ModelError, match="no pole of the model depends on 'g'"):
+        model.stability(over="g")
+
+
+@pytest.mark.slow
+def test_a_beam_with_a_filtered_controller_agrees_with_its_stable_gains() -> None:
+    """Boundaries of a gain by halving against those that :func:`find_stable_gains` finds along the axis."""
+    model = Model(
+        parameters={
+            "E": "70 GPa", "I": "2e-10 m^4", "rho": "2700 kg/m^3", "A": "6e-5 m^2", "l": "0.8 m",
+            "J": "0.002 kg*m^2", "m": "0.1 kg", "tau": "2e-4 s", "T_f": "2 ms", "T": "1 ms",
+            "k_p": "20 N*m/rad", "k_d": "1 N*m*s/rad",
+        },
+        elements={
+            "bearing": {"type": "pin", "at": "hub"},
+            "arm": {
+                "type": "beam", "between": ["hub", "tip"],
+                "E": "E*(1 + tau*s)", "I": "I", "rho": "rho", "A": "A", "l": "l",
+            },
+            "rotor": {"type": "inertia", "at": "hub.theta", "J": "J"},
+            "load": {"type": "mass", "at": "tip", "m": "m"},
+            "drive": {"type": "torque_source", "at": "hub.theta", "tau": "u"},
+        },
+        signals={"u": "(k_p + k_d*s/(1 + T_f*s))*exp(-s*T)*(r - hub.theta)"},
+        inputs={"r": {"unit": "rad"}},
+        outputs={"phi": "hub.theta"},
+    )  # fmt: skip
+    along = model.stability("k_p", (0, 2000)).boundaries
+    halved = model.stability(over="k_p", limits=(0, 2000)).boundaries
+    assert len(along) == len(halved) == 1
+    assert abs(along[0].gain - halved[0].gain) < along[0].radius + halved[0].radius
+    assert along[0].entering == halved[0].entering == 2
