@@ -72,6 +72,10 @@ def stability_over(
         parameters=tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters),
     )
     parameters = [pick_gain(model.parameters, name) for name in names]
+    if spare := [name for name, *_ in given.ranges if name not in names]:
+        raise UsageError(
+            Diagnostic("SF902", f"a range of '{spare[0][:64]}', which is not asked for with --over")
+        )
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
     if is_tapered(model) or model.root is not None:
@@ -124,6 +128,9 @@ def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) ->
     if low is None or high is None or not low < high:
         message = f"'{name}' needs a finite range from a smaller to a larger value"
         raise UsageError(Diagnostic("SF804", message, None, f"give one: --range {name} LO HI"))
+    if low < 0 and parameter.assume != "real":
+        message = f"'{name}' is assumed not to be negative, and its range is"
+        raise UsageError(Diagnostic("SF804", message, None, 'begin at 0, or declare assume = "real"'))
     return low, high
 
 
@@ -160,7 +167,10 @@ def find_intervals(
             pending = [box for box in halves if id(box) not in frozen]
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
-    reasons += dict.fromkeys(box.radius for box in (*gaps, *pending) if isinstance(box.radius, str))
+    # The ends do not belong to the range: there the order may be lower, or a pole meet the axis.
+    rims = {*limits}
+    inside = [gap for gap in gaps if not rims & {*gap.box[0]}]
+    reasons += dict.fromkeys(box.radius for box in (*inside, *pending) if isinstance(box.radius, str))
     counted: list[Interval] = []
     for part in _joined(decided, limits, digits):
         verdict, axis = count_at(function, ((part[0] + part[1]) / 2,))
@@ -220,7 +230,8 @@ def _boundaries(
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
     """Return the ends between parts in which poles are counted, and the parts between these."""
     boundaries: list[Boundary] = []
-    starts: list[arb] = [ball(limits[0])]
+    first, last = (counted[0][0][0], counted[-1][0][1]) if counted else limits
+    starts: list[arb] = [ball(limits[0]).union(ball(first))]
     poles = [count for _, count in counted]
     for (before, count), (after, other) in pairwise(counted):
         own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
@@ -231,7 +242,7 @@ def _boundaries(
             )
         boundaries.append(Boundary(place, (Crossing(place, _frequencies(own)),)))
         starts.append(place)
-    ends = [*starts[1:], ball(limits[1])]
+    ends = [*starts[1:], ball(limits[1]).union(ball(last))]
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
     return tuple(boundaries), intervals
 

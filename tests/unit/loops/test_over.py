@@ -130,9 +130,24 @@ def test_the_document_of_a_chart_holds_every_box() -> None:
     assert document["at_nominal"] == "stable"
 
 
+def test_the_ends_do_not_belong_to_the_range() -> None:
+    """Without its mass the oscillator is of first order, with one that is small it is stable."""
+    stable = oscillator(0.1).stability(over="m", limits=(0, 5))
+    assert stable.certified
+    ((low, high),) = stable.stable
+    assert 0 <= low < 1e-15
+    assert high == 5
+
+
 @pytest.mark.parametrize(
     ("over", "low", "code"),
-    [(("a", "b"), 0, "SF902"), (("a", "a"), 0, "SF902"), (("a", "T"), 3, "SF804")],
+    [
+        (("a", "b"), 0, "SF902"),
+        (("a", "a"), 0, "SF902"),
+        (("a", "T"), 3, "SF804"),
+        (("a", "T"), -1, "SF804"),
+        (("T", "K"), 0, "SF902"),
+    ],
 )
 def test_what_is_no_chart_is_refused(over: tuple[str, str], low: float, code: str) -> None:
     with pytest.raises(UsageError) as error:
