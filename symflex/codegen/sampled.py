@@ -13,9 +13,7 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING
 
-from symflex.analysis.sampling import sampled_transfer_function
 from symflex.budget import spend
-from symflex.codegen.difference import difference_equation
 from symflex.codegen.module_text import (
     default_value,
     identifiers,
@@ -142,6 +140,9 @@ class DifferenceExporter:
         Raises BudgetError: SF502 for a function in nested form; ModelError: SF233 where a coefficient does
         not fit in a double, and as of :func:`symflex.analysis.sampling.sampled_transfer_function`.
         """
+        from symflex.analysis.sampling import sampled_transfer_function  # imports mpmath, for few exports
+        from symflex.codegen.difference import difference_equation
+
         wanted = {tf.name: f"{tf.output.name}_over_{tf.input.name}" for tf in tfs}
         if self.language.is_caseless:
             wanted = {key: name.lower() for key, name in wanted.items()}
