@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from symflex.roots import Root
 
 Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
-Status = Literal["proved", "not shown"]
+Status = Literal["proved", "almost surely", "not shown"]
 
 WIDTH = 80
 INDENT = "  "
@@ -68,7 +68,9 @@ class ZeroExplanation:
         open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
         identically zero.
     status : str
-        ``proved`` in the exact ring of the equations; ``not shown`` where the two forms cannot be compared.
+        ``proved`` in the exact ring of the equations; ``almost surely`` of large networks, by comparison at
+        random points, which errs with odds below 1 in 2^50; ``not shown`` where the two forms cannot be
+        compared.
     output, input : str
         Their names.
     is_direct : bool
@@ -236,18 +238,20 @@ def _statement(explained: ZeroExplanation) -> str:
         where = f"{source} acts where {output} measures."
     else:
         where = f"{source} does not act where {output} measures, but has the same effect up to a factor."
-    verb = "are" if explained.status == "proved" else "should be"
+    verb = "should be" if explained.status == "not shown" else "are"
     return f"{where} {zeros} {verb} the poles of {system}."
 
 
 def _proof(explained: ZeroExplanation) -> str:
-    if explained.status != "proved":
+    if explained.status == "not shown":
         return "Not proved: the exact forms could not be compared."
+    sure = explained.status == "proved"
+    lead = "Proved" if sure else "Compared at random points, which errs with odds below 1 in 2^50"
     own = _own(explained)
     more = f"*({explained.transmission})" if explained.transmission else ""
     more += f"/({explained.extra})" if explained.extra and explained.kind != "partly" else ""
     whole = "those parts" if explained.kind == "partly" else "the constrained system"
-    said = [f"Proved: num = c{own}{more}*det, where det belongs to {whole} and c does not depend on s."]
+    said = [f"{lead}: num = c{own}{more}*det, where det belongs to {whole} and c does not depend on s."]
     if own:
         said.append(f"{own[1:]} is the factor that {explained.output} applies to what it measures.")
     if explained.extra:
@@ -283,7 +287,7 @@ def _noncolocated(explained: ZeroExplanation) -> str:
 def _structure(explained: ZeroExplanation) -> Iterator[list[str]]:
     """Yield what moves in the constrained system."""
     parts = explained.parts
-    if explained.status != "proved":
+    if explained.status == "not shown":
         return
     if explained.kind in ("beyond", "partly"):
         yield ["It consists of", *_listed_parts(parts, explained.input)]

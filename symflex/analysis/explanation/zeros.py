@@ -77,6 +77,11 @@ class _Case:
     def input(self) -> Input:
         return next(i for i in self.model.inputs if i.name == self.pair[1])
 
+    @property
+    def status(self) -> Status:
+        """How sure a relation is: at points of a prime field almost."""
+        return "almost surely" if isinstance(self.whole, PrimePoints) else "proved"
+
     def constrained(self, constraint: Constraint) -> System | None:
         """Return a constrained model as this one is, ``None`` when the constraint repeats another."""
         try:
@@ -168,7 +173,7 @@ def _by_coordinate(case: _Case) -> ZeroExplanation | None:
     separation = case.separate(held.equations)
     kind, transmission = _kind(case, relation, separation, motion.factor)
     plain = replace(
-        case.explained(kind, "proved", constraint, is_direct=is_direct, order=relation.order),
+        case.explained(kind, case.status, constraint, is_direct=is_direct, order=relation.order),
         filtered=_text(case.equations, relation.filtered),
         is_delayed=relation.is_delayed,
     )
@@ -233,7 +238,7 @@ def _by_condition(case: _Case) -> ZeroExplanation | None:
     ends = (ends_of_field(replaced.field), ends_of_field(after))
     kind: Kind = "colocated" if replaced.is_dual else "noncolocated"
     return replace(
-        case.explained(kind, "proved", constraint, is_direct=replaced.is_dual, order=order),
+        case.explained(kind, case.status, constraint, is_direct=replaced.is_dual, order=order),
         filtered=_text(case.equations, filtered),
         parts=case.separate(held.equations).parts,
         ends=(EndChange(replaced.field.name, *ends),) if all(ends) else (),
@@ -261,7 +266,7 @@ def _by_terminals(case: _Case) -> ZeroExplanation | None:
     if any(f != s for f, _ in relation.transmission.factors):
         return None
     kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
-    plain = case.explained(kind, "proved", constraint, is_direct=True, order=order)
+    plain = case.explained(kind, case.status, constraint, is_direct=True, order=order)
     return replace(plain, parts=case.separate(held.equations).parts)
 
 
