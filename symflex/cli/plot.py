@@ -33,6 +33,7 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     LaTeX, as for plot.
     """
     from symflex.drawing import drawing_of, render_drawing
+    from symflex.figures import checked_font
     from symflex.files.write import write_atomically
     from symflex.print.latex import width_of
 
@@ -72,7 +73,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     it.
     """
     from symflex import pipeline
-    from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
+    from symflex.figures import LOOP_FIGURES, checked_font, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
     from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
@@ -157,7 +158,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
     if spec.settings or any(others):
         message = "--set, --tf, --gain, --range, --band and ends of axes do not apply to a sweep"
         raise UsageError(Diagnostic("SF902", message))
-    from symflex.figures import draw_sweep, save
+    from symflex.figures import checked_font, draw_sweep, save
     from symflex.print.latex import width_of
     from symflex.sweep.files import read_sweep
 
@@ -186,20 +187,3 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     return figure, figure.kind if figure else kind
-
-
-def checked_font(font: str | None, path: Path) -> str:
-    """Return the name of a font for a figure.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such font.
-    """
-    from symflex.figures import DEFAULT_FONT, FONTS
-
-    font = font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT)
-    if font not in FONTS:
-        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
-        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
-    return font

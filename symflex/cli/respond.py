@@ -195,8 +195,7 @@ def _write(response: EnclosedResponse, given: RespondOptions, path: Path) -> Non
 
 def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:
     """Write a figure as options ask for it."""
-    from symflex.cli.plot import checked_font
-    from symflex.figures import draw_in_time, save
+    from symflex.figures import checked_font, draw_in_time, save
     from symflex.figures.axes import AxisLimits
     from symflex.print.latex import width_of
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         part_shown,
         picture_of_shape,
     )
-    from symflex.figures.style import DEFAULT_FONT, FONTS
+    from symflex.figures.style import DEFAULT_FONT, FONTS, checked_font
     from symflex.figures.sweep import draw_sweep
 
 _HOME: Final = {
@@ -33,7 +33,7 @@ _HOME: Final = {
     "fitted": "draw_fit draw_measured draw_orders",
     "in_time": "draw_in_time draw_residual",
     "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_shape part_shown picture_of_shape",
-    "style": "DEFAULT_FONT FONTS",
+    "style": "DEFAULT_FONT FONTS checked_font",
     "sweep": "draw_sweep",
 }
 """Modules of the public names, imported on first use: a drawing of a model takes a style and no roots."""

@@ -18,6 +18,7 @@ from symflex.print.label import read_label
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import AbstractContextManager
+    from pathlib import Path
 
     from matplotlib.font_manager import FontProperties
 
@@ -277,3 +278,18 @@ def number_label(value: float) -> str:
     ('25', '10^{6}', '2.5\\times 10^{-7}')
     """
     return power_of_ten(f"{value:.4g}", r"\times ")
+
+
+def checked_font(font: str | None, path: Path) -> str:
+    """Return the name of a font for a figure.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such font.
+    """
+    font = font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT)
+    if font not in FONTS:
+        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
+        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
+    return font

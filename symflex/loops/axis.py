@@ -24,9 +24,11 @@ from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from symflex.loops.loop_function import LoopFunction
+    from flint import fmpz_mpoly
+
+    from symflex.transfer import BoundTransferFunction
 
 BITS = 96
 """Of intervals, whose ends are doubles."""
@@ -229,17 +231,21 @@ class LoopAtOrigin:
         return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
 
 
-def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin | None:
-    """Return A and B near 0, ``None`` where their orders or series cannot be told.
+def loop_at_origin(
+    bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly], turn: acb, times: float = 1.0
+) -> LoopAtOrigin | None:
+    """Return A and B near 0, ``None`` if their orders or series are not known.
 
-    They reach as far as roots next to 0 can be told from it, times a factor.
+    They are ``polynomials`` over the ring of a bound function; ``turn`` is the direction of the axis.
+
+    They reach as far as roots next to 0 can be distinguished from it, times a factor.
     """
-    ring = function.bound.ratio.ring
+    ring = bound.ratio.ring
     orders, parts = [], []
-    for polynomial in function.parts:
+    for polynomial in polynomials:
         whole = Factored.polynomial(ring, polynomial)
         try:
-            part = KernelFunction(function.bound, whole)
+            part = KernelFunction(bound, whole)
             order = part.order()
             if order is None or part.power != 1:
                 return None
@@ -267,12 +273,11 @@ def loop_at_origin(function: LoopFunction, times: float = 1.0) -> LoopAtOrigin |
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in each.coefficients)
             series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
-        return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(function), function.turn)
+        return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(bound, *polynomials[:2]), turn)
 
 
-def _ratio_at_zero(function: LoopFunction) -> Fraction | None:
-    """Return A/B at s = 0 of a loop with dead time and no waves, None where it is not told."""
-    bound = function.bound
+def _ratio_at_zero(bound: BoundTransferFunction, a: fmpz_mpoly, b: fmpz_mpoly) -> Fraction | None:
+    """Return A/B at s = 0 of a loop with dead time and no waves, None if it is not known."""
     ring, kernels = bound.ratio.ring, bound.kernels.kernels
     if any(k.function != "exp" or not k.dispersion.shift.exponent_of(ring.context.gen(0)) for k in kernels):
         return None
@@ -280,6 +285,6 @@ def _ratio_at_zero(function: LoopFunction) -> Fraction | None:
     images[0] = ring.constant(0)
     for kernel in kernels:
         images[ring.index[kernel.generator]] = ring.constant(1)
-    a, b = (Factored.polynomial(ring, ring.compose(f, images)) for f in (function.a, function.b))
-    ratio = None if a.is_zero or b.is_zero else a / b
+    above, below = (Factored.polynomial(ring, ring.compose(f, images)) for f in (a, b))
+    ratio = None if above.is_zero or below.is_zero else above / below
     return ratio.unit if ratio is not None and ratio.is_constant else None

@@ -21,7 +21,7 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import ORIGIN_BITS, joined, loop_at_origin
+from symflex.loops.axis import ORIGIN_BITS, joined
 from symflex.loops.axis_search import NEXT_TO_ZERO, NOT_PROVED_AT_ZERO, SHRINKINGS, AxisSearch
 from symflex.loops.gain_functions import GainFunctions
 from symflex.loops.loop import GainPolynomial, independent
@@ -396,7 +396,7 @@ class DistributedFactors(AxisSearch):
     def _in_two_unknowns(self, factor: GainPolynomial, digits: int) -> list[Crossing]:
         """Return the same of a factor that depends on several functions of the gain."""
         function, tree, crossings = self._parts(factor), self._tree(factor), list[Crossing]()
-        origin, first = loop_at_origin(function), 0.0
+        origin, first = function.at_origin(), 0.0
         if origin is not None:
             with precision(ORIGIN_BITS):
                 radius = origin.series[0].reach / 4

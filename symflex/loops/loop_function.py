@@ -166,7 +166,7 @@ class LoopFunction:
 
     def at_origin(self, times: float = 1.0) -> LoopAtOrigin | None:
         """Return A and B near 0; see :func:`.loop_at_origin`."""
-        return loop_at_origin(self, times)
+        return loop_at_origin(self.bound, self.parts, self.turn, times)
 
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""

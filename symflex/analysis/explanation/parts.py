@@ -24,11 +24,10 @@ from symflex.transfer.expansion import compose_rational
 from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
-    from symflex.analysis.explanation.at_points import PrimePoints
     from symflex.equations import Equations
     from symflex.model import Model, PlacedElement
 
@@ -138,12 +137,16 @@ class _Matrix:
 
 
 def separate(
-    equations: Equations, source: str, model: Model | None = None, points: PrimePoints | None = None
+    equations: Equations,
+    source: str,
+    model: Model | None = None,
+    varies: Callable[[Equations], bool] | None = None,
 ) -> Separation:
     """Return the parts of a constrained system, those without poles left out.
 
     Parts that hold the input ``source`` are marked; elements of ``model`` are named, by default all those of
-    the equations. With ``points`` determinants of parts with waves are not multiplied out.
+    the equations. With ``varies``, which tells whether a determinant depends on s, determinants of parts with
+    waves are not multiplied out.
     """
     named = equations.model if model is None else model
     matrix = _Matrix.of(equations, source)
@@ -151,12 +154,12 @@ def separate(
     parts = []
     for rows, variables in matrix.components():
         system = _part(equations, matrix, rows, variables)
-        waves = [] if points is None else waves_of(equations)
-        if points is not None and any(
+        waves = [] if varies is None else waves_of(equations)
+        if varies is not None and any(
             c.depends_on(w) for row in system.rows for c in row.form.coefficients for w in waves
         ):
             determinant, order = Factored.number(equations.ring, 1), None
-            is_constant = not points.varies(system)
+            is_constant = not varies(system)
         else:
             determinants = Determinants.of(system)
             determinant = varying(equations, opened(equations, determinants.opened(determinants.den)))

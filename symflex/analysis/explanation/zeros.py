@@ -99,8 +99,8 @@ class _Case:
 
     def separate(self, equations: Equations) -> Separation:
         """Return the parts of a constrained system."""
-        points = self.whole if isinstance(self.whole, PrimePoints) else None
-        return separate(equations, self.pair[1], self.model, points)
+        varies = self.whole.varies if isinstance(self.whole, PrimePoints) else None
+        return separate(equations, self.pair[1], self.model, varies)
 
     def explained(
         self, kind: Kind, status: Status, constraint: Constraint, *, is_direct: bool, order: int = 0
