@@ -205,8 +205,6 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
     noise = _noise_of(channel.y[jump:])
     weights, window, said = _weights(increments, 2 * noise, channel.step_s, how)
-    rest = channel.y[-max(channel.y.size // 20, 4) :] if weights[-1] == 1 else channel.y[-1:]
-    increments[-1] += rest.mean() - channel.y[-1]
     frequency = np.fft.rfftfreq(increments.size, channel.step_s)
     s = 2j * np.pi * frequency * channel.step_s - np.log(weights[1])
     with np.errstate(all="ignore"):
@@ -215,7 +213,8 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     kept = _apart(weights) & (frequency <= BELOW_NYQUIST["step"] / channel.step_s)
     # Noise of every sample enters twice, but for that of the levels at both ends.
     variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
-    variance += weights[-1] ** 2 / rest.size
+    # The last level is no mean of samples that still ring a little: a decay cut off ends with its last one.
+    variance += weights[-1] ** 2
     deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
     coherence = _coherence(response, deviation)
     said = f"a step: spectrum of the output's increments over the jump{said}"

@@ -18,6 +18,8 @@ _EXPONENTIAL = re.compile(
 )
 SMALLEST_NOISE = 1e-6
 """The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""
+SMALLEST_NOISE_OF_RECORD = 1e-8
+"""The same of records, whose noise is estimated; between samples an input is known to 1e-4 at best."""
 SHARE_OF_MEDIAN = 0.02
 """No line counts more than fifty times as much as the median one, however its coherence was rounded."""
 
@@ -127,8 +129,10 @@ class MeasuredResponse:
         """
         if self.coherence is None:
             return None
-        share = np.maximum(1 - self.coherence, SMALLEST_NOISE) / np.maximum(self.coherence, SMALLEST_NOISE)
-        if not self.is_record or self.averages:
+        is_estimated = self.is_record and not self.averages
+        least = SMALLEST_NOISE_OF_RECORD if is_estimated else SMALLEST_NOISE
+        share = np.maximum(1 - self.coherence, least) / np.maximum(self.coherence, SMALLEST_NOISE)
+        if not is_estimated:
             share = np.maximum(share, SHARE_OF_MEDIAN * float(np.median(share)))
         return np.sqrt(share / (2 * (self.averages or 1.0)))
 
