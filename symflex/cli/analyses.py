@@ -142,11 +142,10 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.over import stability_over
 
     model = spec.load()
-    if bool(given.gain) == bool(given.over):
-        hint = "--gain K of a loop, or --over P for any parameter"
-        raise UsageError(Diagnostic("SF902", "name one gain, or the parameters of a chart", None, hint))
+    if given.gain and given.over:
+        raise UsageError(Diagnostic("SF902", "give only one of --gain and --over"))
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
-        stable = of_model.stability(model, given) if given.gain else stability_over(model, given)
+        stable = stability_over(model, given) if given.over else of_model.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
 

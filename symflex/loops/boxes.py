@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
+from symflex.algebra import LAPLACE
 from symflex.balls import Value, at_centre, ball, current_bits, precision
 from symflex.budget import spend
 from symflex.expressions import names_among
@@ -61,7 +62,7 @@ class OpenBox:
     @property
     def is_bounded(self) -> bool:
         """Whether it is known up to where roots are to be sought."""
-        return isinstance(self.radius, float) or bool(self.pieces)
+        return not isinstance(self.radius, str)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,20 +72,17 @@ class CharacteristicFunction:
     tf: TransferFunction  # whose denominator and hidden factors these are
     names: tuple[str, ...]  # of the parameters that lie in boxes
     values: tuple[tuple[str, ExactValue], ...]  # of the others
-    highest: float | None = None  # up to which abs(s) poles are asked for, where no end is known [rad/s]
     # The same with fundamental functions in place of kernels, entire at s = 0 too; None without waves.
     nameless: TransferFunction | None = None
 
     @classmethod
-    def of(
-        cls, model: Model, tf: TransferFunction, names: Sequence[str], highest: float | None
-    ) -> CharacteristicFunction:
+    def of(cls, model: Model, tf: TransferFunction, names: Sequence[str]) -> CharacteristicFunction:
         """Return that of a model whose other parameters are numbers, from one of its transfer functions."""
         values = tuple((p.name, p.value) for p in model.parameters if p.value and p.name not in names)
         nameless = None
         if any(law.wavenumbers for law in tf.kernels.dispersions):
             (nameless,) = derive_nameless(model, [(tf.output.name, tf.input.name)])
-        return cls(tf, tuple(names), values, highest, nameless)
+        return cls(tf, tuple(names), values, nameless)
 
     @cached_property
     def factors(self) -> tuple[fmpz_mpoly, ...]:
@@ -104,21 +102,12 @@ class CharacteristicFunction:
             return True
         return any(f.degrees()[ring.index[n]] for f in self.factors for n in moving if n in ring.index)
 
-    @property
-    def at_rest(self) -> int:
-        """How many roots at s = 0 it has for all values of the parameters."""
-        tf = self.tf if self.nameless is None else self.nameless
-        s = tf.ratio.ring.context.gen(0)
-        hidden = sum(h.multiplicity for h in tf.hidden if h.polynomial == s)
-        return tf.den.exponent_of(s) + hidden
-
     def whole(self, box: Box) -> OpenBox:
         """Return a box about which nothing is known yet."""
         radius = self._end(box)
-        end = radius if isinstance(radius, float) else self.highest
-        if end is None:
+        if isinstance(radius, str):
             return OpenBox(box, radius)
-        last = Fraction(end)
+        last = Fraction(radius)
         marks = [last * 0, *(last / 2 ** (OCTAVES - k) for k in range(1, OCTAVES + 1))]
         pieces = tuple(pairwise(marks))
         return OpenBox(box, radius, tuple(pieces for _ in self.factors))
@@ -185,7 +174,10 @@ def _slope(value: Value) -> acb:
 
 def _factors(tf: TransferFunction) -> tuple[fmpz_mpoly, ...]:
     ring = tf.ratio.ring
-    alone = {ring.index["s"], *(ring.index[name] for name in tf.kernels.generators)}
+    alone = {
+        ring.index[LAPLACE],
+        *(ring.index[k.generator] for k in tf.kernels.kernels if k.function == "exp"),
+    }
     every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))
 

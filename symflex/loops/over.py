@@ -15,7 +15,6 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from math import pi
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -31,7 +30,7 @@ from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval,
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
-from symflex.options import StabilityOptions, gain_ends, highest_frequency, resolution
+from symflex.options import StabilityOptions, gain_ends, resolution
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
 
@@ -64,6 +63,9 @@ def stability_over(
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
         raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
+    if given.up_to is not None:
+        hint = "where poles have no end, ask for a gain: --gain K --up-to FREQUENCY"
+        raise UsageError(Diagnostic("SF902", "--up-to does not apply to --over", None, hint))
     check_causal(model, "stability over a parameter")
     stated = {name: pick_gain(model.parameters, name) for name in values or {}}
     exact = dict(read_values(tuple(stated.values()), values or {}))
@@ -86,8 +88,7 @@ def stability_over(
     plain = {row.name for row in assemble(prepared).outputs if row.divisor.is_one}
     pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
     (tf,) = derive_all(prepared, [pair])
-    highest = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
-    function = CharacteristicFunction.of(prepared, tf, names, highest)
+    function = CharacteristicFunction.of(prepared, tf, names)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
@@ -186,7 +187,6 @@ def find_intervals(
         boundaries if not reasons else (),
         intervals if not reasons else (),
         nominal,
-        radius=function.highest,
         is_complete=not reasons,
         reasons=tuple(dict.fromkeys(reasons)),
         digits=digits,

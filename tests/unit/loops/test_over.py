@@ -1,5 +1,6 @@
 """Stability over any parameter: boundaries from formulas of books, verdicts at random points of charts."""
 
+from fractions import Fraction
 from math import atan2, pi, sqrt
 from random import Random
 
@@ -7,6 +8,7 @@ import pytest
 
 from symflex import Model
 from symflex.errors import ModelError, UsageError
+from symflex.loops.boxes import CharacteristicFunction, OpenBox
 
 LAG = Model(
     parameters={"a": 1, "T": 0.1},
@@ -194,3 +196,19 @@ def test_a_beam_with_a_filtered_controller_agrees_with_its_stable_gains() -> Non
     assert len(along) == len(halved) == 1
     assert abs(along[0].gain - halved[0].gain) < along[0].radius + halved[0].radius
     assert along[0].entering == halved[0].entering == 2
+
+
+def test_a_kernel_alone_is_a_factor_that_may_vanish() -> None:
+    """A clamped rod has the poles of cosh(gamma l), which no other factor has."""
+    rod = {"type": "rod", "between": ["ground", "x"], "E": "E*(1 + tau*s)", "A": "1", "rho": "1", "l": "1"}
+    model = Model(
+        parameters={"E": 4, "tau": "1e-3 s"},
+        elements={"rod": rod},
+        inputs={"F": {"force": "x"}},
+        outputs={"X": "x"},
+    )
+    (tf,) = model.transfer_functions()
+    function = CharacteristicFunction.of(model.resolved, tf.exact, ("tau",))
+    about_pi = ((Fraction(3), Fraction(33, 10)),)  # 2 pi/2: a wave has the speed 2, and a quarter is held
+    box = OpenBox(((Fraction(0), Fraction(0)),), 100.0, tuple(about_pi for _ in function.factors))
+    assert any(function.narrowed(box).pieces)
