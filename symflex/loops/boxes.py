@@ -44,6 +44,9 @@ LOWEST = 1e-6
 OCTAVES = 24
 """Pieces of the axis at first, each half as high as the next; the lowest begins at 0."""
 
+NEARLY = 16
+"""Times that what a box leaves open exceeds what a piece does, from which on it is not halved."""
+
 Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]
 """The ends of every parameter, in SI units."""
@@ -149,11 +152,13 @@ class CharacteristicFunction:
                 continue
             at = values.at(acb(0, point))
             centre = [at_centre(values.polynomial(f, at)) for f in ones]
-            off = acb(0, omega - point)
-            if not any((c + _slope(each) * off).contains(0) for c, each in zip(centre, around, strict=True)):
+            spreads = [_slope(each) * acb(0, omega - point) for each in around]
+            if not any((c + spread).contains(0) for c, spread in zip(centre, spreads, strict=True)):
                 continue
-            # Where the box alone leaves it open, shorter pieces do not help.
-            if any(c.contains(0) for c in centre) or (high - low) * 2 ** current_bits() < high:
+            # Where the box alone leaves it open, or nearly so, shorter pieces do not help.
+            is_open = any(c.contains(0) for c in centre)
+            is_spent = all(NEARLY * y.abs_upper() < c.rad() for c, y in zip(centre, spreads, strict=True))
+            if is_open or is_spent or (high - low) * 2 ** current_bits() < high:
                 left.append((low, high))
             else:
                 pending += [(middle, high), (low, middle)]
