@@ -397,8 +397,8 @@ class Model:
         over : str or pair of str, optional
             Any parameter in place of a gain: a dead time, a length, a mass. Two of them make a chart.
         ranges : mapping, optional
-            Of the parameters of a chart, in SI units. By default the ``range`` declared; else from 0, or half
-            the value, to ten times or twice the value.
+            Ranges of the parameters of a chart, in SI units. By default the ``range`` declared; else from 0,
+            or half the value, to ten times or twice the value.
         resolve : float
             Share of the chart that may stay undecided.
         **values : number or str

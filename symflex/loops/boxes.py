@@ -51,7 +51,7 @@ Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]
 """The ends of every parameter, in SI units."""
 Piece = tuple[Fraction, Fraction]
-"""Of the imaginary axis, from a frequency to another [rad/s]."""
+"""A part of the imaginary axis, from a frequency to another [rad/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +118,8 @@ class CharacteristicFunction:
     def _end(self, box: Box) -> float | str:
         bound = self._bound(self.tf, box)
         ends = [right_tail(bound, (f,), (acb(1),), LOWEST) for f in self.factors]
-        return next((e for e in ends if isinstance(e, str)), None) or max(
-            (float(e) for e in ends), default=0.0
-        )
+        unknown = [end for end in ends if isinstance(end, str)]
+        return unknown[0] if unknown else max(map(float, ends), default=0.0)
 
     def narrowed(self, box: OpenBox, bits: int = BITS) -> OpenBox:
         """Return the box with what is left of the pieces of the axis."""

@@ -270,8 +270,8 @@ def halved(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
     """Return the parts of a box, each range halved, the last range first."""
     spend()
     halves = [((low, (low + high) / 2), ((low + high) / 2, high)) for low, high in box.box]
-    # Of a smaller box an end of the poles may be known.
-    is_known = isinstance(box.radius, float)
+    # An end of the poles that is unknown for a box may be known for its parts.
+    is_known = box.is_bounded
     return [replace(box, box=ends) if is_known else function.whole(ends) for ends in product(*halves)]
 
 

@@ -290,7 +290,7 @@ class NetworkFactors(AxisSearch):
             raise refusal
         boxes = [(box, n * images(box, is_even=False)) for box, n in enclosed_roots(series, at_zero)]
         for share in (1.0, *SHARES):
-            # Of poles left of the axis, which may lie on the circle, nothing else is asked.
+            # Poles left of the axis may lie on the circle: nothing else is asked of them.
             with suppress(RootNearCircleError):
                 within = sum(n for box, n in boxes if box.abs_upper() < share)
                 if series.count_about(acb(0), share) == within + at_zero:

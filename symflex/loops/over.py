@@ -179,7 +179,7 @@ def find_intervals(
             reasons.append(verdict.reason)
         else:
             counted.append((part, PoleCount(verdict.right, axis)))
-    boundaries, intervals = _boundaries(counted, gaps, limits, reasons)
+    boundaries, intervals = _boundaries(counted, gaps, limits, digits, reasons)
     stability = StabilityMap(
         parameter.name,
         parameter.unit,
@@ -215,18 +215,18 @@ def _too_many(boxes: Sequence[OpenBox]) -> list[list[OpenBox]]:
 
 def _joined(decided: Sequence[Ends], limits: Ends, digits: int) -> list[Ends]:
     """Return parts that touch as one, ascending; slivers between open parts are left to these."""
-    joined: list[Ends] = []
+    parts: list[Ends] = []
     for low, high in sorted(decided):
-        if joined and joined[-1][1] == low:
-            joined[-1] = (joined[-1][0], high)
+        if parts and parts[-1][1] == low:
+            parts[-1] = (parts[-1][0], high)
         else:
-            joined.append((low, high))
+            parts.append((low, high))
     slim = Fraction(1, SLIVER)
-    return [(a, b) for a, b in joined if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
+    return [(a, b) for a, b in parts if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
 
 
 def _boundaries(
-    counted: Sequence[Interval], gaps: Sequence[OpenBox], limits: Ends, reasons: list[str]
+    counted: Sequence[Interval], gaps: Sequence[OpenBox], limits: Ends, digits: int, reasons: list[str]
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
     """Return the ends between parts in which poles are counted, and the parts between these."""
     boundaries: list[Boundary] = []
@@ -236,24 +236,27 @@ def _boundaries(
     for (before, count), (after, other) in pairwise(counted):
         own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
         place = ball(before[1]).union(ball(after[0]))
+        is_real = (count.right - other.right) % 2 == 1  # others come in pairs
         if count == other:
             reasons.append(
                 f"it could not be decided whether poles touch the axis near {float(before[1]):.6g}"
             )
-        boundaries.append(Boundary(place, (Crossing(place, _frequencies(own)),)))
+        boundaries.append(Boundary(place, (Crossing(place, _frequencies(own, digits, is_real=is_real)),)))
         starts.append(place)
     ends = [*starts[1:], ball(limits[1]).union(ball(last))]
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
     return tuple(boundaries), intervals
 
 
-def _frequencies(gaps: Sequence[OpenBox]) -> tuple[arb, ...]:
-    """Return where on the axis poles may be, pieces that touch as one [rad/s]."""
-    pieces = sorted(piece for gap in gaps for of_factor in gap.pieces for piece in of_factor)
-    joined: list[Ends] = []
-    for low, high in pieces:
-        if joined and low <= joined[-1][1]:
-            joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
+def _frequencies(gaps: Sequence[OpenBox], digits: int, *, is_real: bool) -> tuple[arb, ...]:
+    """Return where on the axis poles may be [rad/s], as one what the digits do not separate.
+
+    A real pole meets the axis at 0 exactly.
+    """
+    places: list[Ends] = []
+    for low, high in sorted(piece for gap in gaps for of_factor in gap.pieces for piece in of_factor):
+        if places and (low - places[-1][1]) * 10**digits <= high:
+            places[-1] = (places[-1][0], max(high, places[-1][1]))
         else:
-            joined.append((low, high))
-    return tuple(ball(low).union(ball(high)) if low else arb(0) for low, high in joined)
+            places.append((low, high))
+    return tuple(arb(0) if is_real and not low else ball(low).union(ball(high)) for low, high in places)

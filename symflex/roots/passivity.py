@@ -3,7 +3,7 @@
 Input: a model with values, an output whose own poles count, names of parameters of which any positive value
 is meant. Output: an :class:`EnergyProof`.
 
-Of ``x^H A(s) x/s`` mass, loss and stiffness are each nonnegative where no element supplies energy, and at
+In ``x^H A(s) x/s`` mass, loss and stiffness are each nonnegative where no element supplies energy, and at
 Re(s) > 0 their sum vanishes only where nothing moves: no pole lies there (Anderson & Vongpanitlerd 1973,
 Network Analysis and Synthesis, chapter 2). Fields are treated in :mod:`symflex.roots.passive_fields`.
 
@@ -223,8 +223,8 @@ def _dynamic(model: Model) -> dict[str, Expression]:
     kept = {LAPLACE, *(b.name for b in model.blocks)}
     definitions: dict[str, Expression] = {}
     for _ in model.definitions:
-        told = {d.name: substitute(d.expression, definitions) for d in model.definitions}
-        definitions = {name: e for name, e in told.items() if names_among(e, kept)}
+        opened = {d.name: substitute(d.expression, definitions) for d in model.definitions}
+        definitions = {name: e for name, e in opened.items() if names_among(e, kept)}
     return definitions
 
 

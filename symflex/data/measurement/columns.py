@@ -66,6 +66,8 @@ UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, *_LEVELS, *_OHMS))
 _SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()|^(r|i)(?= \S+\.[vi]$)", re.I)
 _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
 """Functions by which circuit simulators name columns: VDB(out), P(V(out)), r out.v."""
+LISTED = 12
+"""Names of columns in a message; of more there are dots."""
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
 _JOINED = re.compile(
     r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)|(?<=^[GHYZ])(?=(?:re|im)(?:al|ag)?\b)|(?<=^Re|^Im)(?=[A-Z]\d*$)"
@@ -355,7 +357,7 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
     hint = "such as f,re,im or f_khz,-,mag_db,phase_deg: f, omega, re, im, mag, mag_db, phase, coh, h, psd, -"
     if len(words) > width:
         called = [name[:30] for name in names if name]
-        listed = f": {', '.join(called[:12])}{', ...' if len(called) > 12 else ''}" if called else ""  # noqa: PLR2004
+        listed = f": {', '.join(called[:LISTED])}{', ...' if len(called) > LISTED else ''}" if called else ""
         message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
         raise UsageError(Diagnostic("SF902", message, None, hint))
     columns = []
@@ -1013,7 +1015,7 @@ def signals(columns: Sequence[npt.NDArray[Any]], end: str = "") -> str:
     places = dict(zip(changing, "uy" if len(changing) > 1 else "y", strict=False))
     words = ",".join(places.get(i, "-") for i in range(max(places, default=-1) + 1)) or "y"
     more = " (u and y are the first two columns that change: move them, with - for what is left out)"
-    return words + end + more * (len(changing) > 2)  # noqa: PLR2004
+    return words + end + more * (len(changing) > 2)  # noqa: PLR2004 (an input and an output)
 
 
 @np.errstate(all="ignore")

@@ -385,7 +385,7 @@ def _header(
             is_units = sum(c.strip("[]() ").lower() in UNITS for c in cells) >= 2  # noqa: PLR2004
             score = recognised + (len(cells) == width) / 2 - is_units
             is_better = best is None or score > best[0] or (score == best[0] and line > best[1])
-            if recognised >= 2 and is_better:  # noqa: PLR2004
+            if recognised >= 2 and is_better:  # noqa: PLR2004 (two columns are known)
                 best = score, line, cells[:width]
     if best is None:
         listed = [(i, m[1]) for i in block.above if (m := _LISTED.fullmatch(table.lines[i].strip()))]
