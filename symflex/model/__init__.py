@@ -20,5 +20,5 @@ from symflex.model.model import (
 )
 from symflex.model.resolve import load_model, load_with, resolve
 from symflex.model.scope import ModelScope, scope_of
-from symflex.model.settings import Setting, read_settings, with_numbers
+from symflex.model.settings import Setting, read_settings, spread_box, with_numbers
 from symflex.model.signs import check_value

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, cast
 from symflex.errors import Diagnostic, Text
 from symflex.expressions import FUNCTIONS, names, names_among, parse
 from symflex.model.labels import check_label
-from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
+from symflex.model.model import (
+    ONE,
+    PI_NEARLY,
+    Assumption,
+    Definition,
+    ExactValue,
+    ModelParameter,
+    Output,
+    Signal,
+)
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
@@ -61,6 +70,7 @@ class DeclaredParameter:
     doc: str
     span: Span
     limits: tuple[Quantity, Quantity] | None = None  # its ``range``
+    spread: Quantity | None = None
 
     @property
     def measured(self) -> Quantity | None:
@@ -99,7 +109,16 @@ class DeclaredParameter:
             written_unit=written,
             scale=scale,
             limits=limits,
+            spread=_resolved_spread(self.spread, is_converted=is_converted),
         )
+
+
+def _resolved_spread(spread: Quantity | None, *, is_converted: bool) -> Fraction | ExactValue | None:
+    if spread is None:
+        return None
+    if _is_share(spread):
+        return spread.magnitude
+    return ExactValue(*(spread.angular() if is_converted else spread.cyclic()))
 
 
 def doubtful_units(declared: Iterable[DeclaredParameter]) -> Iterator[Diagnostic]:
@@ -205,7 +224,7 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         return None
     table = entry.value if isinstance(entry.value, TableValue) else None
     if table:
-        reader.keys(table, ("value", "unit", "range", "doc", "latex", "assume"), what)
+        reader.keys(table, ("value", "unit", "range", "spread", "doc", "latex", "assume"), what)
     inner = table.get("value") if table else entry
     quantity = _quantity(reader, inner, what, named) if inner else None
     literal = bool(quantity and quantity.unit)
@@ -215,6 +234,7 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         literal = literal or quantity is not None
     if problem := without_sign(entry.key, quantity, assume, (inner or entry).value.span):
         reader.take((problem,))
+    own_unit = unit_text or (quantity.unit if quantity else "")
     return DeclaredParameter(
         entry.key,
         quantity,
@@ -224,7 +244,8 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         read_label(reader, table, what),
         reader.plain(table, "doc", what),
         entry.key_span,
-        _limits(reader, table, entry.key, quantity, unit_text or (quantity.unit if quantity else ""), assume),
+        _limits(reader, table, entry.key, quantity, own_unit, assume),
+        _spread(reader, table, entry.key, quantity, own_unit, assume),
     )
 
 
@@ -246,14 +267,12 @@ def _limits(
         end = reader.quantity(value, what)
         if end is None:
             return None
-        own = one_of(unit_text) if unit_text else Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
         if not end.unit and unit_text:
             unit = unit_of(unit_text)
-            end = replace(own, magnitude=end.magnitude * unit.scale, pi_power=end.pi_power + unit.pi_power)
-        turns = [q.cycles + q.radians for q in (own, end)]
-        if end.dimension != own.dimension or ((own.cycles or end.cycles) and turns[0] != turns[1]):
-            declared = f"is in '{unit_text}'" if unit_text else "has no unit"
-            reader.note("SF203", f"{what} is in '{end.unit}', and '{name}' {declared}", value.span)
+            scaled = (end.magnitude * unit.scale, end.pi_power + unit.pi_power)
+            end = replace(one_of(unit_text), magnitude=scaled[0], pi_power=scaled[1])
+        if problem := _misfit(end, what, name, unit_text, value.span):
+            reader.take((problem,))
             return None
         if problem := without_sign(name, end, assume, value.span):
             reader.take((problem,))
@@ -266,6 +285,55 @@ def _limits(
         reader.note("SF208", f"{what} must rise from its first end to its second", entry.value.span)
         return None
     return ends[0], ends[1]
+
+
+def _misfit(given: Quantity, what: str, name: str, unit_text: str, span: Span | None) -> Diagnostic | None:
+    """Return what is wrong with the unit of a range or a spread."""
+    own = one_of(unit_text) if unit_text else Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
+    turns = [q.cycles + q.radians for q in (own, given)]
+    if given.dimension == own.dimension and not ((own.cycles or given.cycles) and turns[0] != turns[1]):
+        return None
+    declared = f"is in '{unit_text}'" if unit_text else "has no unit"
+    return Diagnostic("SF203", f"{what} is in '{given.unit}', and '{name}' {declared}", span)
+
+
+def _spread(
+    reader: Reader,
+    table: TableValue | None,
+    name: str,
+    quantity: Quantity | None,
+    unit_text: str,
+    assume: Assumption,
+) -> Quantity | None:
+    """Return a parameter's ``spread`` to either side: a share of its value, or a quantity in its unit."""
+    entry, what = table.get("spread") if table else None, f"spread of parameter '{name}'"
+    spread = reader.quantity(entry.value, what, 'for instance spread = "10 %"') if entry else None
+    if spread is None or entry is None:
+        return None
+    value = quantity.magnitude * PI_NEARLY**quantity.pi_power if quantity else None
+    size, span, problem = spread.magnitude * PI_NEARLY**spread.pi_power, entry.value.span, None
+    cycles = unit_of(unit_text).cycles if unit_text else 0
+    most = value
+    if _is_share(spread):
+        most = Fraction(1)
+    elif (problem := _misfit(spread, what, name, unit_text, span)) is None and spread.cycles != cycles:
+        problem = Diagnostic("SF203", f"{what} is in '{spread.unit}', and '{name}' is in '{unit_text}'", span)
+    if problem is None and size <= 0:
+        problem = Diagnostic("SF208", f"{what} must be positive", span)
+    elif problem is None and value == 0 and _is_share(spread):
+        hint = "give it in the unit of the value"
+        problem = Diagnostic("SF208", f"{what} is a share of its value, which is 0", span, hint)
+    elif problem is None and value is not None and assume != "real" and most is not None:
+        at_end = Quantity(most - size, 0, 0, DIMENSIONLESS, 0, "")
+        problem = without_sign(name, at_end, assume, span)
+        if problem is not None:
+            problem = replace(problem, message=problem.message.replace(" is", " less its spread is", 1))
+    reader.take((problem,) if problem else ())
+    return None if problem else spread
+
+
+def _is_share(spread: Quantity) -> bool:
+    return spread.dimension == DIMENSIONLESS and not (spread.cycles or spread.radians)
 
 
 def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]) -> Quantity | None:

@@ -69,6 +69,7 @@ class ModelParameter:
     written_unit: str = ""
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
     limits: tuple[ExactValue, ExactValue] | None = None  # its ``range``, like ``value``
+    spread: Fraction | ExactValue | None = None  # to either side of the value, or as a share of it
 
     def __repr__(self) -> str:
         value, unit = self.as_written()

@@ -121,6 +121,7 @@ def _parameter() -> Schema:
         "value": value,
         "unit": _said(TEXT, "SI or other unit of the value"),
         "range": _said(RANGE, "ends of its slider in symflex live"),
+        "spread": _said(VALUE, 'how far it may be off to either side: "10 %", or in its unit "0.5 mm"'),
         "assume": {"enum": list(ASSUMPTIONS), "description": "what its sign is; positive by default"},
     }
     return {"anyOf": [value, _closed(_labelled(keys))]}

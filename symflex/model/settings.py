@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest
 from symflex.expressions import substitute
 from symflex.model.declarations import one_of, without_sign
+from symflex.model.model import ExactValue
 from symflex.model.units import exact_expression
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from symflex.expressions import Expression
     from symflex.model.declarations import DeclaredParameter
-    from symflex.model.model import ExactValue, Model
+    from symflex.model.model import Model, ModelParameter
     from symflex.model.reading import Reader
 
 Setting = str | int | float | Fraction | Decimal
@@ -113,6 +114,45 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
         reader.take((problem,))
         return parameter
     return replace(parameter, quantity=quantity, has_unit=bool(quantity.unit) or parameter.has_unit)
+
+
+def spread_box(
+    parameters: Iterable[ModelParameter], share: Fraction | None = None
+) -> dict[str, tuple[Fraction, Fraction]]:
+    """Return the ends of each parameter that has a ``spread``, or of all for a share of their values.
+
+    Values that hold pi are enclosed. Raises UsageError: SF804 for none, or for values of the wrong sign.
+
+    Examples
+    --------
+    >>> from symflex.model.model import ExactValue, ModelParameter
+    >>> m = ModelParameter("m", ExactValue(Fraction(2)), spread=Fraction(1, 10))
+    >>> spread_box([m]), spread_box([m], Fraction(1, 2))
+    ({'m': (Fraction(9, 5), Fraction(11, 5))}, {'m': (Fraction(1, 1), Fraction(3, 1))})
+    """
+    box = {}
+    for p in parameters:
+        spread = p.spread if share is None else share
+        if p.value is None or spread is None or p.value.is_imaginary:
+            continue
+        value = p.value.nearly
+        own = (
+            spread
+            if isinstance(spread, ExactValue)
+            else replace(p.value, rational=abs(p.value.rational) * spread)
+        )
+        half = own.nearly
+        if p.assume != "real" and (value < half or (value == half and p.assume == "positive")):
+            message = f"the spread of '{p.name}' reaches values that it is assumed not to have"
+            raise UsageError(Diagnostic("SF804", message, p.span))
+        # PI_NEARLY has 30 digits.
+        around = (abs(value) + half) / 10**28 if p.value.pi_power or own.pi_power else 0
+        if half:
+            box[p.name] = (value - half - around, value + half + around)
+    if not box:
+        hint = 'give one for all of them: --spread 10%, or declare m = { value = ..., spread = "10 %" }'
+        raise UsageError(Diagnostic("SF804", "no parameter has a value and a spread", None, hint))
+    return box
 
 
 def exact_number(name: str, given: object) -> Fraction:
