@@ -107,6 +107,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the font of formulas, and the figures and specifications of the gallery, to the site."""
     for font in sorted(FONTS.iterdir()):
         files.append(File.generated(config, f"stylesheets/{font.name}", content=font.read_bytes()))
+    for name in ("CHANGELOG", "CONTRIBUTING", "SECURITY"):  # the repository's own pages
+        text = (ROOT / f"{name}.md").read_text("utf-8").replace("](docs/", "](")
+        files.append(File.generated(config, f"{name.lower()}.md", content=text))
     for entry in entries():
         text = (MODELS / entry.path).read_bytes()
         files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))
