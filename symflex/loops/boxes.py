@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from math import inf, isfinite
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
@@ -26,6 +27,7 @@ from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.roots.distributed.far_out import right_tail
 from symflex.transfer import BoundTransferFunction
+from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.of_model import derive_nameless
 
 if TYPE_CHECKING:
@@ -51,7 +53,10 @@ Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]
 """The ends of every parameter, in SI units."""
 Piece = tuple[Fraction, Fraction]
-"""A part of the imaginary axis, from a frequency to another [rad/s]."""
+"""A part of the imaginary axis, from a frequency to another [rad/s]; or of another path."""
+Path = tuple[complex, complex]
+"""Where a straight path is at 0, and how far it goes for every 1."""
+AXIS: Path = (0j, 1j)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +66,7 @@ class OpenBox:
     box: Box
     radius: float | str  # beyond which no root lies right of the axis [rad/s], or why none is known
     pieces: tuple[tuple[Piece, ...], ...] = ()  # factor by factor
+    weights: tuple[float, ...] = ()  # how much each parameter contributes to what is left
 
     @property
     def is_bounded(self) -> bool:
@@ -121,55 +127,145 @@ class CharacteristicFunction:
         unknown = [end for end in ends if isinstance(end, str)]
         return unknown[0] if unknown else max(map(float, ends), default=0.0)
 
-    def narrowed(self, box: OpenBox, bits: int = BITS) -> OpenBox:
-        """Return the box with what is left of the pieces of the axis."""
+    def narrowed(self, box: OpenBox, bits: int = BITS, path: Path = AXIS) -> OpenBox:
+        """Return the box with what is left of the pieces of the axis, or of another path."""
         with precision(bits):
-            kernels = self._bound(self.tf, box.box).kernel_values()
+            slopes = self.expanded(box.box)
             nameless = self.nameless
-            entire = None if nameless is None else self._bound(nameless, box.box).kernel_values()
-            left = [self._left(kernels, entire, i, pieces) for i, pieces in enumerate(box.pieces)]
-        return replace(box, pieces=tuple(map(tuple, left)))
+            entire = None if nameless is None else FirstOrder(self, nameless, self._entire, box.box)
+            left = [self._left(slopes, entire, i, pieces, path) for i, pieces in enumerate(box.pieces)]
+        weights = [sum(w) for w in zip(*(w for each in left for w in each.values()), strict=True)]
+        return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights))
+
+    def expanded(self, box: Box) -> FirstOrder:
+        """Return the factors about the middle of a box."""
+        return FirstOrder(self, self.tf, self.factors, box)
 
     def _left(
-        self, kernels: KernelValues, entire: KernelValues | None, factor: int, pieces: Sequence[Piece]
-    ) -> list[Piece]:
-        """Return the pieces, and parts of these, on which a factor may vanish, ascending."""
-        left, pending = [], list(pieces[::-1])
+        self, slopes: FirstOrder, entire: FirstOrder | None, factor: int, pieces: Sequence[Piece], path: Path
+    ) -> dict[Piece, list[float]]:
+        """Return the pieces, and parts of these, on which a factor may vanish, ascending.
+
+        With each stands what every parameter contributes to that.
+        """
+        left, pending = dict[Piece, list[float]](), list(pieces[::-1])
+        start, way = map(acb, path)
         while pending:
             spend()
             low, high = pending.pop()
             middle = (low + high) / 2
-            point = ball(middle if low else low)
+            point = middle if low else low
+            s = start + way * ball(low).union(ball(high))
             # Next to 0 kernels of waves say nothing; all factors are tried there at once.
-            at_rest = entire is not None and not low
-            values, polynomials = (entire, self._entire) if at_rest and entire else (kernels, self.factors)
-            ones = polynomials if at_rest else polynomials[factor : factor + 1]
-            omega = ball(low).union(ball(high))
-            at = values.at(_near(omega))
-            around = [values.polynomial(f, at) for f in ones]
-            if not any(at_centre(each).contains(0) for each in around):
+            own, ones = slopes, [factor]
+            if entire is not None and s.contains(0):
+                own, ones = entire, list(range(len(entire.polynomials)))
+            around = own.around(s, ones)
+            if not any(value.contains(0) for value, _ in around):
                 continue
-            at = values.at(acb(0, point))
-            centre = [at_centre(values.polynomial(f, at)) for f in ones]
-            spreads = [_slope(each) * acb(0, omega - point) for each in around]
-            if not any((c + spread).contains(0) for c, spread in zip(centre, spreads, strict=True)):
+            steps = [slope * way * ball(high - point) for _, slope in around]
+            values = own.at(start + way * ball(point), ones)
+            shares = [share_of(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
+            if all(share < 1 for share, _ in shares):
                 continue
             # Where the box alone leaves it open, or nearly so, shorter pieces do not help.
-            is_open = any(c.contains(0) for c in centre)
-            is_spent = all(NEARLY * y.abs_upper() < c.rad() for c, y in zip(centre, spreads, strict=True))
+            is_open = any(share_of(*value)[0] >= 1 for value in values)
+            weights = max(shares, key=lambda each: each[0])[1]
+            is_spent = NEARLY * weights.pop() < sum(weights)
             if is_open or is_spent or (high - low) * 2 ** current_bits() < high:
-                left.append((low, high))
+                left[low, high] = weights
             else:
                 pending += [(middle, high), (low, middle)]
         return left
+
+    def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
+        """Return the evaluator for parameters anywhere in a box, to first order in one of them."""
+        bound = self._bound(tf, box)
+        kernels = bound.kernel_values()
+        shared = self._shared.setdefault(id(tf), kernels)
+        kernels = replace(kernels, plans=shared.plans, sums=shared.sums)
+        if not along:
+            return kernels
+        real = {n: enclosure(x) for n, x in self.values} | dict(bound.fixed)
+        tangents = {n: first_order(x(), int(n == along)) for n, x in real.items()}
+        moving = {along: tangents[along]} | {
+            c.generator: constant_tangent(c.expression, tangents)
+            for c in tf.constants
+            if c.generator in kernels.constants and names_among(c.expression, {along})
+        }
+        series = {n: acb_series([acb(x[0]), acb(x[1])], 2) for n, x in moving.items()}
+        return replace(kernels, constants={**kernels.constants, **series})
+
+    @cached_property
+    def _shared(self) -> dict[int, KernelValues]:
+        return {}
 
     def _bound(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
         fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
 
 
-def _near(omega: arb) -> acb_series:
-    return acb_series([acb(0, omega), 1], 2)
+@dataclass(frozen=True, eq=False)
+class FirstOrder:
+    """Factors of a characteristic function about the middle of a box of parameters.
+
+    ``f(s, p)`` lies in ``f(s, p_0)`` plus slopes times the distances from the middle. A slope is that for
+    all values of its parameter and of those before it, and for the middle of those after it (Hansen 1968).
+    """
+
+    function: CharacteristicFunction
+    tf: TransferFunction
+    polynomials: tuple[fmpz_mpoly, ...]
+    box: Box
+
+    @cached_property
+    def _wide(self) -> KernelValues:
+        return self.function.kernels(self.tf, self.box)
+
+    @cached_property
+    def _terms(self) -> list[tuple[KernelValues, arb]]:
+        """The evaluators at the middle, and along each parameter with half of its range."""
+        middle = tuple(((a + b) / 2,) * 2 for a, b in self.box)
+        terms = [(self.function.kernels(self.tf, middle), arb(0))]
+        for i, (name, (a, b)) in enumerate(zip(self.function.names, self.box, strict=True)):
+            part = (*self.box[: i + 1], *middle[i + 1 :])
+            terms.append((self.function.kernels(self.tf, part, name), ball((b - a) / 2)))
+        return terms
+
+    def around(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, acb]]:
+        """Return values and slopes in s of some factors, for all s in a ball and for all parameters."""
+        at = self._wide.at(acb_series([s, 1], 2))
+        values = [self._wide.polynomial(self.polynomials[i], at) for i in ones]
+        return [(at_centre(value), _slope(value)) for value in values]
+
+    def at(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, list[acb]]]:
+        """Return values of some factors at the middle of the box, and what each parameter adds at most."""
+        (middle, _), *along = self._terms
+        known = middle.at(s)
+        points = [(kernels, kernels.at(acb_series([s, 0], 2)), half) for kernels, half in along]
+        return [
+            (
+                at_centre(middle.polynomial(f, known)),
+                [_slope(kernels.polynomial(f, at)) * half for kernels, at, half in points],
+            )
+            for f in (self.polynomials[i] for i in ones)
+        ]
+
+
+def share_of(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
+    """Return how much of a value sums of terms, each times -1 to 1, take away in the best direction.
+
+    Below 1 no sum takes it to 0: a zonotope and 0 are parted by the normal of one of its edges, if by any.
+    With it stands the share of each term.
+    """
+    best = inf, [1.0 for _ in terms]
+    for direction in (centre, *(term * acb(0, 1) for term in terms)):
+        across = direction.mid().conjugate()
+        size = (across * centre).real.abs_lower()
+        parts = [float(((across * term).real.abs_upper() / size).upper()) for term in terms]
+        if size > 0 and isfinite(total := sum(parts) * (1 + 1e-12)) and total < best[0]:
+            best = total, parts
+    return best
 
 
 def _slope(value: Value) -> acb:
