@@ -395,6 +395,14 @@ class StabilityOptions:
     resolve: Stated = option(
         "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
+    letters: bool = option(
+        False, "--letters", help="Conditions in letters, for all values of all parameters."
+    )
+    of: str = option(
+        "poles", "--of", choices=("poles", "zeros"), **SHOWN, help="Whose conditions --letters prints."
+    )
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
     as_json: bool = option(False, "--json", **JSON)
 
 

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from symflex.api.sweep import Sweep
     from symflex.codegen.export import Exporter
     from symflex.figures import AxesGiven
+    from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
     from symflex.loops.chart import StabilityChart
     from symflex.model import Setting
@@ -445,6 +446,43 @@ class Model:
                 return Stability(stability(self.resolved, given, values))
             proved = stability_over(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
+
+    def conditions(self, of: str = "poles", tf: str | None = None) -> Conditions:
+        """Return inequalities that hold exactly where all poles, or zeros, lie left of the imaginary axis.
+
+        Parameters
+        ----------
+        of : str
+            ``poles``, or ``zeros`` of a transfer function.
+        tf : str, optional
+            ``"OUT/IN"`` for zeros, the first one by default.
+
+        Returns
+        -------
+        Conditions
+            It prints itself; ``latex()`` and ``to_json_dict()`` are the same in LaTeX and JSON.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown name.
+        ModelError
+            SF801 for beams, rods and delays.
+        BudgetError
+            SF501, SF502 if the conditions are too large to be found.
+
+        Examples
+        --------
+        >>> loop = {"y": "K/(s*(T_1*s + 1)*(T_2*s + 1))*(r - y)"}
+        >>> letters = {"K": {}, "T_1": {}, "T_2": {}}
+        >>> model = Model(parameters=letters, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
+        >>> print(*model.conditions().conditions)
+        T_1 + T_2 > K*T_1*T_2
+        """
+        from symflex.letters.routh import conditions  # for start-up time
+
+        with budget_of(None).entered():
+            return conditions(self.resolved, of, tf)
 
     def locus(
         self,

@@ -134,6 +134,9 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --over takes any parameter: a dead time, a length, a mass. Two of them make a chart of boxes in which the
     number of poles right of the axis is proved; boxes about a boundary stay undecided.
 
+    --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
+    zeros of a transfer function, lie left of the axis.
+
     Exit code 4: something is not proved; the output says what. Structures without loss have poles all along
     the axis; these are counted up to a frequency, which is printed.
     """
@@ -142,8 +145,22 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.over import stability_over
 
     model = spec.load()
-    if given.gain and given.over:
-        raise UsageError(Diagnostic("SF902", "give only one of --gain and --over"))
+    if given.gain and (given.over or given.letters):
+        other = "--letters" if given.letters else "--over"
+        raise UsageError(Diagnostic("SF902", f"give only one of --gain and {other}"))
+    if given.letters:
+        from symflex.letters.routh import conditions
+
+        tf = "/".join(first_pair(model, given.tf, "showing zeros of")) if given.of == "zeros" else None
+        with entered_budget().entered():
+            shown = conditions(model, given.of, tf)
+        if given.format == "latex" and not given.as_json:
+            say(shown.latex())
+        else:
+            answer(given.as_json, shown.to_json_dict, lambda: str(shown))
+        return 0
+    if given.of != "poles" or given.tf or given.format != "text":
+        raise UsageError(Diagnostic("SF902", "--of, --tf and --format are for --letters"))
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         stable = stability_over(model, given) if given.over else of_model.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))

@@ -85,9 +85,7 @@ def stability_over(
         message = f"stability over a parameter is not available with {what}"
         raise ModelError(Diagnostic("SF801", message, parameters[0].span, _sweep(names[0])))
     prepared = with_numbers(model, names, in_kernels=True)
-    plain = {row.name for row in assemble(prepared).outputs if row.divisor.is_one}
-    pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
-    (tf,) = derive_all(prepared, [pair])
+    (tf,) = derive_all(prepared, [seen_pair(prepared)])
     function = CharacteristicFunction.of(prepared, tf, names)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
@@ -97,6 +95,12 @@ def stability_over(
         return find_chart(function, limits, nominal, [p.unit for p in parameters], resolution(given.resolve))
     digits = given.digits or model.analysis.digits or 15
     return find_intervals(function, limits[0], digits, parameters[0], nominal[0])
+
+
+def seen_pair(model: Model) -> tuple[str, str]:
+    """Return output and input of the function whose poles are asked for: one without a filter after it."""
+    plain = {row.name for row in assemble(model).outputs if row.divisor.is_one}
+    return next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
 
 
 def _sweep(name: str) -> str:
