@@ -86,6 +86,11 @@ class CheckOptions:
     """Options of ``symflex check``."""
 
     as_json: bool = option(False, "--json", **JSON)
+    equations: bool = option(
+        False,
+        "--equations",
+        help="Print the linear equations that [equations] or [energy] become, and the values at rest.",
+    )
     strict: bool = option(False, "--strict", help="Exit with code 3 if there is a warning.")
 
 

@@ -51,6 +51,7 @@ FOLDERS: Final = {
     "eppinger1988": "One axis of a robot, and what bends in it",
     "eppinger1988/loops": "Loops around it, of position and of force",
     "classics": "Textbooks",
+    "nonlinear": "Nonlinear equations and energies, about a point of operation",
     "tapers": "Members that change along x",
     "frames": "Plane frames",
 }
@@ -108,15 +109,15 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for font in sorted(FONTS.iterdir()):
         files.append(File.generated(config, f"stylesheets/{font.name}", content=font.read_bytes()))
     for name in ("CHANGELOG", "CONTRIBUTING", "SECURITY"):  # the repository's own pages
-        text = (ROOT / f"{name}.md").read_text("utf-8").replace("](docs/", "](")
-        files.append(File.generated(config, f"{name.lower()}.md", content=text))
+        page = (ROOT / f"{name}.md").read_text("utf-8").replace("](docs/", "](")
+        files.append(File.generated(config, f"{name.lower()}.md", content=page))
     for entry in entries():
         text = (MODELS / entry.path).read_bytes()
         files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))
         if entry.path in MOVING:
             model = pipeline.load(MODELS / entry.path)
-            page = live_page([(model, model.transfer_functions[:FUNCTIONS_SHOWN])], Silent())
-            files.append(File.generated(config, f"gallery/{entry.stem}.html", content=page))
+            moving = live_page([(model, model.transfer_functions[:FUNCTIONS_SHOWN])], Silent())
+            files.append(File.generated(config, f"gallery/{entry.stem}.html", content=moving))
         for name, content in entry.figures:
             files.append(File.generated(config, f"gallery/{entry.stem}_{name}.svg", content=content))
     return files

@@ -65,8 +65,8 @@ class Model:
 
     Parameters
     ----------
-    parameters, definitions, elements, signals, equations, blocks, fields, inputs, outputs : mapping
-    analysis, figures, drawing, published : mapping
+    parameters, definitions, elements, signals, equations, operating_point, energy : mapping
+    blocks, fields, inputs, outputs, analysis, figures, drawing, published : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
         What the model is and where it comes from.
@@ -100,6 +100,8 @@ class Model:
         elements: Table | None = None,
         signals: Table | None = None,
         equations: Table | None = None,
+        operating_point: Table | None = None,
+        energy: Table | None = None,
         blocks: Table | None = None,
         fields: Table | None = None,
         inputs: Table | None = None,

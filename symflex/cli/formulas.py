@@ -69,6 +69,10 @@ def check(spec: Specification, given: CheckOptions) -> int:
             "warnings": [diagnostic_json(w) for w in warnings],
             "transfer_functions": names,
         }
+        if given.equations:
+            from symflex.print.motion import motion_json
+
+            document |= motion_json(model)
         emit_json({"schema": "symflex.check/1", "ok": True, **document})
         return code
     show(warnings)
@@ -94,6 +98,10 @@ def check(spec: Specification, given: CheckOptions) -> int:
     say(listed("transfer functions: ", names))
     if symbolic:
         say(listed("symbolic (no value): ", symbolic))
+    if given.equations:
+        from symflex.print.motion import motion_text
+
+        say(motion_text(model))
     return code
 
 

@@ -64,13 +64,13 @@ BLANKS = " \t\r\n"
 STACK_PER_LEVEL = 4
 
 
-def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
+def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -> Expression:
     """Read an expression: sums and products are flat, parentheses leave no trace, numbers are exact.
 
     Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Raises SpecError: SF111 for a
     character or word that cannot stand where it stands, SF112 for a name that is too long or begins with an
-    underscore, SF103 for text beyond the limits, SF223 for a bracket with primes. Only the first problem is
-    reported.
+    underscore, SF103 for text beyond the limits, SF223 for a bracket with primes without ``brackets``. Only
+    the first problem is reported.
 
     Examples
     --------
@@ -83,7 +83,9 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     ('robot.toml:1:7', '2.5e-3')
     """
     expression = _read(text, limits, "sum").node
-    if bracket := next((n for n in nodes(expression) if isinstance(n, Differentiated)), None):
+    if not brackets and (
+        bracket := next((n for n in nodes(expression) if isinstance(n, Differentiated)), None)
+    ):
         message = "a derivative of a bracket along x belongs in the equations and conditions of [fields]"
         hint = "a derivative in time is written with s: s*x"
         raise SpecError(Diagnostic("SF223", message, bracket.span, hint))

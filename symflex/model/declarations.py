@@ -423,7 +423,7 @@ def assuming(name: str, assume: Assumption) -> str:
 
 def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:
     """Return the definitions in order, without circular ones."""
-    return _without_circles(reader, read_entries(section, lambda entry: _read_definition(reader, entry)))
+    return in_order(reader, read_entries(section, lambda entry: _read_definition(reader, entry)))
 
 
 def _read_definition(reader: Reader, entry: KeyValue) -> Definition | None:
@@ -449,7 +449,7 @@ def _value_and_label(reader: Reader, entry: KeyValue, what: str, example: str) -
     return inner.value if inner else None, label
 
 
-def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
+def in_order(reader: Reader, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
     """Return the definitions ordered so that each uses only earlier ones."""
     by_name: Mapping[str, Definition] = {d.name: d for d in definitions}
     state: dict[str, str] = {}

@@ -34,6 +34,8 @@ SECTIONS = (
     "outputs",
     "signals",
     "equations",
+    "operating_point",
+    "energy",
     "blocks",
     "fields",
     "published",

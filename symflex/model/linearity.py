@@ -48,7 +48,7 @@ NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
 OPERATORS = frozenset("d der ddt diff dot deriv derivative velocity int integral integrate".split())
-LINEARISE = "linearise about an operating point, so that only one factor varies in time"
+LINEARISE = "write it in [equations], and the values at rest in [operating_point]: symflex makes it linear"
 RATIO = "a quotient of two is a transfer function: make the denominator an input, and the numerator an output"
 
 

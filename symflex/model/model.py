@@ -199,6 +199,18 @@ class FieldProblem:
 
 
 @dataclass(frozen=True, slots=True)
+class OperatingPoint:
+    """Values at rest, the nonlinear equations that hold there, and what became of them."""
+
+    values: tuple[tuple[str, Expression], ...]  # by name, "x'" for a rate
+    equations: tuple[Equation, ...]  # as written
+    linear: tuple[Equation, ...]  # of the deviations
+    # Of Lagrange's equations the coordinates, and in their order the matrices of mass, damping and stiffness.
+    coordinates: tuple[str, ...] = ()
+    matrices: tuple[tuple[tuple[Expression, ...], ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Signal:
     """A name in the signal-flow part, equal to its expression.
 
@@ -356,6 +368,7 @@ class Model:
     published: tuple[Published, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
+    operating_point: OperatingPoint | None = None
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
 
     def __repr__(self) -> str:

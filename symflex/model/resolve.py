@@ -88,11 +88,12 @@ from symflex.model.units import (
 from symflex.model.unused import unused
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from symflex.errors import Source, Span
+    from symflex.model.model import OperatingPoint
     from symflex.model.settings import Setting
-    from symflex.model.spec import Spec
+    from symflex.model.spec import Spec, TableValue
 
 Kind = Literal["constant", "real", "varying", "signal"]
 """What an expression may be: constant, that and real, varying along x, or varying in time."""
@@ -172,19 +173,20 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
     signals += read_state_equations(reader, sections["blocks"], taken, {x.name for x in signals})
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
-    loads = {x.name for x in signals} | {d.input.name for d in inputs}
+    draft = Draft(declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, ())
+    draft, point = _with_motion(reader, sections, draft, taken)
+    taken |= {d.name for d in draft.definitions}
+    loads = {x.name for x in draft.signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
         reader, read_fields(reader, sections["fields"], taken), has_coordinate=COORDINATE not in taken | loads
     )
-    measure = constant_measure(declared, inherited, definitions)
-    attachments = [a for element in elements for a in element.attachments(measure)]
-    attachments += [a for source in inputs for a in source.attachments()]
-    nodes, contradictions = infer_nodes(attachments)
+    measure = constant_measure(draft.declared, inherited, draft.definitions)
+    attached = [a for element in draft.elements for a in element.attachments(measure)]
+    nodes, contradictions = infer_nodes([*attached, *(a for i in inputs for a in i.attachments())])
     reader.take(contradictions)
-    draft = Draft(declared, inherited, definitions, nodes, elements, inputs, blocks, signals, outputs, fields)
+    draft = replace(draft, nodes=nodes, fields=fields)
     named = taken | loads | {n.name for n in nodes}
-    draft = with_dead_times(with_branches(draft, named), named)
-    draft = with_imaginary_unit(reader, draft)
+    draft = with_imaginary_unit(reader, with_dead_times(with_branches(draft, named), named))
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
     later, hints = Reader(), Reader()
@@ -192,6 +194,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         model,
         title=reader.plain(spec.root, "title", "the specification"),
         source=reader.plain(spec.root, "source", "the specification"),
+        operating_point=point,
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(later, sections["figures"], model),
         drawing=read_drawing(hints, sections["drawing"], model),
@@ -223,6 +226,17 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         raise SpecError(*_in_order(problems, spec.source))
     inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
     return replace(model, warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)))
+
+
+def _with_motion(
+    reader: Reader, sections: Mapping[str, TableValue | None], draft: Draft, taken: Collection[str]
+) -> tuple[Draft, OperatingPoint | None]:
+    """Return a draft whose equations of motion are linear, and the point at which they are."""
+    if not any(sections[name] for name in ("equations", "operating_point", "energy")):
+        return draft, None
+    from symflex.model.energy import with_motion  # four modules that few models need
+
+    return with_motion(reader, sections, draft, taken)
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:

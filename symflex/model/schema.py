@@ -74,6 +74,13 @@ def json_schema() -> Schema:
         "outputs": _table(_expression(), "what is observed"),
         "signals": _table(_expression(), "names of expressions of nodes, inputs and signals"),
         "equations": _equations(),
+        "operating_point": {
+            "type": "object",
+            "description": "values at rest of what equations and energies contain",
+            "properties": {"solve": _said({"type": "array", "items": TEXT}, "parameters that follow")},
+            "additionalProperties": VALUE,
+        },
+        "energy": _energy(),
         "blocks": _table(_block(), "transfer functions that are factors in expressions", FREE_NAMES),
         "fields": _table(_field(), "boundary-value problems"),
         "published": {
@@ -223,7 +230,20 @@ def _equations() -> Schema:
         "equations": _said({"type": "array", "items": TEXT}, "one for each unknown: m*s^2*x + k*x = F"),
         "doc": TEXT,
     }
-    return {**_closed(keys, ["unknowns", "equations"]), "description": "linear equations of motion"}
+    return {**_closed(keys, ["unknowns", "equations"]), "description": "equations of motion"}
+
+
+def _energy() -> Schema:
+    keys = {
+        "coordinates": _said({"type": "array", "items": TEXT, "minItems": 1}, "generalised coordinates"),
+        "kinetic": _said(TEXT, "kinetic energy: m*x'^2/2"),
+        "potential": _said(TEXT, "potential energy: k*x^2/2"),
+        "dissipation": _said(TEXT, "half of the power lost: b*x'^2/2"),
+        "forces": _said({"type": "object", "additionalProperties": VALUE}, "generalised forces"),
+        "constraints": _said({"type": ["string", "array"]}, "holonomic: x^2 + y^2 = l^2"),
+        "doc": TEXT,
+    }
+    return {**_closed(keys, ["coordinates"]), "description": "energies, for Lagrange's equations"}
 
 
 def _field() -> Schema:

@@ -46,7 +46,10 @@ def _uses(model: Model) -> dict[str, set[str]]:
     """Return, by name, the owners of the expressions it stands in."""
     used: dict[str, set[str]] = {}
     printed = (e for p in model.published for e in (p.expression, p.scale, *(e for _, e in p.where)))
-    for owner, expression in (*model.expressions(), *(("", e) for e in printed if e is not None)):
+    point = model.operating_point
+    at_rest = () if point is None else (*(e for _, e in point.values), *point.equations)
+    others = (("", e) for e in (*printed, *at_rest) if e is not None)
+    for owner, expression in (*model.expressions(), *others):
         for n in names(expression):
             used.setdefault(n.owner if isinstance(n, Attribute) else n.name, set()).add(owner)
     return used

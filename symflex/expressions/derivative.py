@@ -1,0 +1,177 @@
+"""Derivatives of expressions: what changes with a name, the others being constant.
+
+Input: a tree, and a leaf of it. Output: a tree, kept short by the constructors of
+:mod:`symflex.expressions.nodes`.
+
+    C*(i/x)^2  by i:  C*2*(i/x)/x
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from symflex.expressions.nodes import (
+    Attribute,
+    Call,
+    Derivative,
+    Differentiated,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    fold,
+    is_number,
+    negative,
+    nodes,
+    number,
+    power,
+    product_of,
+    quotient,
+    replace_node,
+    sum_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
+    "sqrt": lambda whole, _: quotient(number(1), product_of([number(2), whole])),
+    "exp": lambda whole, _: whole,
+    "log": lambda _, inner: quotient(number(1), inner),
+    "sin": lambda _, inner: Call("cos", inner),
+    "cos": lambda _, inner: negative(Call("sin", inner)),
+    "tan": lambda whole, _: sum_of([number(1), power(whole, 2)]),
+    "sinh": lambda _, inner: Call("cosh", inner),
+    "cosh": lambda _, inner: Call("sinh", inner),
+    "tanh": lambda whole, _: sum_of([number(1), negative(power(whole, 2))]),
+    "abs": lambda whole, inner: quotient(inner, whole),
+}
+"""The derivative of every function by its argument."""
+AT_ZERO: Final = {
+    "sqrt": 0,
+    "exp": 1,
+    "sin": 0,
+    "cos": 1,
+    "tan": 0,
+    "sinh": 0,
+    "cosh": 1,
+    "tanh": 0,
+    "abs": 0,
+}
+
+
+def derivative(expression: Expression, leaf: Expression) -> Expression:
+    """Return the derivative of an expression by one of its leaves.
+
+    Raises ValueError, with the part that has none: a function that is not smooth or not known, an exponent
+    that is no whole number. Raises ZeroDivisionError where a denominator is the number zero.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name, format_expression, parse
+    >>> from symflex.errors import Text
+    >>> for text in ("a*x^3 + sin(x)*y", "sqrt(x)/x"):
+    ...     print(format_expression(derivative(parse(Text.alone("text", text)), Name("x"))))
+    3*a*x^2 + cos(x)*y
+    (1/(2*sqrt(x))*x - sqrt(x))/x^2
+    """
+    if expression == leaf:
+        return number(1)
+    if leaf not in nodes(expression):
+        return number(0)
+
+    def by(node: Expression) -> Expression:
+        return derivative(node, leaf)
+
+    match expression:
+        case Negative(operand):
+            return negative(by(operand))
+        case Sum(terms):
+            return sum_of(map(by, terms))
+        case Product(factors):
+            changed = ((*factors[:i], by(each), *factors[i + 1 :]) for i, each in enumerate(factors))
+            return sum_of(map(product_of, changed))
+        case Quotient(above, below) if leaf not in nodes(below):
+            return quotient(by(above), below)
+        case Quotient(above, below):
+            top = [product_of([by(above), below]), negative(product_of([above, by(below)]))]
+            return quotient(sum_of(top), power(below, 2))
+        case Power(base, Number(n) | Negative(Number(n))) if n.denominator == 1:
+            n = n if isinstance(expression.exponent, Number) else -n
+            return product_of([number(n), power(base, number(n - 1)), by(base)])
+        case Call(name, inner) if name in SLOPES:
+            return product_of([SLOPES[name](expression, inner), by(inner)])
+    raise ValueError(expression)
+
+
+def rate(expression: Expression, varies: Callable[[Expression], bool]) -> Expression:
+    """Return the derivative in time, by the chain rule over names, and derivatives, that vary.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name, format_expression, parse
+    >>> from symflex.errors import Text
+    >>> text = Text.alone("text", "m*sin(x)*x'")
+    >>> format_expression(rate(parse(text), lambda n: n in (Name("x"), Derivative("x", 1))))
+    "m*cos(x)*x'*x' + m*sin(x)*x''"
+    """
+    leaves = dict.fromkeys(n for n in nodes(expression) if isinstance(n, Name | Derivative) and varies(n))
+    return sum_of(
+        product_of([derivative(expression, n), Derivative(n.name, getattr(n, "order", 0) + 1)])
+        for n in leaves
+    )
+
+
+def without_brackets(expression: Expression, varies: Callable[[Expression], bool]) -> Expression:
+    """Return an expression with ``(x + l*sin(theta))'`` carried out."""
+    while bracket := next((n for n in reversed(nodes(expression)) if isinstance(n, Differentiated)), None):
+        changed = bracket.operand
+        for _ in range(bracket.order):
+            changed = rate(changed, varies)
+        expression = replace_node(expression, bracket, changed)
+    return expression
+
+
+def simplified(expression: Expression, values: Mapping[str, Expression]) -> Expression:
+    """Return an expression with values in place of names, and without what vanishes or is one with them.
+
+    Raises ZeroDivisionError where a denominator becomes the number zero.
+
+    Examples
+    --------
+    >>> from symflex.expressions import format_expression, parse
+    >>> from symflex.errors import Text
+    >>> format_expression(simplified(parse(Text.alone("text", "a*cos(x) + b*sin(x)/c")), {"x": number(0)}))
+    'a'
+    """
+
+    def named(name: str) -> Expression:
+        return values.get(name) or (Attribute(*name.split(".")) if "." in name else Name(name))
+
+    def called(call: Call, inner: Expression) -> Expression:
+        if is_number(inner, 0) and call.name in AT_ZERO:
+            return number(AT_ZERO[call.name])
+        return number(0) if call.name == "log" and is_number(inner, 1) else Call(call.name, inner)
+
+    return fold(
+        expression,
+        number=number,
+        name=named,
+        power=lambda base, exponent: power(base, simplified(exponent, values)),
+        call=called,
+        negative=negative,
+        total=sum_of,
+        product=lambda factors: product_of(map(_sign_first, factors)),
+        quotient=quotient,
+    )
+
+
+def _sign_first(factor: Expression) -> Expression:
+    """Return a sum of negative terms as minus their sum."""
+    if isinstance(factor, Sum) and all(isinstance(t, Negative) for t in factor.terms):
+        return Negative(sum_of(map(negative, factor.terms)))
+    return factor

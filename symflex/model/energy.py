@@ -1,0 +1,198 @@
+"""Lagrange's equations of ``[energy]``: equations of motion from the energies of a mechanism.
+
+Input: the section. Output: a :class:`~symflex.model.model.Signal` for every coordinate q and every
+multiplier, whose expression is a nonlinear equation, made linear by :mod:`symflex.model.operating_point`.
+
+    coordinates = ["x", "theta"]
+    kinetic     = "M*x'^2/2 + m*((x + l*sin(theta))')^2/2 + m*((l*cos(theta))')^2/2"
+    potential   = "m*g*l*cos(theta)"
+    dissipation = "b*x'^2/2"                 # Rayleigh's: half of the power that is lost
+    forces      = { x = "F" }                # generalised forces
+    constraints = ["x^2 + y^2 = l^2"]        # holonomic; each brings a multiplier, lambda_1
+
+    (dT/dq')' - dT/dq + dV/dq + dD/dq' = Q + sum of lambda_k dc_k/dq
+
+A coordinate that elements or inputs are attached to is a node: its equation acts there as a source does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE
+from symflex.errors import Diagnostic, SpecError
+from symflex.expressions import (
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    format_expression,
+    negative,
+    number,
+    parse,
+    product_of,
+    sum_of,
+)
+from symflex.expressions.derivative import derivative, rate, without_brackets
+from symflex.library.elements import ELEMENTS
+from symflex.model.declarations import in_order
+from symflex.model.fields import name_problem, parsed
+from symflex.model.model import NodeReference, Signal
+from symflex.model.network import DraftElement
+from symflex.model.operating_point import (
+    NOWHERE,
+    SMOOTH,
+    AtRest,
+    linearised,
+    read_operating_point,
+    with_value,
+)
+from symflex.model.reading import QuantityLiteral
+from symflex.model.units import lower
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+    from symflex.model.model import OperatingPoint
+    from symflex.model.network import Draft
+    from symflex.model.reading import Reader
+    from symflex.model.spec import TableValue
+
+KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
+EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'
+SOURCES = {"translation": ("force_source", "f"), "rotation": ("torque_source", "tau")}
+
+
+def read_energy(reader: Reader, section: TableValue | None, taken: Collection[str]) -> tuple[Signal, ...]:
+    """Return an equation for every coordinate and every constraint; ``taken`` names what is constant."""
+    if section is None:
+        return ()
+    what = "[energy]"
+    reader.keys(section, KEYS, what, EXAMPLE)
+    given = section.get("coordinates")
+    if given is None:
+        reader.note("SF214", f"{what} has no coordinates", section.span, EXAMPLE)
+        return ()
+    coordinates = reader.strings(given, f"coordinates of {what}", "an array of names") or ()
+    for text in coordinates:
+        problem = name_problem(text.value, taken, {})
+        if problem is not None:
+            reader.note(problem[0], problem[1], text.span, problem[2])
+    constraints = section.get("constraints")
+    texts = reader.strings(constraints, f"constraints of {what}") if constraints else ()
+    equations = parsed(reader, texts) or ()
+    kinetic, potential, dissipation = (
+        reader.read(partial(parse, brackets=True), reader.text(section, key, what)) or number(0)
+        for key in KEYS[1:4]
+    )
+    forces = dict[str, Expression]()
+    entry = section.get("forces")
+    table = reader.table(entry, f"forces of {what}", 'for instance forces = { x = "F" }') if entry else None
+    for force in table.entries if table else ():
+        if force.key not in {t.value for t in coordinates}:
+            message = f"'{force.key}' is no coordinate of {what}"
+            reader.note(
+                "SF210", message, force.key_span, f"coordinates: {', '.join(t.value for t in coordinates)}"
+            )
+        elif (
+            value := reader.expression(force.value, f"force on '{force.key}'", quantities=False)
+        ) is not None:
+            forces[force.key] = value
+    if reader.problems:
+        raise SpecError(*reader.problems)  # of unknowns without equation nothing true can be said
+
+    def varies(node: Expression) -> bool:
+        return isinstance(node, Name | Derivative) and node.name not in {*taken, LAPLACE, "pi"}
+
+    held = [sum_of([e.left, negative(e.right)]) for e in equations]
+    multipliers = [f"lambda_{k}" for k in range(1, len(held) + 1)]
+    kinetic, potential, dissipation = (without_brackets(e, varies) for e in (kinetic, potential, dissipation))
+    signals = []
+    try:
+        for text in coordinates:
+            q, speed = Name(text.value), Derivative(text.value, 1)
+            terms = [
+                rate(derivative(kinetic, speed), varies),
+                negative(derivative(kinetic, q)),
+                derivative(potential, q),
+                derivative(dissipation, speed),
+                *(
+                    negative(product_of([Name(m), derivative(c, q)]))
+                    for m, c in zip(multipliers, held, strict=True)
+                ),
+            ]
+            right = forces.get(text.value, number(0))
+            signals.append(Signal(text.value, Equation(sum_of(terms), right, span=text.span), text.span))
+    except ValueError as error:
+        message = f"'{format_expression(error.args[0])}' has no derivative"
+        raise SpecError(Diagnostic("SF222", message, error.args[0].span or section.span, SMOOTH)) from None
+    signals += [
+        Signal(m, replace(e, left=c, right=number(0)), e.span)
+        for m, e, c in zip(multipliers, equations, held, strict=True)
+    ]
+    return tuple(signals)
+
+
+def with_motion(
+    reader: Reader, sections: Mapping[str, TableValue | None], draft: Draft, taken: Collection[str]
+) -> tuple[Draft, OperatingPoint | None]:
+    """Return a draft whose ``[equations]`` and ``[energy]`` are linear, and the point at which they are.
+
+    Raises SpecError with all that was noted so far, where there are no linear equations.
+    """
+    energy = read_energy(reader, sections["energy"], taken)
+    inputs = {d.input.name for d in draft.inputs}
+    loads = {x.name for x in (*draft.signals, *energy)} | inputs
+    nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
+    nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
+    rest = read_operating_point(reader, sections["operating_point"], {*taken, *loads})
+    linear = linearised(
+        reader,
+        (*draft.signals, *energy),
+        _with_multipliers(energy, rest),
+        inputs,
+        loads | nodes,
+        {**dict.fromkeys(taken), **{d.name: d.expression for d in draft.definitions}},
+        {p.name: lower(QuantityLiteral(p.quantity)) for p in draft.declared if p.quantity is not None},
+        {p.name for p in draft.declared if p.assume != "positive"},
+    )
+    definitions = in_order(reader, [*draft.definitions, *linear.definitions])
+    found = {d.name for d in linear.definitions}
+    declared = tuple(with_value(p, linear.solved) for p in draft.declared if p.name not in found)
+    draft = replace(draft, declared=declared, definitions=definitions, signals=linear.signals)
+    return _hung(draft, {x.name for x in energy}), linear.point
+
+
+def _with_multipliers(energy: Sequence[Signal], rest: AtRest | None) -> AtRest | None:
+    """Return the operating point, at 0 if none was given, with the multipliers among what is solved for."""
+    multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
+    if not energy:
+        return rest
+    rest = rest or NOWHERE
+    known = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
+    return replace(
+        rest,
+        values={**rest.values, **known},
+        multipliers=tuple(v.name for v in known.values()),
+        coordinates=tuple(x.name for x in energy if x.name not in multipliers),
+    )
+
+
+def _hung(draft: Draft, coordinates: Collection[str]) -> Draft:
+    """Return a draft with a source in place of the equation of every coordinate that is a node."""
+    ports = ((port, r) for e in draft.elements for port, references in e.nodes for r in references)
+    domains = {r.node: port.domain for port, r in ports}
+    domains |= {a.reference.node: a.domain for source in draft.inputs for a in source.attachments()}
+    kept, sources = list[Signal](), list(draft.elements)
+    for signal in draft.signals:
+        kind, value = SOURCES.get(domains.get(signal.name, ""), ("", ""))
+        equation, span = signal.expression, signal.span
+        if signal.name not in coordinates or not kind or not isinstance(equation, Equation) or span is None:
+            kept.append(signal)
+            continue
+        acts = replace(sum_of([equation.right, negative(equation.left)]), span=span)
+        nodes = ((ELEMENTS[kind].ports[0], (NodeReference(signal.name, span=span),)),)
+        sources.append(DraftElement(f"motion_{signal.name}", ELEMENTS[kind], nodes, ((value, acts),), span))
+    return replace(draft, elements=tuple(sources), signals=tuple(kept))

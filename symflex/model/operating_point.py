@@ -1,0 +1,491 @@
+"""Nonlinear ``[equations]``, made linear about the values at rest that ``[operating_point]`` gives.
+
+Input: equations as Newton's or Kirchhoff's law has them, with powers and functions of what varies in time.
+Output: linear equations of the deviations from rest, which keep the names, and definitions for values.
+
+    [equations]        m*x'' = m*g - C*i^2/x^2
+    [operating_point]  x = "x_0", i = "i_0", solve = ["i_0"]
+
+    i_0 = sqrt(m*g*x_0^2/C),  m*s^2*x - 2*C*i_0^2/x_0^3*x + 2*C*i_0/x_0^2*i = 0
+
+The equations have to hold at rest whatever their letters are: what is left over is evaluated in balls for
+random values, so that a number that is not zero is proved, and an identity missed with probability 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import count
+from random import Random
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.algebra import FUNCTIONS, LAPLACE
+from symflex.balls import precision, stays_inside
+from symflex.errors import SpecError, nearest
+from symflex.expressions import (
+    Attribute,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    fold,
+    format_expression,
+    is_number,
+    negative,
+    nodes,
+    number,
+    power,
+    product_of,
+    quotient,
+    replace_node,
+    replace_values,
+    sum_of,
+)
+from symflex.expressions.derivative import derivative, simplified, without_brackets
+from symflex.expressions.nodes import Call
+from symflex.expressions.trigonometric import shorter
+from symflex.model.model import Definition, OperatingPoint
+from symflex.model.reading import literal_value
+from symflex.model.scope import nearest_name
+from symflex.model.units import lower
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from symflex.errors import Span
+    from symflex.model.declarations import DeclaredParameter
+    from symflex.model.model import Signal
+    from symflex.model.reading import Reader
+    from symflex.model.spec import TableValue
+
+SOLVE = "solve"
+EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
+SMOOTH = f"write powers with whole exponents, and {', '.join(FUNCTIONS)}, abs of what has a sign"
+TRIALS = 20
+"""Random points, of which three are to be in the domain of all functions."""
+AGREEING = 3
+BITS = 256
+STEPS = 60
+"""Newton steps, from a value a person gave."""
+DIGITS = 40
+"""Of a parameter that has no formula."""
+
+
+@dataclass(frozen=True)
+class AtRest:
+    """What ``[operating_point]`` says: values of what varies, and the parameters that follow from them."""
+
+    values: Mapping[str, Expression]  # by name, "x'" for a rate
+    solve: tuple[str, ...]
+    definitions: tuple[Definition, ...]  # of values that were written as numbers
+    span: Span | None
+    multipliers: tuple[str, ...] = ()  # values that nobody has to give
+    coordinates: tuple[str, ...] = ()  # of Lagrange's equations
+
+
+NOWHERE = AtRest({}, (), (), None)
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Signals with linear equations, and what else follows."""
+
+    signals: tuple[Signal, ...]
+    definitions: tuple[Definition, ...] = ()
+    point: OperatingPoint | None = None
+    solved: Mapping[str, Fraction] = field(default_factory=dict)  # parameters that have a value alone
+
+
+def read_operating_point(reader: Reader, section: TableValue | None, taken: Collection[str]) -> AtRest | None:
+    """Return the values of ``[operating_point]``; ``taken`` are all names that mean something."""
+    if section is None:
+        return None
+    values, definitions, solve = dict[str, Expression](), list[Definition](), tuple[str, ...]()
+    for entry in section.entries:
+        if entry.key == SOLVE:
+            solve = tuple(t.value for t in reader.strings(entry, "solve of [operating_point]") or ())
+            continue
+        what = f"'{entry.key}' of [operating_point]"
+        value = reader.expression(entry.value, what)
+        if value is None:
+            continue
+        literal = literal_value(value)
+        if literal is not None and literal != 0:
+            # A number alone would fit any unit.
+            base = entry.key.replace(".", "_").replace("'", "_rate")
+            name = next(n for i in count() if (n := f"{base}_{i}") not in taken)
+            definitions.append(Definition(name, value, "", entry.key_span))
+            value = Name(name, span=value.span)
+        values[entry.key] = number(0) if literal == 0 else value
+    return AtRest(values, solve, tuple(definitions), section.span)
+
+
+def linearised(
+    reader: Reader,
+    signals: tuple[Signal, ...],
+    rest: AtRest | None,
+    inputs: Collection[str],
+    moving: Collection[str],
+    constants: Mapping[str, Expression | None],
+    numbers: Mapping[str, Expression],
+    signed: Collection[str],
+) -> Linearised:
+    """Return signals with linear equations, and definitions of the values at rest.
+
+    ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that are
+    defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
+    operating point only derivatives are rewritten, as products with s.
+
+    Raises SpecError, with all that was noted before: SF222, SF224 where there is no linear equation, SF407
+    where one does not hold at rest.
+    """
+    equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
+    if not equations or (rest is None and not any(map(_primes, equations.values()))):
+        return Linearised(signals)
+    point = _AboutRest(
+        reader, rest or NOWHERE, frozenset(inputs), dict(constants), numbers, frozenset(signed)
+    )
+    point.check_all_named(moving, equations.values())
+    if reader.problems:
+        raise SpecError(*reader.problems)
+    point.bare = {n for e in equations.values() for n in point.moving_in(e) if isinstance(n, Name)}
+    made = {name: point.linear(equation) for name, equation in equations.items()}
+    if None not in made.values() and rest is not None:
+        point.check_names(rest)
+        point.check_at_rest()
+    if reader.problems and (None in made.values() or rest is not None):
+        raise SpecError(*reader.problems)
+    kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
+    at_rest = None if rest is None else point.described(equations, made)
+    return Linearised(kept, tuple(point.definitions), at_rest, point.by_value)
+
+
+def with_value(parameter: DeclaredParameter, solved: Mapping[str, Fraction]) -> DeclaredParameter:
+    """Return a parameter with the value that holds at rest, if it was solved for."""
+    quantity = parameter.quantity
+    if quantity is None or parameter.name not in solved:
+        return parameter
+    return replace(parameter, quantity=replace(quantity, magnitude=solved[parameter.name], pi_power=0))
+
+
+def _primes(expression: Expression) -> bool:
+    return any(isinstance(n, Derivative) for n in nodes(expression))
+
+
+class _AboutRest:
+    """Linearises equations about one point, and keeps what is left of each at rest."""
+
+    def __init__(
+        self,
+        reader: Reader,
+        rest: AtRest,
+        inputs: frozenset[str],
+        constants: dict[str, Expression | None],
+        numbers: Mapping[str, Expression],
+        signed: frozenset[str],
+    ) -> None:
+        self.reader, self.rest, self.inputs, self.constants = reader, rest, inputs, constants
+        self.numbers, self.signed = numbers, signed
+        self.by_value: dict[str, Fraction] = {}
+        self.bare: set[Expression] = set()  # names that occur without a derivative
+        self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
+        self.values = dict(rest.values)
+        self.definitions = list(rest.definitions)
+        self.constants |= {d.name: d.expression for d in rest.definitions} | dict.fromkeys(
+            (*rest.solve, *rest.multipliers)
+        )
+        self.left_over: list[tuple[Expression, Equation]] = []
+        self.seen: set[str] = set()
+
+    def varies(self, node: Expression) -> bool:
+        """Tell whether a node is a leaf that varies in time."""
+        match node:
+            case Name(name):
+                return name not in self.constants and name not in (LAPLACE, "pi")
+            case Derivative() | Attribute():
+                return True
+        return False
+
+    def check_all_named(self, moving: Collection[str], equations: Iterable[Equation]) -> None:
+        """Note names that mean nothing, and values at rest that vary."""
+        for leaf in dict.fromkeys(n for e in equations for n in nodes(e)):
+            name = leaf.name if isinstance(leaf, Name | Derivative) else None
+            if name is None or name in moving or not self.varies(leaf):
+                continue
+            message, hint = f"unknown name '{name}'", nearest_name(name, [*moving, *self.constants])
+            if name in self.constants:
+                message, hint = f"'{name}' is constant and has no derivative in time", None
+            self.reader.note("SF210", message, leaf.span, hint)
+        for value in self.rest.values.values():
+            for leaf in (n for n in nodes(value) if self.varies(n)):
+                message = f"'{_written(leaf)}' is no parameter; values at rest are constant"
+                hint = nearest_name(_written(leaf), list(self.constants))
+                self.reader.note("SF210", message, leaf.span or value.span, hint)
+
+    def linear(self, equation: Equation) -> Equation | None:
+        """Return a linear equation of the deviations, ``None`` where there is none, which is noted."""
+        try:
+            whole = sum_of([self._with_primes(equation.left), negative(self._with_primes(equation.right))])
+            leaves = [n for n in dict.fromkeys(nodes(whole)) if self.varies(n)]
+            self.seen |= {_written(n) for n in leaves} | {n.name for n in leaves if isinstance(n, Derivative)}
+            self._infer_rates(equation)
+            slopes = [(n, shorter(self._at_rest(derivative(whole, n)))) for n in leaves]
+            rest = simplified(self._at_rest(whole), {LAPLACE: number(0)})
+            self.left_over.append((shorter(rest), equation))
+        except ValueError as error:
+            part = error.args[0]
+            message = f"'{format_expression(part)}' has no derivative here"
+            self.reader.note("SF222", message, part.span or equation.span, SMOOTH)
+        except ZeroDivisionError:
+            message = "this is not smooth at the operating point: a denominator vanishes there"
+            self.reader.note("SF224", message, equation.span, "give other values in [operating_point]")
+        else:
+            moving = [(n, c) for n, c in slopes if not is_number(c, 0)]
+            self.slopes.append({_written(n): c for n, c in moving})
+            moving.sort(key=lambda part: -getattr(part[0], "order", 0))  # as books do: accelerations first
+            left = [_term(n, c) for n, c in moving if _base(n) not in self.inputs]
+            right = [negative(_term(n, c)) for n, c in moving if _base(n) in self.inputs]
+            if all(isinstance(term, Negative) for term in left):
+                left, right = [negative(t) for t in left], [negative(t) for t in right]
+            return Equation(sum_of(left), sum_of(right), span=equation.span)
+        return None
+
+    def moving_in(self, equation: Equation) -> list[Expression]:
+        """Return the leaves that vary, of the products that the equation has, but for what follows an s."""
+        after_s = {
+            id(f)
+            for n in nodes(equation)
+            if isinstance(n, Product) and any(map(_order_of_s, n.factors))
+            for f in n.factors
+        }
+        return [n for n in nodes(equation) if self.varies(n) and id(n) not in after_s]
+
+    def _with_primes(self, expression: Expression) -> Expression:
+        """Return ``x''`` in place of ``s^2*x``."""
+        expression = without_brackets(expression, self.varies)
+        rewritten = {}
+        for node in nodes(expression):
+            if not isinstance(node, Product):
+                continue
+            orders = [_order_of_s(f) for f in node.factors]
+            moving = [i for i, f in enumerate(node.factors) if any(map(self.varies, nodes(f)))]
+            if not any(orders):
+                continue
+            if len(moving) > 1:
+                message = "s before a product of two quantities that vary can be read in two ways"
+                self.reader.note("SF222", message, node.span, "write x' for the derivative of x")
+            elif moving and isinstance(leaf := node.factors[moving[0]], Name):
+                others = [f for i, f in enumerate(node.factors) if not orders[i] and i != moving[0]]
+                rewritten[node] = product_of([*others, Derivative(leaf.name, sum(orders), span=leaf.span)])
+        for old, new in rewritten.items():
+            expression = replace_node(expression, old, new)
+        return expression
+
+    def _infer_rates(self, equation: Equation) -> None:
+        """Take the rate of what turns steadily from the equation ``theta' = omega``."""
+        for one, other in ((equation.left, equation.right), (equation.right, equation.left)):
+            rate = self._with_primes(one)
+            if isinstance(rate, Derivative) and rate.order == 1 and Name(rate.name) not in self.bare:
+                self.values.setdefault(_written(rate), self._at_rest(other))
+
+    def _at_rest(self, expression: Expression) -> Expression:
+        """Return an expression with the values at rest in place of all that varies.
+
+        Raises ValueError with an absolute value of unknown sign.
+        """
+        leaves = {n: self.values.get(_written(n), number(0)) for n in nodes(expression) if self.varies(n)}
+        rest = simplified(replace_values(expression, leaves), {_written(n): v for n, v in leaves.items()})
+        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name == "abs"]:
+            is_negative = isinstance(part.argument, Negative)
+            size = part.argument.operand if isinstance(part.argument, Negative) else part.argument
+            if not self._is_positive(size):
+                raise ValueError(part)
+            rest = replace_node(rest, part, negative(part.argument) if is_negative else size)
+        return simplified(rest, {})
+
+    def _is_positive(self, size: Expression) -> bool:
+        """Tell whether a size is made of positive parts alone."""
+        for node in nodes(size):
+            defined = self.constants.get(node.name) if isinstance(node, Name) else None
+            literal = None if defined is None else literal_value(defined)
+            if isinstance(node, Negative | Call) or (isinstance(node, Name) and node.name in self.signed):
+                return False
+            if defined is not None and not (self._is_positive(defined) if literal is None else literal > 0):
+                return False
+        return True
+
+    def described(
+        self, equations: Mapping[str, Equation], made: Mapping[str, Equation | None]
+    ) -> OperatingPoint:
+        """Return what happened, once all equations are linear."""
+        coordinates = self.rest.coordinates
+        rows = [slopes for name, slopes in zip(equations, self.slopes, strict=True) if name in coordinates]
+        matrices = tuple(
+            tuple(tuple(row.get(q + "'" * order, number(0)) for q in coordinates) for row in rows)
+            for order in (2, 1, 0)
+        )
+        linear = tuple(e for e in made.values() if e is not None)
+        values = tuple((n, v) for n, v in self.values.items() if n.rstrip("'") in self.seen)
+        return OperatingPoint(
+            values, tuple(equations.values()), linear, coordinates, matrices if coordinates else ()
+        )
+
+    def check_names(self, rest: AtRest) -> None:
+        """Note values of what stands in no equation."""
+        for name, value in rest.values.items():
+            if name not in self.seen and name.rstrip("'") not in self.seen:
+                hint = nearest(name, self.seen) or EXAMPLE
+                message = f"'{name}' of [operating_point] stands in no equation"
+                self.reader.note("SF210", message, value.span or rest.span, hint)
+
+    def check_at_rest(self) -> None:
+        """Solve what is asked for, and note every equation that does not hold at rest."""
+        wanted = [*self.rest.multipliers, *self.rest.solve]
+        solved: dict[str, Expression] = {}
+        for residual, equation in self.left_over:
+            rest = simplified(residual, solved)
+            unknown = next((p for p in wanted if Name(p) in nodes(rest)), None)
+            if unknown is None:
+                if not self._vanishes(rest):
+                    self._note_left(rest, equation, None)
+                continue
+            wanted.remove(unknown)
+            solution = _solved(rest, Name(unknown))
+            if solution is not None:
+                self.constants[unknown] = solved[unknown] = solution
+                self.definitions.append(Definition(unknown, solution, "", equation.span))
+            elif (value := self._solved_by_value(rest, unknown)) is not None:
+                self.by_value[unknown] = value
+            else:
+                self._note_left(rest, equation, unknown)
+        for name in wanted:
+            if name in self.rest.multipliers:
+                self.definitions.append(Definition(name, number(0), "", self.rest.span))
+                continue
+            message = f"no equation at rest determines '{name}'"
+            self.reader.note("SF407", message, self.rest.span, "leave it out of solve")
+
+    def _note_left(self, rest: Expression, equation: Equation, unknown: str | None) -> None:
+        message = f"this does not hold at the operating point: {format_expression(rest)} is left"
+        hint = "correct [operating_point], or name a parameter that follows: solve = [...]"
+        if unknown is not None:
+            message = f"'{unknown}' is not found: {format_expression(rest)} has no root next to its value"
+            hint = f"give '{unknown}' a value close to the one at rest, and all other parameters theirs"
+        self.reader.note("SF407", message, equation.span, hint)
+
+    def _solved_by_value(self, rest: Expression, unknown: str) -> Fraction | None:
+        """Return the root next to a parameter's value, proved by Newton's operator, to forty digits."""
+        slope = derivative(rest, Name(unknown))
+        with precision(BITS):
+            known = {name: self._value(value, {}, None) for name, value in self.numbers.items()}
+
+        def at(where: arb, function: Expression) -> arb:
+            return self._value(function, {**known, unknown: where}, None)
+
+        with precision(BITS):
+            try:
+                x = known[unknown].mid()
+                for _ in range(STEPS):
+                    x = (x - at(x, rest) / at(x, slope)).mid()
+                reach = (abs(x) * arb(10) ** -DIGITS).mid()
+                if not stays_inside(at(x, rest) / at(arb(x, reach), slope), reach):
+                    return None
+            except KeyError:
+                return None
+            return Fraction(x.str(DIGITS, radius=False))
+
+    def _vanishes(self, residual: Expression) -> bool:
+        if is_number(residual, 0):
+            return True
+        random, agreeing = Random(1), 0
+        for _ in range(TRIALS):
+            with precision(BITS):
+                value = self._value(residual, {}, random)
+                if value.is_finite() and not value.contains(0):
+                    return False
+                agreeing += bool(value.is_finite())
+            if agreeing == AGREEING:
+                return True
+        return False
+
+    def _value(self, expression: Expression, known: dict[str, arb], random: Random | None) -> arb:
+        """Return an expression's value, where names without one have random ones; else KeyError."""
+
+        def named(name: str) -> arb:
+            if name not in known:
+                defined = self.constants[name]
+                if defined is None and random is None:
+                    raise KeyError(name)
+                known[name] = (
+                    arb(random.randrange(1, 1 << 20)) / (1 << 18)
+                    if defined is None and random
+                    else self._value(lower(defined or number(0)), known, random)
+                )
+            return known[name]
+
+        def called(call: Call, inner: arb) -> arb:
+            return abs(inner) if call.name == "abs" else getattr(inner, call.name)()
+
+        return fold(
+            expression,
+            number=lambda n: arb(n.numerator) / n.denominator,
+            name=lambda name: arb.pi() if name == "pi" else named(name),
+            power=lambda base, exponent: base ** self._value(exponent, known, random),
+            call=called,
+        )
+
+
+def _solved(residual: Expression, unknown: Name) -> Expression | None:
+    """Return the value of a name for which a residual vanishes, if that is linear in it or in its square."""
+    slope = simplified(derivative(residual, unknown), {})
+    constant = simplified(residual, {unknown.name: number(0)})
+    if unknown not in nodes(slope):
+        return negative(_over(constant, slope))
+    second = simplified(derivative(slope, unknown), {})
+    if unknown in nodes(second) or not is_number(simplified(slope, {unknown.name: number(0)}), 0):
+        return None
+    return Call("sqrt", negative(_over(product_of([number(2), constant]), second)))
+
+
+def _over(above: Expression, below: Expression) -> Expression:
+    """Return a quotient with one line, and without a number that both parts have."""
+    if isinstance(below, Negative):
+        return negative(_over(above, below.operand))
+    if isinstance(below, Quotient):
+        above, below = product_of([above, below.denominator]), below.numerator
+    factor = next(
+        (n.value for n in nodes(below)[: 1 + isinstance(below, Product)] if isinstance(n, Number)), 1
+    )
+    both = ((product_of([number(1 / Fraction(factor)), each])) for each in (above, below))
+    return quotient(*both)
+
+
+def _order_of_s(factor: Expression) -> int:
+    match factor:
+        case Name(name) if name == LAPLACE:
+            return 1
+        case Power(Name(name), Number(n)) if name == LAPLACE and n.denominator == 1:
+            return int(n)
+    return 0
+
+
+def _written(node: Expression) -> str:
+    return format_expression(node)
+
+
+def _base(node: Expression) -> str:
+    return node.name if isinstance(node, Derivative) else _written(node)
+
+
+def _term(node: Expression, slope: Expression) -> Expression:
+    if not isinstance(node, Derivative):
+        return product_of([slope, node])
+    return product_of([slope, power(Name(LAPLACE), node.order), Name(node.name)])
