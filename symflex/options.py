@@ -208,6 +208,9 @@ class RootsOptions:
     explain: bool = option(
         False, "--explain", help="Say which constrained system has the zeros as its poles."
     )
+    letters: bool = option(
+        False, "--letters", help="Say in letters what roots are, and when they are real or imaginary."
+    )
     sensitivity: Sequence[str] = option(
         (),
         "--sensitivity",

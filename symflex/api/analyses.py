@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,7 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
+from symflex.letters.frequency_equation import roots_in_letters
 from symflex.options import RootsOptions, band_ends, checked_digits, duration
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
@@ -166,7 +168,7 @@ class Analyses(Plotted):
         digits: int = 15,
         budget: float | None = None,
     ) -> tuple[Root, ...]:
-        """Return the poles by natural frequency, both members of each conjugate pair.
+        r"""Return the poles by natural frequency, both members of each conjugate pair.
 
         Poles in the right half plane are always included; those outside the region asked for come last.
         :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether these are all.
@@ -196,7 +198,7 @@ class Analyses(Plotted):
 
         Examples
         --------
-        >>> from symflex import Model
+        >>> from symflex import Model, loads
         >>> from symflex.errors import BudgetError
         >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
         >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
@@ -210,9 +212,12 @@ class Analyses(Plotted):
         ...     poles = () if error.found is None else error.found.poles
         >>> [round(float(p.im), 6) for p in poles]
         [1.570796, -1.570796, 4.712389, -4.712389]
+        >>> model = loads('symflex = 1\nparameters = {T = "2 s"}\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"')
+        >>> model.transfer_function("y", "u").bind().poles()[0].letters
+        ('tau_p = T',)
         """
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return RootTable(Root(r) for r in located.all_poles)
+        return self._table(located, located.all_poles)
 
     def zeros(
         self,
@@ -225,7 +230,11 @@ class Analyses(Plotted):
     ) -> tuple[Root, ...]:
         """Return the zeros; see :meth:`poles`."""
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return RootTable(Root(r) for r in located.zeros)
+        return self._table(located, located.zeros)
+
+    def _table(self, located: PoleZeroMap, listed: Sequence[roots_room.Root]) -> RootTable:
+        letters = partial(roots_in_letters, self.bound.source, self.bound, located)
+        return RootTable(Root(root, letters) for root in listed)
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""

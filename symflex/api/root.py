@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import mpmath
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis import rational as rational_room
     from symflex.analysis import sensitivity as sensitivity_room
+    from symflex.letters.roots import FactorInLetters
     from symflex.roots.root import RootDecimals
 
 
@@ -51,6 +52,16 @@ class Root:
     """
 
     certified_root: roots_room.Root
+    _letters: Callable[[], tuple[FactorInLetters, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """What the root is in letters, ``omega_p = sqrt(k/m)`` and the like, each proved; often nothing."""
+        found = () if self._letters is None else self._letters()
+        formulas = (f for each in found for f in each.formulas)
+        return tuple(str(f) for f in formulas if any(r is self.certified_root for r in f.roots))
 
     @property
     def re(self) -> mpmath.mpf:

@@ -16,7 +16,6 @@ from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
 
 if TYPE_CHECKING:
-    from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.sensitivity import RootDerivative
 
 
@@ -32,9 +31,10 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     Every root is proved to lie within its radius, with its multiplicity, and the list is proved complete. A
     distributed system has infinitely many roots; by default, the lowest are shown.
 
-    --explain names the constrained system whose poles are the zeros. --sensitivity adds the relative change
-    of each natural frequency, and the change of each damping ratio, per relative change of a parameter. Put
-    it after SPEC: it takes the next word as the name of a parameter.
+    --explain names the constrained system whose poles are the zeros. --letters adds natural frequencies and
+    damping ratios in letters, the conditions for real and imaginary roots, and frequency equations.
+    --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
+    per relative change of a parameter. Put it after SPEC: it takes the next word as the name of a parameter.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots proved so far are shown.
@@ -55,38 +55,35 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
-    explained: ZeroExplanation | None = None
-    wanted, is_over = bool(given.sensitivity), located.certificate.is_exceeded
+    more: dict[str, tuple[object, str]] = {}  # by key of JSON, the data and the text
+    width, is_over = terminal_width(), located.certificate.is_exceeded
     try:
-        if wanted:
-            from symflex.analysis.sensitivity.sensitivity import sensitivities  # most calls need none of it
+        if given.letters:
+            from symflex.letters.frequency_equation import roots_in_letters
+            from symflex.letters.roots import letters_text
+
+            found = roots_in_letters(pipeline.derive_as(model, [pair])[0][0], bound, located)
+            more["letters"] = [each.to_json_dict(shown) for each in found], letters_text(found, width)
+        if given.sensitivity:
+            from symflex.analysis.sensitivity.sensitivity import sensitivities
+            from symflex.analysis.sensitivity.text import sensitivity_text
 
             names = () if "" in given.sensitivity else given.sensitivity
             moved = sensitivities(model, bound, located, names, shown)
+            more["sensitivity"] = [m.to_json_dict(shown) for m in moved], sensitivity_text(moved, width)
         if given.explain:
-            from symflex.analysis.explanation import explain_zeros
+            from symflex.analysis.explanation import explain_zeros, explanation_text
 
             explained = explain_zeros(model, bound, located)
+            more["explanation"] = explained.to_json_dict(), "\n" + explanation_text(explained, width)
     except BudgetError as error:
         show_error(error)
-        wanted, is_over = False, True
+        is_over = True
     if given.as_json:
-        more: dict[str, object] = {}
-        if wanted:
-            more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
-        if explained is not None:
-            more["explanation"] = explained.to_json_dict()
-        emit_json({**located.to_json_dict(), **more})
+        emit_json({**located.to_json_dict(), **{key: data for key, (data, _) in more.items()}})
     else:
-        say(roots_text(located, shown, terminal_width()))
-        if wanted:
-            from symflex.analysis.sensitivity.text import sensitivity_text  # most calls need none of it
-
-            say(sensitivity_text(moved, terminal_width()))
-        if explained is not None:
-            from symflex.analysis.explanation import explanation_text
-
-            say("\n" + explanation_text(explained, terminal_width()))
+        for told in (roots_text(located, shown, width), *(told for _, told in more.values())):
+            say(told)
     if is_over:
         return 5
     if any(m.status == "undecided" for m in moved):

@@ -194,17 +194,20 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
             moving.append((factor, is_even))
             needed += _hurwitz(signs, factor, is_even=is_even, is_kept_left=is_kept_left)
     try:
-        found, never = [(f, _inequality(arranger, f, relation)) for f, relation in signs.reduced(needed)], ""
-    except _NeverError as error:
+        found, never = (
+            [(f, inequality_of(arranger, f, relation)) for f, relation in signs.reduced(needed)],
+            "",
+        )
+    except NeverError as error:
         (impossible,) = error.args
-        found, never = [], f"{_inequality(arranger, impossible, '>')} would have to hold"
+        found, never = [], f"{inequality_of(arranger, impossible, '>')} would have to hold"
         if impossible.is_zero():
             never = "a power of s is missing, or a Hurwitz determinant is 0"
     _check(tf, signs, moving, None if never else found)
     return Conditions(tf.model, of, tuple(condition for _, condition in found), never, tuple(on_axis))
 
 
-def _inequality(arranger: Arranger, polynomial: fmpz_mpoly, relation: Relation) -> Inequality:
+def inequality_of(arranger: Arranger, polynomial: fmpz_mpoly, relation: Relation) -> Inequality:
     """Return a condition in its shortest print: all on the left, or no minus sign."""
     if len(polynomial) > LONGEST:
         return Inequality(len(polynomial), relation, None)
@@ -214,7 +217,7 @@ def _inequality(arranger: Arranger, polynomial: fmpz_mpoly, relation: Relation) 
     return Inequality(len(polynomial), relation, min(tried, key=lambda sides: length(*sides)))
 
 
-class _NeverError(Exception):
+class NeverError(Exception):
     """A condition that no values meet: its argument would have to be positive."""
 
 
@@ -327,7 +330,7 @@ class Signs:
             odd = [f for f, s, times in signs if not s and times % 2]
             nonzero |= {str(f): f for f, s, times in signs if not s and not times % 2}
             if not odd and sign < 0:
-                raise _NeverError(polynomial)
+                raise NeverError(polynomial)
             products.append((sign, odd))
         known: dict[str, int] = {}
         kept: dict[str, fmpz_mpoly] = {}
@@ -336,7 +339,7 @@ class Signs:
             front = sign * prod(known[str(f)] for f in odd if f not in left)
             whole = prod(left, start=self.ring.constant(front))
             if not left and front < 0:
-                raise _NeverError(whole)
+                raise NeverError(whole)
             known |= {str(left[0]): front} if len(left) == 1 else {}
             kept |= {str(whole): whole} if left else {}
         scales = [self.ring.constant(1), *(c for c in needed if self.of_polynomial(c) == 1)]

@@ -460,9 +460,11 @@ class ProductPrinter:
             inside = inside * Fraction(1 if exact else part) ** sign
         inside = -inside if value.unit < 0 else inside
         above, below = self.sides(outside)
-        return quotient(
-            product_of([above] if inside.is_one else [above, Call("sqrt", self.quotient(inside))]), below
-        )
+        if inside.is_one:
+            return quotient(above, below)
+        if inside.numerator().is_one:  # b/sqrt(k*m), not b*sqrt(1/(k*m))
+            return quotient(above, product_of([below, Call("sqrt", self.quotient(1 / inside))]))
+        return quotient(product_of([above, Call("sqrt", self.quotient(inside))]), below)
 
     def sum(self, polynomial: fmpz_mpoly) -> Expression:
         """Return a sum in its shortest arrangement; a minus sign that all of it bears stands in front."""

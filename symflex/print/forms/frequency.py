@@ -58,10 +58,10 @@ def frequency_form(tf: TransferFunction) -> PrintedForm:
     The expression grammar has no imaginary unit: it stands as a name, ``j`` where that is free, with the line
     ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does.
     """
-    return _FrequencyPage(tf).form()
+    return FrequencyPage(tf).form()
 
 
-class _FrequencyPage:
+class FrequencyPage:
     """The ring of real functions of the frequency for one transfer function."""
 
     def __init__(self, tf: TransferFunction) -> None:
@@ -92,6 +92,26 @@ class _FrequencyPage:
             *delays,
         ]
 
+    def images(self) -> list[tuple[fmpz_mpoly, int]]:
+        """Return the factors on the axis, without a power of the imaginary unit, and their exponents."""
+        waves = {d.wavenumbers[0] for d in self._change.table.dispersions}
+        moving = [(f, e) for f, e in self._value.factors if self._change.ring.used_in([f]) - waves]
+        return [(part, e * times) for f, e in moving for part, times in self._real(f)[0].factors]
+
+    def functions(self) -> dict[str, tuple[str, str, Factored]]:
+        """Return what the generators of kernels are: function, wavenumber and length."""
+        known: dict[str, tuple[str, str, Factored]] = {}
+        for i, k in self._arguments:
+            angle = self._bent[i]
+            known |= {g: (f, angle.wavenumber, angle.length * 2**k) for f, g in _functions(i, k).items()}
+        for angle in self._straight:
+            pair = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
+            sides = zip(("cosh", "sinh"), pair, strict=True)
+            known |= {
+                angle.kernels[g]: (f, angle.wavenumber, angle.length) for g, f in sides if g in angle.kernels
+            }
+        return known
+
     @staticmethod
     def _turns(kernel: Kernel) -> bool:
         """Tell whether an exponential has modulus one on the axis."""
@@ -117,7 +137,7 @@ class _FrequencyPage:
         value = self._turned(value, turns)
         lines, symbols = self._explained(self.ring.used_in(f for f, _ in value.factors))
         printer = self._printer(symbols)
-        sides = shortest_sides(printer, value, self._laws())
+        sides = shortest_sides(printer, value, self.laws())
         argument = product_of([symbols[IMAGINARY], symbols[LAPLACE]])
         # What the left side says is explained also where the right one does not need it.
         return PrintedForm("frequency", *sides, reachable((*sides, argument), lines), argument=argument)
@@ -251,7 +271,7 @@ class _FrequencyPage:
             result, turns = result * image**exponent, turns + times * exponent
         return self._turned(result, turns)
 
-    def _laws(self) -> dict[str, Factored]:
+    def laws(self) -> dict[str, Factored]:
         """Return per wavenumber a product of its power with omega and parameters that is one."""
         laws = {}
         for d in self._tf.kernels.dispersions:

@@ -7,7 +7,7 @@ computed; the report says so in its place.
 from collections.abc import Callable
 
 from symflex.report.document import ChapterPart
-from symflex.report.sections import files, formulas, roots
+from symflex.report.sections import files, formulas, letters, roots
 from symflex.report.study import Study
 
 SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
@@ -18,6 +18,7 @@ SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
     "figures": files.figure_section,
     "data": files.data_section,
     "roots": roots.root_section,
+    "letters": letters.letter_section,
     "loops": roots.loop_section,
     "files": files.export_section,
     "specification": formulas.specification_section,

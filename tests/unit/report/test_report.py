@@ -92,7 +92,8 @@ def test_a_report_of_several_models_is_folded_behind_its_overview(small):
     # A folded chapter says what is in it.
     (small_model,) = re.findall("<summary>(Parameters.*poles and zeros.*)</summary>", many)
     assert small_model == (
-        "Parameters, transfer functions, figures, poles and zeros, dynamic colocation, code and data"
+        "Parameters, transfer functions, figures, poles and zeros, in letters, "
+        "dynamic colocation, code and data"
     )
     printed = many.partition("@media print")[2].partition("</style>")[0]
     assert ".folded::details-content{content-visibility:visible" in printed

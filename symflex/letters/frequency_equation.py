@@ -1,0 +1,262 @@
+"""Frequency equations of beams, rods, shafts and strings without losses, and the proved numbers solving them.
+
+Input: a transfer function in letters, and its proved roots.
+Output: for each factor an equation in q, a wavenumber times a length, and in ratios of parameters; and with
+what :mod:`symflex.letters.roots` says of factors without waves, all that is said of a function.
+
+    a cantilever with a mass    cosh(q)*cos(q) + 1 + mu*q*(sinh(q)*cos(q) - cosh(q)*sin(q)) = 0
+                                mu = m/(rho*A*l), omega = q^2*sqrt(E*I/(rho*A))/l^2
+
+Theorem: s enters only through the wavenumber, ``q^4 = rho A l^4 omega^2/(E I)``, so a factor divided by one
+of its coefficients depends on q and on quotients of coefficients, which have no unit (Rayleigh 1877, 172). A
+q_n is that of a proved root of the function, and the equation as it is printed changes its sign there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations_with_replacement
+from math import lcm, prod
+from typing import TYPE_CHECKING, Final
+
+from flint import acb, arb
+
+from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors, terms_of
+from symflex.balls import precision
+from symflex.errors import UsageError
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Quotient,
+    names_among,
+    number,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.letters.roots import CHECK_BITS, MOST_TERMS, FactorInLetters, LetterReader, RootFormula, numbered
+from symflex.letters.routh import Signs
+from symflex.library.elements import LineElement
+from symflex.print.forms.arrange import Arranger, ProductPrinter
+from symflex.print.forms.frequency import FrequencyPage
+from symflex.print.forms.invariants import IMAGINARY
+from symflex.print.forms.naming import Naming
+from symflex.print.forms.notation import plain_printer, wavenumber_laws
+from symflex.print.roots import roots_of
+from symflex.transfer.enclose import enclosure, later
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from fractions import Fraction
+
+    from flint import fmpz_mpoly
+
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+
+Key = tuple[int, ...]
+"""Powers of q and of every kernel."""
+MOST_RATIOS: Final = 3
+"""Ratios of parameters that an equation may hold beside q."""
+BESIDE: Final = arb("1e-6")
+"""Part of q by which the two sides of a root are apart from it."""
+Q: Final = "q"
+ONE: Final = number(1)
+EXACT: Final = {"cos": "all solutions: q = (2*n - 1)*pi/2", "sin": "all solutions: q = n*pi"}
+"""The solutions of an equation that is one function, n = 1, 2, ..."""
+SEVERAL: Final = "a factor depends on several lengths or wavenumbers, or on many ratios of parameters"
+LOSSES: Final = "with losses, no root is a number times a power of parameters"
+OTHERS: Final = "frequency equations are for Euler beams, rods, shafts and strings alone, without tension"
+
+
+def roots_in_letters(
+    tf: AnyTransferFunction, bound: AnyBoundFunction, located: PoleZeroMap
+) -> tuple[FactorInLetters, ...]:
+    r"""Return what can be said in letters of the factors of a function, or why nothing can.
+
+    Only roots that the map lists are spoken of.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.letters.roots import letters_text
+    >>> text = 'symflex = 1\nparameters = { T = "2 s" }\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"'
+    >>> (tf,) = pipeline.derive_all(pipeline.loads(text))
+    >>> bound = pipeline.bind(tf)
+    >>> print(letters_text(roots_in_letters(tf, bound, pipeline.roots(bound))).lstrip())
+    poles in letters: T*s + 1 = 0
+        tau_p = T = 2 s
+    """
+    if not tf.is_reduced or tf.is_large or tf.model.imaginary or tf.model.root is not None:
+        why = "the formula is large, or has roots of s or complex coefficients"
+        return (FactorInLetters("", None, note=why),)
+    given = {p.name: p.value for p in tf.model.parameters if p.value is not None}
+    given |= dict(bound.values) if bound.is_reduced else {}
+    known = {name: enclosure(x) for name, x in given.items()}
+    known |= {d.name: later(d.expression, {**known}) for d in tf.model.definitions}
+    reader = LetterReader(tf, known, plain_printer(tf), Signs.of(tf))
+    sides = {"poles": [f for f, _ in tf.den.factors], "zeros": [f for f, _ in tf.num.factors]}
+    sides["hidden"] = [h.polynomial for h in tf.hidden]
+    with precision(CHECK_BITS):
+        found = [
+            each
+            for kind, factors in sides.items()
+            for factor in factors
+            if tf.ring.used_in([factor]).isdisjoint(tf.kernels.generators)
+            for part, _ in irreducible_factors(factor)[1]
+            if (each := reader.said_of(kind, part, roots_of(located, kind))) is not None
+        ]
+        said = [*numbered(found, Naming.of(tf))]
+        said += [] if tf.is_rational else frequency_equations(reader, located)
+    return tuple(said) or (FactorInLetters("", None, note="no factor has letters"),)
+
+
+def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[FactorInLetters]:
+    """Return the frequency equations whose roots are listed, and why there is none of a factor."""
+    tf, naming = reader.tf, Naming.of(reader.tf)
+    try:
+        page = (
+            FrequencyPage(tf) if all(d.kind in ("bending", "wave") for d in tf.kernels.dispersions) else None
+        )
+    except UsageError:
+        page = None
+    if page is None:
+        return [FactorInLetters("", None, note=OTHERS)]
+    naming.keep([Q])
+    plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
+    axes = (
+        (_Axis(reader, "omega", page.ring, page.functions(), page.laws(), naming), page.images()),
+        (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming), tf.ratio.factors),
+    )
+    made = [
+        axis.equation(part, kind, own)
+        for axis, factors in axes
+        for part, exponent in factors
+        for kind in ["zeros" if exponent > 0 else "poles"]
+        if (own := [r for r in roots_of(located, kind) if axis.place(r) > 0])
+        and not axis.ring.used_in([part]).isdisjoint(axis.functions)
+    ]
+    for kind in ("poles", "zeros"):
+        roots = [r for r in roots_of(located, kind) if not r.is_zero]
+        if roots and not any(axis.place(r) > 0 for axis, _ in axes for r in roots):
+            made.append(FactorInLetters(kind, None, note=LOSSES))
+    return [each for each in made if each.solutions or not each.factor]
+
+
+@dataclass(frozen=True, eq=False)
+class _Axis:
+    """Factors on one axis of the s plane: their ring, what its kernels are, and the laws of wavenumbers."""
+
+    reader: LetterReader
+    name: str  # of the distance of a root from 0
+    ring: Ring
+    functions: Mapping[str, tuple[str, str, Factored]]
+    laws: Mapping[str, Factored]  # products that are one
+    naming: Naming
+
+    def place(self, root: Root) -> arb:
+        """Return where a root is on the axis, 0 of one that is not proved to be there."""
+        if self.name == "omega":
+            return root.im if root.on_imaginary_axis else arb(0)
+        return root.re if root.is_real else arb(0)
+
+    def equation(self, part: fmpz_mpoly, kind: str, roots: Sequence[Root]) -> FactorInLetters:
+        """Return the equation of a factor with those of the roots that are its own, or why there is none."""
+        used, own = self.ring.used_in([part]), self.reader.tf.ring
+        kernels = {g: x for g, x in self.functions.items() if g in used}
+        waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
+        if IMAGINARY in used or not waves <= self.laws.keys():
+            return FactorInLetters("", None, note=LOSSES)
+        lengths = [x for _, _, x in kernels.values()]
+        longest = [x for x in lengths if all((y / x).is_constant and y.unit <= x.unit for y in lengths)]
+        if len(waves) > 1 or not longest or len(part) > MOST_TERMS:
+            return FactorInLetters("", None, note=SEVERAL)
+        (wave,), whole = waves, longest[0]
+        # omega^2 = square*wavenumber^order
+        order, s = (
+            self.laws[wave].exponent_of(self.ring.generator(wave)),
+            Factored.generator(self.ring, LAPLACE),
+        )
+        images = [own.generator(n) if n in own.index else own.constant(0) for n in self.ring.names]
+        square = (self.laws[wave] * s**2 / Factored.generator(self.ring, wave) ** order).map_factors(
+            own, lambda f: Factored.polynomial(own, f.compose(*images, ctx=own.context))
+        )
+        terms: dict[Key, Factored] = {}
+        lowest = min(dict(m).get(0, 0) for m, _ in terms_of(part))
+        for monomial, c in terms_of(part):
+            powers = {self.ring.names[i]: e for i, e in monomial}
+            times, odd = divmod(powers.pop(LAPLACE, 0) - lowest, 2)
+            if odd:
+                return FactorInLetters("", None, note=LOSSES)
+            n, *shape = (powers.pop(g, 0) for g in (wave, *kernels))
+            term = prod((Factored.generator(own, a) ** e for a, e in powers.items()), start=square**times * c)
+            terms[n + order * times, *shape] = terms.get((n + order * times, *shape), term * 0) + term
+        ratios, factor = self._equation(terms, whole, kernels)
+        if len(ratios) > MOST_RATIOS:
+            return FactorInLetters("", None, note=SEVERAL)
+        printer, value = self.reader.printer, self.reader.value
+        scale = printer.square_root(square / whole**order)
+        above, low = (scale.numerator, scale.denominator) if isinstance(scale, Quotient) else (scale, ONE)
+        frequency = quotient(product_of([power(Name(Q), order // 2), above]), low)
+        formulas = [
+            RootFormula(a, e, value(e).real) for a, x in ratios.items() for e in [printer.quotient(x)]
+        ]
+        known = {f.name: value(f.expression) for f in formulas}
+        solutions = tuple(self._solutions(factor, value(scale).real, order // 2, known, roots))
+        formulas.append(RootFormula(self.name, frequency, None, "rad/s", tuple(r for _, r in solutions)))
+        note = EXACT.get(factor.name, "") if isinstance(factor, Call) else ""
+        return FactorInLetters(kind, factor, tuple(formulas), (), solutions, note)
+
+    def _equation(
+        self, terms: Mapping[Key, Factored], whole: Factored, kernels: Mapping[str, tuple[str, str, Factored]]
+    ) -> tuple[dict[str, Factored], Expression]:
+        """Return names of ratios of parameters, and what is zero in them.
+
+        All is divided by the coefficient that is most of the distributed members' own parameters.
+        """
+        ring, model, ratios = self.reader.tf.ring, self.reader.tf.model, dict[str, Factored]()
+        members = [u for u in model.elements if isinstance(u.element, LineElement)]
+        native = {n for u in members for _, e in u.values for n in names_among(e, ring.index)}
+
+        def weight(item: tuple[Key, Factored]) -> tuple[int, int, int]:
+            own = ring.used_in(f for f, _ in item[1].factors)
+            alike = sum((c / item[1]).is_constant for c in terms.values())
+            return len(own & native) - 2 * len(own - native), alike, -item[0][0]
+
+        (first, *_), reference = max(terms.items(), key=weight)
+        found = [(key, c / reference * whole ** (first - key[0])) for key, c in terms.items()]
+        groups: dict[tuple[tuple[str, ...], int], dict[Key, Fraction]] = {}
+        for (n, *shape), ratio in sorted(found, key=lambda item: len(item[1].factors)):
+            products = [(), *((a,) for a in ratios), *combinations_with_replacement(ratios, 2)]
+            rests = [(held, ratio / prod((ratios[a] for a in held), start=ratio**0)) for held in products]
+            held, rest = next(((held, x) for held, x in rests if x.is_constant), ((), ratio))
+            if not rest.is_constant:
+                held = self.naming.take("mu" if n > first else "kappa")
+                ratios[held[0]], rest = ratio / ratio.unit, ratio**0 * ratio.unit
+            groups.setdefault((held, n), {})[0, *shape] = rest.unit
+        small, least = Ring((LAPLACE, *kernels)), min(n for _, n in groups)
+        below = lcm(*(c.denominator for group in groups.values() for c in group.values()))
+        symbols = {}
+        for g, (function, _, x) in kernels.items():
+            share = (x / whole).unit
+            angle = quotient(product_of([number(share.numerator), Name(Q)]), number(share.denominator))
+            symbols[g] = Call(function, angle)
+        printer, parts = ProductPrinter(Arranger.plain(small, symbols, kernels)), list[Expression]()
+        for (held, n), group in groups.items():
+            total = printer.sum(small.context.from_dict({m: int(c * below) for m, c in group.items()}))
+            parts.append(product_of([*map(Name, held), power(Name(Q), n - least), total]))
+        return ratios, sum_of(parts)
+
+    def _solutions(
+        self, factor: Expression, scale: arb, order: int, known: Mapping[str, acb], roots: Sequence[Root]
+    ) -> Iterator[tuple[arb, Root]]:
+        """Yield the q of every root at which the equation as printed changes its sign, or is zero."""
+        for root in roots:
+            q = self.place(root) / scale
+            q = q.sqrt() if order > 1 else q
+            points = (q, q * (1 - BESIDE), q * (1 + BESIDE))
+            middle, low, high = (self.reader.value(factor, **known, **{Q: acb(x)}).real for x in points)
+            if middle.contains(0) and (low * high < 0 or (root.multiplicity > 1 and low * high > 0)):
+                yield q, root

@@ -1,0 +1,292 @@
+"""Natural frequencies, damping ratios and kinds of roots in letters, beside the proved roots they belong to.
+
+Input: a transfer function with numbers whose formula has letters, and its proved roots.
+Output: for each irreducible factor, formulas and conditions, each read back and checked in balls.
+
+    m*s^2 + b*s + k     omega_p = sqrt(k/m), zeta_p = b/(2*sqrt(k*m)); a complex pair if b^2 < 4*k*m
+    a*s^4 + b*s^2 + c   a quartet if b^2 < 4*a*c
+
+Theorem: the discriminant of a quadratic or cubic is positive exactly if its roots are real and distinct. A
+quartic ``a z^4 + b z^3 + c z^2 + d z + e`` with a positive discriminant has four real roots if
+``8 a c < 3 b^2`` and ``64 a^3 e + 16 a b^2 c < 16 a^2 c^2 + 16 a^2 b d + 3 b^4``, else none (Rees 1922, Amer.
+Math. Monthly 29, 51). Of real roots, as many are positive as the signs of coefficients change (Descartes).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+from flint import acb, arb
+
+from symflex.algebra import LAPLACE, Factored
+from symflex.errors import Text
+from symflex.expressions import (
+    PROGRAM_LIMITS,
+    Call,
+    Expression,
+    format_expression,
+    negative,
+    number,
+    parse,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.letters.routh import Inequality, NeverError, Signs, inequality_of
+from symflex.print.forms.arrange import length, with_squares
+from symflex.print.forms.naming import Naming
+from symflex.print.roots import SHORT_DIGITS
+from symflex.print.text import INDENT, WIDTH, broken
+from symflex.roots import figure
+from symflex.roots.passivity import energy_proof
+from symflex.transfer.enclose import principal_values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Ring
+    from symflex.print.forms.arrange import ProductPrinter
+    from symflex.roots import Root
+    from symflex.transfer import TransferFunction
+
+Term = tuple["fmpz_mpoly", int]
+"""A polynomial, and the sign it has to have."""
+PAIR: Final = 2
+"""Degree of a factor with a natural frequency and a damping ratio."""
+MOST_PAIRS: Final = 4
+"""Degree in s^2 up to which conditions on roots are stated."""
+LONGEST: Final = 140
+"""Characters of a formula or a side of a condition that one still reads off."""
+MOST_TERMS: Final = 200
+"""Terms of a factor that is read back; longer ones have no short formulas."""
+CHECK_BITS: Final = 256
+"""Precision of the comparison with proved roots: more than their 15 digits have."""
+
+
+@dataclass(frozen=True, slots=True)
+class RootFormula:
+    """What a name is in letters: ``omega_p = sqrt(k/m)``, proved of some roots."""
+
+    name: str
+    expression: Expression
+    value: arb | None  # of the roots, not of the expression; None of what is different for each
+    unit: str = ""
+    roots: tuple[Root, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.name} = {format_expression(self.expression)}"
+
+
+@dataclass(frozen=True, slots=True)
+class RootKind:
+    """What the roots of a factor are if inequalities hold, all of them."""
+
+    words: str  # ``a complex pair``
+    inequalities: tuple[Inequality, ...]  # none: for all positive values
+    holds: bool | None  # at the model's values, proved; None if undecided
+
+    def __str__(self) -> str:
+        shown = " and ".join(map(str, self.inequalities))
+        return f"{self.words} if {shown}" if shown else f"{self.words}: for all positive values"
+
+
+@dataclass(frozen=True, slots=True)
+class FactorInLetters:
+    """A factor of numerator or denominator with what is said of its roots."""
+
+    kind: str  # ``poles``, ``zeros`` or ``hidden``
+    factor: Expression | None  # None of the reason why more is not said
+    formulas: tuple[RootFormula, ...] = ()
+    kinds: tuple[RootKind, ...] = ()
+    solutions: tuple[tuple[arb, Root], ...] = ()  # q of a frequency equation, and the root it belongs to
+    note: str = ""  # why there is no formula, or what all solutions are
+
+    def lines(self) -> Iterator[str]:
+        """Yield what is said, a sentence a line; 1/(2 zeta) is for programs."""
+        for f in (f for f in self.formulas if not f.name.startswith("Q")):
+            value = "" if f.value is None else f" = {figure(f.value, SHORT_DIGITS, trimmed=True)} {f.unit}"
+            yield f"{f}{value}".rstrip()
+        yield from self.more()
+
+    def more(self) -> Iterator[str]:
+        """Yield what is no formula."""
+        if self.solutions:
+            yield f"q = {', '.join(figure(q, 2 * SHORT_DIGITS) for q, _ in self.solutions)}, ..."
+        yield from (f"{kind}{', as here' * bool(kind.holds and kind.inequalities)}" for kind in self.kinds)
+        yield from [self.note] * bool(self.note)
+
+    def to_json_dict(self, digits: int) -> dict[str, object]:
+        """Return the factor as JSON data."""
+        return {
+            "of": self.kind,
+            "factor": format_expression(self.factor) if self.factor else "",
+            "formulas": {f.name: format_expression(f.expression) for f in self.formulas},
+            "values": {f.name: figure(f.value, digits) for f in self.formulas if f.value is not None},
+            "q": [figure(q, digits) for q, _ in self.solutions],
+            "kinds": [{"statement": str(kind), "holds": kind.holds} for kind in self.kinds],
+            "note": self.note,
+        }
+
+
+def letters_text(found: Sequence[FactorInLetters], width: int = WIDTH) -> str:
+    """Return what is said of factors as lines for a terminal."""
+    lines = []
+    for each in found:
+        head = (
+            f"{each.kind} in letters: {format_expression(each.factor)} = 0" if each.factor else "in letters:"
+        )
+        lines += ["", INDENT + head, *(2 * INDENT + line for line in each.lines())]
+    return "\n".join(part for line in lines for part in broken(line, width) or [""])
+
+
+@dataclass(frozen=True, eq=False)
+class LetterReader:
+    """Says in letters what the factors of one function have for roots, and reads what it says."""
+
+    tf: TransferFunction
+    numbers: Mapping[str, Callable[[], arb]]  # the values of names
+
+    printer: ProductPrinter
+    signs: Signs
+
+    def value(self, expression: Expression, **more: acb) -> acb:
+        """Return a ball around what the text of an expression says."""
+        known = {"pi": acb(arb.pi()), **more}
+        read = parse(Text.alone("<letters>", format_expression(expression)), limits=PROGRAM_LIMITS)
+        return principal_values(read, 1, lambda n: [known[n] if n in known else acb(self.numbers[n]())])[0]
+
+    def said_of(self, kind: str, factor: fmpz_mpoly, roots: Sequence[Root]) -> FactorInLetters | None:
+        """Return what is said of a factor; None if it holds no letters, or none of its roots is listed."""
+        c = self.tf.ring.coefficients(factor)
+        degree = len(c) - 1
+        if not degree or not self.tf.ring.used_in([factor]) - {LAPLACE} or len(factor) == 1:
+            return None
+        printed = self.printer.arranger.collected(factor)
+        why = f"a factor of degree {degree} in s has no short formula in letters"
+        if len(factor) > MOST_TERMS:
+            return FactorInLetters(kind, printed, note=why)
+        own = [r for r in roots if self.value(printed, s=r.enclosure()).contains(0)]
+        if not own or len(own) > degree or (degree <= PAIR and sum(r.multiplicity for r in own) < degree):
+            return None
+        formulas, kinds = tuple(self._formulas(c, own)), tuple(self._kinds(kind, c))
+        return FactorInLetters(kind, printed, formulas, kinds, note="" if formulas or kinds else why)
+
+    def _formulas(self, c: Sequence[fmpz_mpoly], own: Sequence[Root]) -> Iterator[RootFormula]:
+        """Yield the formulas of a factor whose values are those of its roots."""
+        degree = len(c) - 1
+        ratio = Factored.polynomial(self.tf.ring, c[0]) / Factored.polynomial(self.tf.ring, c[-1])
+        first, last = own[0], own[-1]
+        omega = (first.size() * last.size()).sqrt()
+        tried: list[tuple[str, Expression, arb, str]] = []
+        if degree == 1 and first.re < 0:
+            tried = [("tau", self.printer.quotient(1 / ratio), -1 / first.re, "s")]
+        elif degree == 1:
+            tried = [("s", self.printer.quotient(-ratio), first.re, "rad/s")]
+        elif degree == PAIR and not first.re * last.re < 0:
+            tried = [("omega", self.root(ratio), omega, "rad/s")]
+            if not c[1].is_zero():
+                zeta, (damping, quality) = -(first.re + last.re) / (2 * omega), self._damping(c)
+                tried += [("zeta", damping, zeta, ""), ("Q", quality, 1 / (2 * zeta), "")]
+        elif degree == PAIR and c[1].is_zero():
+            tried = [("sigma", self.root(-ratio), omega, "rad/s")]
+        elif degree == 2 * PAIR and c[1].is_zero() and c[3].is_zero():
+            middle, product = self.printer.sum(c[2]), self.printer.sum(4 * c[0] * c[4])
+            spread = Call("sqrt", sum_of([power(middle, 2), negative(product)]))
+            below = product_of([number(2), self.printer.sum(c[4])])
+            sizes = [r.size() for r in own if r.im > 0 and r.on_imaginary_axis]
+            for side in (negative(spread), spread):
+                root = Call("sqrt", quotient(sum_of([middle, side]), below))
+                tried += [("omega", root, x, "rad/s") for x in sizes]
+        for name, expression, value, unit in tried:
+            read = self.value(expression)
+            if length(expression) <= LONGEST and read.imag.contains(0) and read.real.overlaps(value):
+                mine = own if degree <= PAIR else [r for r in own if r.size().overlaps(value)]
+                yield RootFormula(name, expression, value, unit, tuple(mine))
+
+    def root(self, square: Factored) -> Expression:
+        """Return a positive square root; squares of what may be negative stay below it."""
+        ring = square.ring
+        square = self.tf.radicals.shortest(square).map_factors(ring, lambda f: with_squares(ring, f))
+        if all(self.signs.of_polynomial(f) for f, e in square.factors if abs(e) > 1):
+            return self.printer.square_root(square)
+        return Call("sqrt", self.printer.quotient(square))
+
+    def _damping(self, c: Sequence[fmpz_mpoly]) -> tuple[Expression, Expression]:
+        """Return zeta, ``b/(2 sqrt(a c))`` with what it has twice taken out of the root, and 1/(2 zeta)."""
+        low, middle, high = (Factored.polynomial(self.tf.ring, each) for each in c)
+        if self.signs.of_polynomial(c[1]) > 0:
+            square = low * high / middle**2
+            return self.root(1 / (square * 4)), self.root(square)
+        zeta = quotient(self.printer.quotient(middle), product_of([number(2), self.root(low * high)]))
+        return zeta, quotient(number(1), product_of([number(2), zeta]))
+
+    def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[RootKind]:
+        """Yield what the roots may be, each with its conditions."""
+        model, degree = self.tf.model, len(c) - 1
+        is_even, free = all(each.is_zero() for each in c[1::2]), [p.name for p in model.parameters]
+        tried: Sequence[tuple[str, Sequence[Term]]] = ()
+        if is_even and kind == "poles" and energy_proof(model, (), self.tf.output, free).is_passive:
+            tried = (("on the imaginary axis, as nothing supplies energy", ()),)
+        elif is_even and degree <= 2 * MOST_PAIRS:
+            tried = _even_kinds(self.tf.ring, c[::2])
+        elif degree == PAIR:
+            spread = c[1] ** 2 - 4 * c[0] * c[2]
+            tried = (("a complex pair", [(spread, -1)]), ("two real roots", [(spread, 1)]))
+        for words, terms in tried:
+            plain = [(self.tf.radicals.reduced(Factored.polynomial(self.tf.ring, f)), x) for f, x in terms]
+            try:
+                needed = self.signs.reduced([f.numerator().expand() * x for f, x in plain])
+            except NeverError:
+                continue
+            shown = tuple(inequality_of(self.printer.arranger, f, relation) for f, relation in needed)
+            over = [
+                (self.value(each.sides[0]) - self.value(each.sides[1])).real for each in shown if each.sides
+            ]
+            if len(over) == len(shown):
+                is_open = any(x.contains(0) and not x.is_zero() for x in over)
+                proved = all(
+                    x > 0 if each.relation == ">" else x != 0 for x, each in zip(over, shown, strict=True)
+                )
+                yield RootKind(words, shown, None if is_open else proved)
+
+
+def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequence[Term]]]:
+    """Return the kinds of roots of a polynomial in s^2, each with signs that imply it."""
+    pairs, last, s = len(c) - 1, c[0] * c[-1], ring.generator(LAPLACE)
+    imaginary, real = ([(x * c[-1], sign ** (pairs - i)) for i, x in enumerate(c[:-1])] for sign in (1, -1))
+    if pairs == 1:
+        return ("an imaginary pair", imaginary), ("a real pair", real)
+    spread = sum((x * s**i for i, x in enumerate(c)), ring.constant(0)).discriminant(0)
+    apart, mixed = [(spread, 1)], [(spread, -1)]
+    if pairs == PAIR:
+        others = {"a quartet": mixed, "an imaginary and a real pair": [(last, -1)]}
+    elif pairs < MOST_PAIRS:
+        others = {"a quartet and an imaginary pair": [*mixed, (last, 1)]}
+        others |= {"a quartet and a real pair": [*mixed, (last, -1)]}
+    else:
+        e, d, middle, b, a = c
+        fold = 8 * a * middle - 3 * b**2
+        rest = 64 * a**3 * e - 16 * a**2 * middle**2 + 16 * a * b**2 * middle - 16 * a**2 * b * d - 3 * b**4
+        others = {"a quartet and two imaginary pairs": [*mixed, *imaginary]}
+        others |= {"a quartet, an imaginary and a real pair": [*mixed, (last, -1)]}
+        others |= {"two quartets": [*apart, (fold, 1)], "two quartets, too,": [*apart, (rest, 1)]}
+        apart += [(fold, -1), (rest, -1)]
+    count = ("two", "three", "four")[pairs - PAIR]
+    alike = {f"{count} imaginary pairs": [*apart, *imaginary], f"{count} real pairs": [*apart, *real]}
+    return tuple((alike | others).items())
+
+
+def numbered(found: Sequence[FactorInLetters], naming: Naming) -> Iterator[FactorInLetters]:
+    """Yield what is said with names that nothing else has: ``omega_p1`` is the lowest of several."""
+    every = [(f"{f.name}_{each.kind[0]}", f) for each in found for f in each.formulas]
+    every.sort(key=lambda item: float(item[1].roots[0].size().mid()))
+    stems, names = [stem for stem, _ in every], dict[int, str]()
+    for i, (stem, formula) in enumerate(every):
+        count = stems[:i].count(stem) + 1 if stems.count(stem) > 1 else ""
+        (names[id(formula)],) = naming.take(f"{stem}{count}")
+    for each in found:
+        yield replace(each, formulas=tuple(replace(f, name=names[id(f)]) for f in each.formulas))

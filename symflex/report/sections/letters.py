@@ -1,0 +1,39 @@
+"""What a person reads off the formulas of a model, in letters: natural frequencies and kinds of roots."""
+
+from __future__ import annotations
+
+from symflex.errors import SymflexError
+from symflex.expressions import Expression, Name
+from symflex.letters.frequency_equation import roots_in_letters
+from symflex.letters.roots import FactorInLetters
+from symflex.print.latex.equation import model_labels
+from symflex.report.document import Block, ChapterPart, Code, Run, Section, labelled, parted, text
+from symflex.report.sections.formulas import ratio
+from symflex.report.sections.roots import decimal
+from symflex.report.study import Study, attempt
+
+
+def letter_section(study: Study) -> ChapterPart | None:
+    """Return what can be said in letters of every transfer function, nothing of models without letters."""
+    derived = attempt(lambda: [*zip(study.tfs, study.bounds, strict=True)])
+    pairs = [] if isinstance(derived, SymflexError) else derived
+    maps, labels, sections = {x.tf: x for x in study.maps}, model_labels(study.model), list[Section]()
+    for i, (tf, bound) in enumerate(pairs, start=1):
+        found = roots_in_letters(tf, bound, maps[tf.name]) if tf.name in maps else ()
+        if blocks := tuple(_factor(each, each.factor, labels) for each in found if each.factor):
+            sections.append(Section(tf.name, blocks, f"{study.stem}-letters-{i}", ratio(tf)))
+    return ChapterPart("In letters", tuple(parted(sections)), {}) if sections else None
+
+
+def _factor(factor: FactorInLetters, zero: Expression, labels: dict[str, str]) -> Block:
+    """Return a paragraph: what the roots of a factor are, and under which conditions."""
+    runs: list[Run] = [f"{factor.kind.capitalize()}: ", labelled(zero, labels), " = 0. "]
+    for formula in factor.formulas:
+        value = "" if formula.value is None else f" = {decimal(formula.value)} {formula.unit}".rstrip()
+        runs += [
+            labelled(Name(formula.name), labels),
+            " = ",
+            labelled(formula.expression, labels),
+            f"{value}. ",
+        ]
+    return text(*runs, *(run for line in factor.more() for run in (Code(line), ". ")))

@@ -1,0 +1,168 @@
+"""Roots in letters: formulas as books print them, kinds of roots against numpy, refusals."""
+
+import re
+from random import Random
+
+import numpy as np
+import sympy
+
+from symflex import pipeline
+from symflex.expressions import format_expression
+from symflex.letters.frequency_equation import roots_in_letters
+from symflex.letters.roots import FactorInLetters, letters_text
+
+
+def part(name: str, kind: str, ends: str, **values: str) -> str:
+    """Return a line for an element: a node, or two of them."""
+    nodes = ends.split()
+    where = f'at = "{ends}"' if len(nodes) == 1 else f"between = {nodes}".replace("'", '"')
+    given = "".join(f', {key} = "{value}"' for key, value in values.items())
+    return f'elements.{name} = {{ type = "{kind}", {where}{given} }}\n'
+
+
+PUSH = 'inputs.F = { force = "x" }\noutputs.X = "x"\n'
+TURN = 'inputs.T = { torque = "p" }\noutputs.P = "p"\n'
+HELD = part("a", "mass", "x", m="m") + part("c", "spring", "x ground", k="k") + PUSH
+CHAIN = part("a", "mass", "x", m="m_1") + part("b", "mass", "y", m="m_2") + part("c", "spring", "x y", k="k")
+SHAFT = part("a", "inertia", "p", J="J_1") + part("b", "inertia", "q", J="J_2") + TURN
+SHAFT += part("c", "torsion_spring", "p q", k="k")
+SERIES = part("r", "resistor", "a b", R="R") + part("l", "inductor", "b c", L="L")
+SERIES += part("k", "capacitor", "c ground", C="C") + 'inputs.v = { voltage = "a" }\noutputs.Y = "c"\n'
+PARALLEL = part("r", "resistor", "a ground", R="R") + part("l", "inductor", "a ground", L="L")
+PARALLEL += part("k", "capacitor", "a ground", C="C") + 'inputs.i = { current = "a" }\noutputs.Y = "a"\n'
+CAR = part("a", "mass", "x", m="m_s") + part("b", "mass", "u", m="m_u") + part("c", "spring", "x u", k="k_s")
+CAR += part("d", "spring", "u ground", k="k_t")
+SCREW = part("a", "inertia", "p", J="J") + part("c", "torsion_spring", "p q", k="k_t") + TURN
+SCREW += part("b", "mass", "x", m="m")
+SCREW += 'elements.d = { type = "transformer", from = "q", to = "x", ratio = "r" }\n'
+SPEAKER = part("a", "mass", "x", m="M") + part("c", "spring", "x ground", k="1/C")
+SPEAKER += part("d", "damper", "x ground", b="R_m") + 'inputs.u = { voltage = "v" }\noutputs.X = "x"\n'
+SPEAKER += 'elements.e = { type = "voice_coil", terminals = ["v", "ground"], mover = "x", '
+SPEAKER += 'k_f = "B", R = "R_e", L = 0 }\n'
+CART = (
+    'inputs.F = {}\n[equations]\nunknowns = ["x", "a"]\n'
+    'equations = ["(M + m)*s^2*x + m*l*s^2*a = F", "s^2*x + l*s^2*a - g*a = 0"]\n[outputs]\nX = "x"\n'
+)
+NECK = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="rho*c^2*S^2/V") + PUSH
+TUBE = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="2*rho*g*S") + PUSH
+SIGNAL = 'inputs.u = {{}}\noutputs.y = "{}"\n'
+BOOKS = (
+    # parameters, model, name, and what books print
+    ("m_1 m_2 k", CHAIN + PUSH, "omega_z", "sqrt(k/m_2)"),  # antiresonance; Den Hartog's absorber
+    ("m_1 m_2 k", CHAIN + PUSH, "omega_p", "sqrt(k*(m_1 + m_2)/(m_1*m_2))"),
+    ("J_1 J_2 k", SHAFT, "omega_p", "sqrt(k*(J_1 + J_2)/(J_1*J_2))"),  # drive train
+    ("J_1 J_2 k", SHAFT, "omega_z", "sqrt(k/J_2)"),
+    ("m b k", HELD + part("d", "damper", "x ground", b="b"), "omega_p", "sqrt(k/m)"),
+    ("m b k", HELD + part("d", "damper", "x ground", b="b"), "zeta_p", "b/(2*sqrt(k*m))"),
+    ("R L C", SERIES, "omega_p", "1/sqrt(L*C)"),
+    ("R L C", SERIES, "zeta_p", "R/2*sqrt(C/L)"),
+    ("R L C", SERIES, "Q_p", "sqrt(L/C)/R"),
+    ("R L C", PARALLEL, "Q_p", "R*sqrt(C/L)"),
+    ("m_s m_u k_s k_t", CAR + PUSH, "omega_z", "sqrt((k_s + k_t)/m_u)"),  # wheel hop
+    ("J m k_t r", SCREW, "omega_z", "sqrt(k_t/(r**2*m))"),  # ball screw, motor held
+    ("M C R_m R_e B", SPEAKER, "omega_p", "1/sqrt(M*C)"),  # Small 1972, omega_s and Q_ts
+    ("M C R_m R_e B", SPEAKER, "Q_p", "sqrt(M/C)/(R_m + B**2/R_e)"),
+    ("M m l g", CART, "sigma_p", "sqrt((M + m)*g/(M*l))"),  # pendulum on a cart
+    ("M m l g", CART, "sigma_z", "sqrt(g/l)"),
+    ("rho S L c V", NECK, "omega_p", "c*sqrt(S/(V*L))"),  # Helmholtz resonance
+    ("rho S L g", TUBE, "omega_p", "sqrt(2*g/L)"),  # water in a U tube
+    ("a b T", SIGNAL.format("u*(a*s + b)/(s^2*T)"), "tau_z", "a/b"),
+    ("a b", SIGNAL.format("u/(a*s - b)"), "s_p", "b/a"),
+)
+
+
+def said_of(parameters: str, text: str, seed: int = 3) -> tuple[list[FactorInLetters], dict[str, float]]:
+    """Return what is said of the first function of a model whose parameters have random values."""
+    draw = Random(seed)
+    values = {name: draw.randint(1, 60) / 8 for name in parameters.split()}
+    given = ", ".join(f"{name} = {value}" for name, value in values.items())
+    (tf,) = pipeline.derive_all(pipeline.loads(f"symflex = 1\nparameters = {{ {given} }}\n{text}"))
+    bound = pipeline.bind(tf)
+    return [*roots_in_letters(tf, bound, pipeline.roots(bound))], values
+
+
+def test_formulas_are_those_of_books() -> None:
+    wrong = []
+    for parameters, text, name, book in BOOKS:
+        found, _ = said_of(parameters, text)
+        said = {f.name: format_expression(f.expression) for each in found for f in each.formulas}
+        letters = {n: sympy.Symbol(n, positive=True) for n in parameters.split()}
+        ours, theirs = (sympy.sympify(e.replace("^", "**"), letters) for e in (said.get(name, "0"), book))
+        if sympy.simplify(ours - theirs) != 0:
+            wrong.append((name, book, said))
+    assert not wrong
+
+
+def kind_of(polynomial: np.ndarray) -> dict[str, int]:
+    """Return how many pairs of roots of an even polynomial are imaginary, real, or half a quartet."""
+    squares = np.roots(polynomial)  # of z = s^2
+    is_real = abs(squares.imag) < 1e-7 * abs(squares)
+    return {
+        "imaginary": int((is_real & (squares.real < 0)).sum()),
+        "real": int((is_real & (squares.real > 0)).sum()),
+        "quartet": int((~is_real).sum()) // 2,
+    }
+
+
+NUMBERS = {"a": 1, "an": 1, "two": 2, "three": 3, "four": 4}
+
+
+def counts_in(words: str) -> dict[str, int]:
+    """Return the same of what is said: ``a quartet and two imaginary pairs``."""
+    counts = dict.fromkeys(("imaginary", "real", "quartet"), 0)
+    for match in re.finditer(r"(an?|two|three|four) (imaginary|real|quartet)", words):
+        counts[match[2]] += NUMBERS[match[1]]
+    return counts
+
+
+def test_kinds_of_roots_of_even_polynomials_are_those_numpy_finds() -> None:
+    """Coefficients of both signs; every condition that holds says what numpy finds, and most are met."""
+    held, wrong, draws = 0, [], [(pairs, seed) for pairs in (1, 2, 3, 4) for seed in range(12)]
+    for pairs, seed in draws:
+        names, signs = "abcde"[: pairs + 1], Random(seed)
+        chosen = [signs.choice("++-") for _ in names]
+        text = "".join(f"{sign}{n}*s^{2 * i}" for i, (sign, n) in enumerate(zip(chosen, names, strict=True)))
+        found, values = said_of(" ".join(names), SIGNAL.format(f"u*({text.lstrip('+')})/s^{2 * pairs}"), seed)
+        numbers = [values[n] * (1 if sign == "+" else -1) for sign, n in zip(chosen, names, strict=True)]
+        true = [kind.words for each in found if each.kind == "zeros" for kind in each.kinds if kind.holds]
+        held += bool(true)
+        wrong += [(text, words) for words in true if counts_in(words) != kind_of(np.array(numbers[::-1]))]
+    assert not wrong
+    assert held > len(draws) // 2
+
+
+def test_a_condition_says_where_a_pair_becomes_real() -> None:
+    said = letters_text(said_of("m b k", HELD + part("d", "damper", "x ground", b="b"))[0], 200)
+    assert "a complex pair if 4*m*k > b^2" in said
+    assert "two real roots if b^2 > 4*m*k" in said
+
+
+def test_the_tip_of_the_bending_beam_has_real_zeros_for_a_long_overhang() -> None:
+    """Eppinger and Seering's lumped beam: 2 J + 2 c^2 m_2 + c l m_2 < 2 c h m_2 + h l m_2."""
+    model = pipeline.load("derivations/eppinger1988/lumped_bending_beam.toml")
+    (tf,) = pipeline.derive_all(model, [("X_tip", "F")])
+    bound = pipeline.bind(tf)
+    found = roots_in_letters(tf, bound, pipeline.roots(bound))
+    (real,) = (kind for each in found for kind in each.kinds if kind.words == "a real pair")
+    names = sympy.symbols("J c h l m_2", positive=True)
+    letters = {str(n): n for n in names}
+    left, right = (
+        sympy.sympify(format_expression(e).replace("^", "**"), letters) for e in real.inequalities[0].sides
+    )
+    j, c, h, length, m = names
+    assert real.holds
+    theirs = 2 * c * h * m + h * length * m - (2 * j + 2 * c**2 * m + c * length * m)
+    assert sympy.expand(left - right - theirs) == 0
+
+
+def test_what_has_no_short_letters_says_so() -> None:
+    found, _ = said_of("a b c d", SIGNAL.format("u/(a*s^3 + b*s^2 + c*s + d)"))
+    assert [each.note for each in found] == ["a factor of degree 3 in s has no short formula in letters"]
+    found, _ = said_of("", SIGNAL.format("u/(s + 1)"))
+    assert [each.note for each in found] == ["no factor has letters"]
+
+
+def test_a_square_of_a_difference_stays_below_its_root() -> None:
+    """omega is abs(a - b), whichever is larger."""
+    (zeros, *_), _ = said_of("a b", SIGNAL.format("u*(s^2 + (a - b)^2)/s^3"))
+    assert str(zeros.formulas[0]) == "omega_z = sqrt((a - b)^2)"
