@@ -124,6 +124,12 @@ class DeriveOptions:
     )
     as_json: bool = option(False, "--json", help="Same as --format json.")
     digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of the form zpk.")
+    limits: bool = option(
+        False, "--limits", help="Print leading terms for s -> 0 and s -> infinity, in letters, instead."
+    )
+    dimensionless: bool = option(
+        False, "--dimensionless", help="Print functions in as few dimensionless groups as there are."
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -17,6 +17,8 @@ from symflex.api.toolboxes import Toolboxes, refuse_attribute
 from symflex.errors import Diagnostic, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
+from symflex.letters.groups import dimensionless_of
+from symflex.letters.limits import limits_of
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
 
     from symflex import transfer as transfer_room
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.letters.limits import InLetters
     from symflex.model import Model
 
 
@@ -241,6 +244,32 @@ class TransferFunction(_Derived):
             SF902 for an unknown parameter.
         """
         return BoundTransferFunction(pipeline.bind(self.exact, values))
+
+    def limits(self) -> InLetters:
+        r"""Return the leading terms for s -> 0 and s -> infinity: what ``symflex derive --limits`` prints.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\nparameters.T = "2 s"\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"')
+        >>> limits = loop.transfer_function("y", "u").limits()
+        >>> limits.expr("s -> 0"), limits.expr("s -> infinity"), limits.row("both meet at").value
+        (1, 1/(T*s), 0.5)
+        """
+        return limits_of(self.exact)
+
+    def dimensionless(self) -> InLetters:
+        r"""Return the function in groups without dimension: what ``symflex derive --dimensionless`` prints.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\nparameters.T = "2 s"\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"')
+        >>> groups = loop.transfer_function("y", "u").dimensionless()
+        >>> groups.expr("y/u"), groups.expr("S"), groups.expr("scale")
+        (1/(S + 1), T*s, 1)
+        """
+        return dimensionless_of(self.exact)
 
     def state_space(self, *, minimal: bool = False) -> StateSpace:
         """Return state equations of the model's network with SymPy matrices.

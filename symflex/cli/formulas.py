@@ -136,6 +136,8 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print, with_shared_denominators
 
+    if given.limits or given.dimensionless:
+        return _read_off(spec, given)
     if given.width is not None and (given.as_json or given.format != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
     column = None
@@ -177,6 +179,28 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
 
         room = terminal_width()
         say("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
+    return 0
+
+
+def _read_off(spec: Specification, given: DeriveOptions) -> int:
+    """Print what can be read off formulas in place of them."""
+    from symflex import pipeline
+    from symflex.letters.groups import dimensionless_of
+    from symflex.letters.limits import limits_of
+
+    if given.form or given.width or given.representation != "auto" or (given.limits and given.dimensionless):
+        message = "--limits and --dimensionless exclude each other, --form, --width and --representation"
+        raise UsageError(Diagnostic("SF902", message))
+    model = spec.load()
+    derived, _ = pipeline.derive_as(model, pipeline.pick_pairs(model, given.tfs))
+    found = [(limits_of if given.limits else dimensionless_of)(tf) for tf in derived]
+    if given.as_json or given.format == "json":
+        schema = "symflex.limits/1" if given.limits else "symflex.dimensionless/1"
+        emit_json({"schema": schema, "transfer_functions": [reading.to_json_dict() for reading in found]})
+    elif given.format == "latex":
+        say("\n\n".join(reading.latex() for reading in found))
+    else:
+        say("\n".join(reading.text(terminal_width()) for reading in found).rstrip("\n"))
     return 0
 
 

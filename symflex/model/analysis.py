@@ -23,6 +23,7 @@ from symflex.expressions import (
     names,
     names_among,
     nodes,
+    parse,
     product_of,
 )
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
-ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print")
+ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc")
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
@@ -58,12 +59,15 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
     end = _frequency(reader, data_end.value) if data_end else None
     if data_end and end is not None and end <= 0:
         reader.note("SF227", "the data must end above 0 Hz", data_end.value.span, 'as in "1 kHz"')
+    prefer = section.get("prefer")
+    groups = reader.strings(prefer, "prefer of [analysis]") if prefer else ()
     return Analysis(
         _band(reader, band) if band else None,
         end,
         _count(reader, section, "modes", MODES_LIMIT),
         _count(reader, section, "digits", DIGITS_LIMIT),
         _where(reader, section, "[analysis]", "print") or (),
+        tuple(filter(None, (reader.read(parse, group) for group in groups or ()))),
     )
 
 
@@ -343,7 +347,9 @@ NUMBERS = Line({}, frozenset(), frozenset(), {})
 def in_own_names(analysis: Analysis) -> Published:
     """Return the names in which formulas are printed as lines of a formula, which are read alike."""
     lines = analysis.print
-    return Published(("", ""), product_of([Name(n, span=e.span) for n, e in lines]), lines)
+    return Published(
+        ("", ""), product_of([Name(n, span=e.span) for n, e in lines]), lines, product_of(analysis.prefer)
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -281,6 +281,7 @@ class Analysis:
     modes: int | None = None
     digits: int | None = None
     print: tuple[tuple[str, Expression], ...] = ()
+    prefer: tuple[Expression, ...] = ()  # groups without dimension
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,254 @@
+"""A transfer function in as few groups without dimension as there are.
+
+Input: a transfer function in expanded form; the model may prefer groups, in ``[analysis]``.
+Output: its scale, its groups with names and values, and what it is in them.
+
+    1/(m*s^2 + b*s + k)    1/k times 1/(S^2 + 2*zeta*S + 1)    S = s*sqrt(m/k), zeta = b/(2*sqrt(m*k))
+
+Theorem (Buckingham 1914): a function of n quantities, whose dimensions have rank r, is one of n - r groups.
+Here every change of scale counts that changes the terms of each factor alike, and both sides of the law of
+each wavenumber: changes of units, and others, as of E and 1/I. Differences of exponents of terms span all
+that none of them alters. Their echelon form has a group in each row: one quantity times powers of a base,
+which comes last: lengths and data of members, masses, stiffnesses. With these set to 1 the model has its
+groups in place of the others. What is shown is read again and compared with the function at its test points.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Final
+
+from flint import fmpq, fmpq_mat
+
+from symflex import expressions as e
+from symflex.algebra.ring import terms_of
+from symflex.balls import precision
+from symflex.errors import SymflexError, Text
+from symflex.expressions import Expression, Name, format_expression
+from symflex.letters.limits import InLetters, NotInLettersError, Row, opened, times, value_of, written_powers
+from symflex.model import ExactValue, with_numbers
+from symflex.print.forms import print_form
+from symflex.print.forms.naming import Naming
+from symflex.print.forms.printed import S
+from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.print.label import symbol
+from symflex.print.latex.equation import ratio_latex
+from symflex.quantities import Dimension, unit_of
+from symflex.transfer.enclose import principal_values
+from symflex.transfer.of_model import derive_all
+from symflex.transfer.probes import probes_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.algebra import Factored
+    from symflex.model.model import ModelParameter
+    from symflex.transfer import AnyTransferFunction, TransferFunction
+
+    Exponents = dict[str, Fraction]
+    """A product of powers of quantities."""
+
+ONE: Final = Fraction(1)
+BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")
+"""Units of what groups are ratios to, first choices first."""
+DAMPERS: Final = ("N*s/m", "N*m*s", "Ohm")
+"""Units of losses, which serve in no base as long as there is another choice."""
+NAMES: Final = {
+    "kg": ("mu", "mass ratio"),
+    "N/m": ("kappa", "stiffness ratio"),
+    "N*m": ("kappa", "stiffness ratio"),
+    "kg*m^2": ("nu", "inertia ratio"),
+    "m": ("lambda", "length ratio"),
+    "s": ("tau", "time ratio"),
+}
+"""Names of groups, by the unit of what is divided."""
+BITS, ENOUGH = 192, 64
+"""Precision at the test points, and how many bits of it have to agree."""
+
+
+def dimensionless_of(tf: AnyTransferFunction) -> InLetters:
+    """Return a transfer function in groups without dimension, its scale, and what these are.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { m = "2 kg", k = "8 N/m", b = "0.8 N*s/m" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> print(dimensionless_of(pipeline.derive_all(model)[0]).text())
+    X/F   receptance [m/N]
+    <BLANKLINE>
+      X/F = scale * 1/(S^2 + 2*zeta*S + 1)
+      scale = 1/k   0.125 m/N
+      S = sqrt(m/k)*s
+      zeta = b/(2*sqrt(m*k))   damping ratio, 0.1
+    <BLANKLINE>
+    """
+    try:
+        if not tf.is_reduced or tf.is_zero or tf.model.root is not None:
+            raise NotInLettersError("it is nested, zero, or has roots of s")
+        return _in_groups(tf)
+    except NotInLettersError as error:
+        reason = str(error)
+    except SymflexError as error:
+        reason = error.diagnostics[0].message
+    return InLetters(tf, (), (f"no groups: {reason}",))
+
+
+def _in_groups(tf: TransferFunction) -> InLetters:
+    parameters = {p.name: p for p in tf.parameters if not p.is_imaginary}
+    if missing := next((n for n, p in parameters.items() if not p.unit and p.value is None), None):
+        raise NotInLettersError(f"nothing says which unit '{missing}' has")
+    known = {S.name, *parameters}
+    wanted = {format_expression(x): _exponents(opened(tf, x)) or {} for x in tf.model.analysis.prefer}
+    wanted = {text: row for text, row in wanted.items() if set(row) <= known}  # else of another function
+    divisors = {name for row in wanted.values() for name in list(row)[1:]}
+    # The best ones for a base come last.
+    ordered = sorted(parameters.values(), key=lambda p: (p.name in divisors, _choice(tf, p)))
+    others = [*tf.kernels.wavenumbers, *(c.generator for c in tf.constants)]
+    invariant, scale = _invariants(tf)
+    echelon = _echelon(invariant, [*others, S.name, *(p.name for p in ordered)])
+    for pivot, row in echelon.items():
+        scale = times((scale, ONE), (row, -scale.get(pivot, Fraction(0))))
+    own = {pivot: row for pivot, row in echelon.items() if pivot not in others}
+    for text, row in wanted.items():
+        main = next(iter(row), "")
+        if main not in own or times((row, ONE), (own[main], -row[main])):
+            raise NotInLettersError(f"'{text}' in prefer of [analysis] is no group, or not with the others")
+    base = {name: ExactValue(ONE) for name in parameters if name not in own}
+    model = with_numbers(tf.model, own, base, in_kernels=True)
+    form = print_form(derive_all(model, [(tf.output.name, tf.input.name)])[0])
+    if form.laws:
+        raise NotInLettersError("its waves have no formula")
+    naming, rows, images = Naming.of(tf), list[Row](), dict[str, Expression]()
+    naming.keep(name for name, _ in form.where)
+    for main, row in own.items():
+        unit = _unit(parameters[main]) if main != S.name else ""
+        name, words = ("S", "") if main == S.name else NAMES.get(unit, ("Pi", ""))
+        is_ratio = unit in DAMPERS and {abs(n) for k, n in row.items() if k != main} == {ONE / 2}
+        (name,), words = naming.take("zeta" if is_ratio else name), "damping ratio" if is_ratio else words
+        halves: dict[Expression, Fraction] = {e.number(2): ONE} if is_ratio else {}
+        powers: dict[Expression, Fraction] = {Name(k): row[k] for k in (main, *parameters) if k in row}
+        group = written_powers(times((powers, ONE), (halves, -ONE)))
+        _check_unit(tf, row, group)
+        images[main] = written_powers(halves | {Name(name): ONE})
+        rows.append(_row(tf, name, group, words))
+    images |= {} if S.name in own else {S.name: e.number(1)}
+    lines = {name: e.substitute(line, images) for name, line in form.where}
+    plain = {name: line for name, line in lines.items() if isinstance(line, Name)}
+    lines = {name: e.substitute(line, plain) for name, line in lines.items() if name not in plain}
+    function = e.substitute(e.substitute(e.quotient(form.num, form.den), images), plain)
+    function = function if S.name in own else of_powers(*powers_of(function))
+    size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
+    head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
+    named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
+    found = InLetters(
+        tf, (head, *named, _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit), *rows)
+    )
+    _check(found)
+    return found
+
+
+def _row(tf: TransferFunction, name: str, expression: Expression, words: str = "") -> Row:
+    value = None if S in e.names(expression) else value_of(tf, expression)
+    return Row(name, " =", f"{symbol(name, {}).latex} &=", expression, words, value)
+
+
+def _unit(parameter: ModelParameter) -> str:
+    return str(unit_of(parameter.unit or "1").dimension)
+
+
+def _choice(tf: TransferFunction, parameter: ModelParameter) -> tuple[bool, int, int]:
+    """Return a key that is larger, the better a parameter serves as one of the base."""
+    waves = {name for x in tf.kernels.values for name in tf.ring.used_in(f for f, _ in x.factors)}
+    unit = _unit(parameter)
+    rank = BASE.index(unit) if unit in BASE else len(BASE) + (unit in DAMPERS) + 2 * (unit == "1")
+    return parameter.name in waves, -rank, -tf.model.parameters.index(parameter)
+
+
+def _echelon(rows: Sequence[Exponents], columns: Sequence[str]) -> dict[str, Exponents]:
+    """Return the reduced echelon form of rows, by the column in which each begins."""
+    zero, found = Fraction(0), {}
+    table = [[fmpq(*row.get(name, zero).as_integer_ratio()) for name in columns] for row in rows]
+    reduced, rank = fmpq_mat(table or [[fmpq(0)]]).rref()
+    for i in range(rank):
+        values = {name: reduced[i, j] for j, name in enumerate(columns)}
+        row = {name: Fraction(int(x.p), int(x.q)) for name, x in values.items() if x != 0}
+        found[next(iter(row))] = row
+    return found
+
+
+def _invariants(tf: TransferFunction) -> tuple[list[Exponents], Exponents]:
+    """Return products that no change of scale alters, and one that changes as the function does."""
+    rows: list[Exponents] = []
+    silent = {"pi", *(k.generator for k in tf.kernels.kernels)}
+
+    def powers(value: Factored) -> Exponents:
+        total: Exponents = {}
+        names = value.ring.names
+        for factor, exponent in value.factors:
+            monomials = [[(names[i], Fraction(n)) for i, n in m] for m, _ in terms_of(factor)]
+            first, *more = ({name: n for name, n in m if name not in silent} for m in monomials)
+            rows.extend(times((other, ONE), (first, -ONE)) for other in more)
+            total = times((total, ONE), (first, Fraction(exponent)))
+        return total
+
+    scale = powers(tf.ratio)
+    for law in tf.kernels.dispersions:
+        orders = {"wave": {0: 2}, "bending": {0: 4}, "pair": {0: 4, 2: 2}, "exponential": {}}.get(law.kind)
+        if orders is None:
+            raise NotInLettersError("its waves have no formula")
+        for i, n in orders.items():
+            own = powers(law.characteristic[i])
+            rows += [times(({w: Fraction(n)}, ONE), (own, -ONE)) for w in law.wavenumbers]
+    for k in tf.kernels.kernels:
+        rate = {k.wavenumber: ONE} if k.wavenumber else powers(k.dispersion.shift)
+        rows.append(times((rate, ONE), (powers(k.length), ONE)))
+    for constant in tf.constants:
+        inside = _exponents(constant.expression)
+        rows.append(times(({constant.generator: ONE}, ONE), (inside or {}, -ONE)))
+        used = [n.name for n in e.names(constant.expression) if isinstance(n, Name)]
+        rows += [{name: ONE} for name in used if inside is None]
+    return rows, scale
+
+
+def _exponents(expression: Expression) -> Exponents | None:
+    """Return a product as powers of names, None where it holds a sum or another function."""
+    parts: list[tuple[Exponents, Fraction]] = []
+    for base, n in powers_of(expression)[1].items():
+        inside = _exponents(base.argument) if isinstance(base, e.Call) and base.name == "sqrt" else None
+        if inside is None and not isinstance(base, Name):
+            return None
+        own = {base.name: Fraction(2)} if isinstance(base, Name) else inside or {}
+        parts.append((own, Fraction(n, 2)))
+    return times(*parts)
+
+
+def _check_unit(tf: TransferFunction, row: Exponents, group: Expression) -> None:
+    units = {p.name: unit_of(p.unit or "1").dimension for p in tf.parameters} | {S.name: Dimension(s=-ONE)}
+    total = prod((units[name] ** n for name, n in row.items()), start=Dimension())
+    if total != Dimension():
+        raise NotInLettersError(f"{format_expression(group)} would be one, and is in {total}")
+
+
+def _check(found: InLetters) -> None:
+    """Compare what is shown, read again, with the function at its test points."""
+    probes = probes_of(found.tf)
+    lines = {r.name: e.parse(Text.alone("<group>", format_expression(r.expression))) for r in found.rows}
+    term = e.product_of([lines["scale"], lines.pop(found.tf.name)])
+    for _ in lines:
+        term = e.substitute(term, lines)
+    chosen = range(len(probes.points))
+    with precision(BITS):
+        known = probes.numbers(chosen, BITS)
+        shown = principal_values(opened(found.tf, term), len(chosen), known.__getitem__)
+        pairs = [(x, y) for x, y in zip(shown, probes.values(BITS), strict=True) if x.is_finite()]
+    if not pairs or not all(x.overlaps(y) and x.rel_accuracy_bits() > ENOUGH for x, y in pairs):
+        raise NotInLettersError("what was found is not proved")

@@ -1,0 +1,488 @@
+"""What a transfer function is for s -> 0 and for s -> infinity, in letters.
+
+Input: a transfer function in expanded form.
+Output: its leading term at both ends, in words and with its value, and the frequency at which both meet.
+
+    1/(m*s^2 + b*s + k)    s -> 0: 1/k, static compliance    s -> infinity: 1/(m*s^2), mass line
+
+At s = 0 kernels are their Taylor series, exactly, in which powers of wavenumbers are powers of s. For large
+s > 0 one exponential outweighs all others in numerator and denominator, and a wavenumber is a root of what
+leads in its square or fourth power. Before a term is shown, its text is read again and divided into the
+function, in balls at points of the positive axis ever closer to that end: the quotient has to tend to 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from math import factorial, inf, prod, tau
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+
+from flint import acb, arb, fmpz
+
+from symflex import expressions as e
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring
+from symflex.algebra.dispersion import Kernel
+from symflex.algebra.factored import composed
+from symflex.algebra.ring import coefficients_of
+from symflex.balls import ball, precision
+from symflex.errors import SymflexError, Text
+from symflex.expressions import Expression, Number, format_expression, number, product_of
+from symflex.print.forms import print_form
+from symflex.print.forms.notation import reachable
+from symflex.print.forms.printed import S, in_roots
+from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.print.latex.equation import model_labels, ratio_latex
+from symflex.print.latex.expression import Writer
+from symflex.print.text import WIDTH, broken, hanging
+from symflex.quantities import Dimension, unit_of
+from symflex.transfer.enclose import enclosure, principal_values
+from symflex.transfer.lowest_terms import cancel
+from symflex.transfer.probes import probes_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import sympy
+    from flint import fmpz_mpoly
+
+    from symflex.transfer import AnyTransferFunction
+
+    Powers = dict[Expression, Fraction]
+    Lead = tuple[Factored, Fraction, Mapping[Any, int]]
+    """A value, in which wavenumbers stand for themselves, a power of s, and exponentials and oscillations."""
+
+ENDS: Final = ("0", "infinity")
+MINUS: Final = Number(Fraction(-1))
+NO_WAVES: Final[dict[str, Fraction]] = {}
+ORDERS: Final = (8, 16, 32)
+"""Powers of a wavenumber up to which kernels are expanded, one after the other."""
+STEPS: Final = (16, 32, 48)
+"""Binary orders of magnitude by which the points of a check lie beyond the scale of its parameters."""
+BITS: Final = 512
+CLOSE, WANING, NOTHING = 0.01, 0.75, 1e-30
+"""Differences: the last one at most, the part left at the next point, and what need not become smaller."""
+MOTIONS: Final = {"receptance": 0, "mobility": 1, "accelerance": 2}
+"""Powers of s in a quantity beside those of the displacement for a force."""
+EFFORTS: Final = {"dynamic stiffness": 0, "mechanical impedance": -1, "apparent mass": -2}
+"""The same beside those of the force for a displacement."""
+IN_SPRINGS: Final = {0: "spring line", -1: "damper line", -2: "mass line"}
+STATIC: Final = {0: "static gain", -1: "integrator", -2: "double integrator", 1: "differentiator"}
+RIGHT: Final = "s -> infinity on the positive axis; on s = j*omega only with losses"
+
+
+Base = TypeVar("Base")
+
+
+class NotInLettersError(Exception):
+    """A statement in letters is not had; the argument says why."""
+
+
+class Row(NamedTuple):
+    """A line of what is read off a formula."""
+
+    name: str
+    relation: str  # between name and expression, in a terminal
+    left: str  # both in LaTeX
+    expression: Expression
+    words: str = ""  # what a person calls it
+    value: float | None = None  # with the declared numbers, in SI units
+    unit: str = ""
+    power: Fraction | None = None  # of s, where there is nothing but that beside the value
+
+    @property
+    def comment(self) -> str:
+        """Words and value, as far as there are any."""
+        value = "" if self.value is None else f"{self.value:.6g} {self.unit}".removesuffix(" 1").rstrip()
+        return ", ".join(filter(None, (self.words, value)))
+
+
+@dataclass(frozen=True)
+class InLetters:
+    """What is read off a formula: lines, and what is said below them."""
+
+    tf: AnyTransferFunction
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
+
+    def row(self, name: str) -> Row | None:
+        """Return the line of a name."""
+        return next((row for row in self.rows if row.name == name), None)
+
+    def expr(self, name: str) -> sympy.Expr | None:
+        """Return what a line has, such as ``"s -> 0"`` or ``"scale"``, as SymPy; None without that line."""
+        from symflex.print.sympy import symbols_of, to_sympy  # a terminal does without SymPy
+
+        row = self.row(name)
+        return None if row is None else to_sympy(row.expression, symbols_of(self.tf.model))
+
+    def __str__(self) -> str:
+        return self.text()
+
+    @property
+    def where(self) -> list[Row]:
+        """Lines for the names of the model that occur."""
+        lines, writer = definitions_of(self.tf), Writer(model_labels(self.tf.model))
+        used = reachable([row.expression for row in self.rows], lines)
+        return [Row(f"where {name}", " =", f"{writer.label(name).latex} &=", line) for name, line in used]
+
+    def text(self, width: int = WIDTH) -> str:
+        """Return the lines for a terminal."""
+        tf, lines = self.tf, []
+        for row in (*self.rows, *self.where):
+            comment = f"   {row.comment}" if row.comment else ""
+            lines += hanging(f"  {row.name}{row.relation} ", row.expression, width, comment)
+        lines += [part for note in self.notes for part in broken(f"  {note}", width)]
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        return "\n".join([f"{tf.name}   {tf.quantity}{unit}", "", *lines, ""])
+
+    def latex(self) -> str:
+        """Return the lines as a display."""
+        writer = Writer(model_labels(self.tf.model))
+        rows = (f"  {row.left} {writer.piece(row.expression).markup}" for row in (*self.rows, *self.where))
+        lines = " \\\\\n".join(rows)
+        return f"\\begin{{align*}}\n{lines}\n\\end{{align*}}"
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return one entry of the JSON document."""
+        keys, rows = ("name", "is", "words", "value", "unit"), (*self.rows, *self.where)
+        values = [(r.name, format_expression(r.expression), r.words, r.value, r.unit) for r in rows]
+        lines = [dict(zip(keys, line, strict=True)) for line in values]
+        return {"tf": self.tf.name, "lines": lines, "notes": list(self.notes)}
+
+
+def limits_of(tf: AnyTransferFunction) -> InLetters:
+    """Return the leading terms of a transfer function at both ends, and where they meet.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { m = "2 kg", k = "8 N/m" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> print(limits_of(pipeline.derive_all(model)[0]).text())
+    X/F   receptance [m/N]
+    <BLANKLINE>
+      s -> 0:         1/k   static compliance, 0.125 m/N
+      s -> infinity:  1/(m*s^2)   mass line, -40 dB/decade, 0.5 m/(N*s^2)
+      both meet at:   sqrt(k/m)   0.31831 Hz, 2 rad/s
+    <BLANKLINE>
+    """
+    found: dict[str, tuple[Row, Powers]] = {}
+    notes = []
+    for end in ENDS:
+        try:
+            found[end] = _Finder(tf, end).limit()
+        except NotInLettersError as error:
+            notes.append(f"s -> {end}: no term in letters, {error}")
+        except SymflexError as error:
+            notes.append(f"s -> {end}: no term in letters, {error.diagnostics[0].message}")
+    rows = [row for row, _ in found.values()]
+    slopes = [row.power for row in rows if row.power is not None]
+    if len(slopes) == len(ENDS) and slopes[0] != slopes[1]:
+        between = slopes[0] - slopes[1]
+        powers = times((found[ENDS[1]][1], 1 / between), (found[ENDS[0]][1], -1 / between))
+        corner = written_powers({base: n for base, n in powers.items() if base != MINUS})
+        at = value_of(tf, corner)
+        if at or (at is None and not any(isinstance(n, e.Negative) for n in e.nodes(corner))):
+            said = f"{at / tau:.6g} Hz" if at else ""
+            rows.append(Row("both meet at", ":  ", r"\omega &=", corner, said, at, "rad/s"))
+    if ENDS[1] in found and tf.kernels.wavenumbers:
+        notes.append(RIGHT)
+    return InLetters(tf, tuple(rows), tuple(notes))
+
+
+@dataclass(frozen=True)
+class _Finder:
+    """Finds the leading term at one end."""
+
+    tf: Any  # a transfer function
+    end: str
+
+    @property
+    def _ring(self) -> Ring:
+        ring: Ring = self.tf.ratio.ring
+        return ring
+
+    @cached_property
+    def _laws(self) -> dict[str, tuple[Factored, int]]:
+        """What powers of wavenumbers are, and which powers."""
+        laws = self.tf.kernels.dispersions
+        if any(law.kind in ("pair", "general", "varying") for law in laws):
+            raise NotInLettersError("its waves are no roots of one term")
+        named = ((n, law.kind == "wave", law.characteristic[0]) for law in laws for n in law.wavenumbers)
+        return {name: (-c, 2) if is_wave else (c / 4, 4) for name, is_wave, c in named}
+
+    @cached_property
+    def _waves(self) -> dict[str, Fraction]:
+        """To which powers of s wavenumbers are proportional at this end."""
+        rates = {name: self._end(x)[1] / n for name, (x, n) in self._laws.items()}
+        delays = [self._end(k.dispersion.shift)[1] for k in self.tf.kernels.kernels if not k.wavenumber]
+        if any(rate <= 0 for rate in (*rates.values(), *delays)):
+            where = "vanish at s = 0, as on a foundation" if self.end == ENDS[0] else "grow with s"
+            raise NotInLettersError(f"it holds waves whose wavenumbers do not {where}")
+        return rates
+
+    def _end(self, value: Factored, waves: Mapping[str, Fraction] = NO_WAVES) -> tuple[Factored, Fraction]:
+        """Return what leads in a value, without its power of s, and this, in which wavenumbers count."""
+        ring = self._ring
+        total, power = Factored.number(ring, value.unit), Fraction(0)
+        for factor, exponent in value.factors:
+            leads: dict[Fraction, fmpz_mpoly] = {}
+            for (n, *powers), part in coefficients_of(
+                ring, factor, [0, *(ring.index[w] for w in waves)]
+            ).items():
+                own = n + sum((n * rate for n, rate in zip(powers, waves.values(), strict=True)), Fraction(0))
+                whole = prod((ring.generator(w) ** n for w, n in zip(waves, powers, strict=True)), start=part)
+                leads[own] = leads[own] + whole if own in leads else whole
+            best = (min if self.end == ENDS[0] else max)(leads)
+            total, power = total * Factored.polynomial(ring, leads[best]) ** exponent, power + best * exponent
+        return total, power
+
+    def limit(self) -> tuple[Row, Powers]:
+        """Return the leading term, checked, and what stands before the power of s."""
+        tf = self.tf
+        if not tf.is_reduced or tf.is_zero:
+            raise NotInLettersError("it is zero" if tf.is_reduced else "its formula is too long, and nested")
+        if any(p.is_imaginary for p in tf.model.parameters):
+            raise NotInLettersError("loss factors hold on s = j*omega alone")
+        value, power = Factored.number(self._ring, tf.ratio.unit), Fraction(0)
+        others: dict[Any, int] = {}
+        for factor, exponent in tf.ratio.factors:
+            lead = self._at_zero(factor) if self.end == ENDS[0] else self._far_out(factor)
+            value, power = value * lead[0] ** exponent, power + lead[1] * exponent
+            others |= {key: others.get(key, 0) + n * exponent for key, n in lead[2].items()}
+        growth = {key: n for key, n in others.items() if n and isinstance(key, Kernel)}
+        turns = {key: Fraction(n) for key, n in others.items() if n and isinstance(key, Expression)}
+        front, root, power = self._front(value), tf.model.root, power / self._order
+        leading = written_powers(front | turns | {S: power})
+        if growth:
+            leading = product_of([leading, e.Call("exp", self._phase(growth))])
+        if root is not None:
+            leading = e.substitute(leading, {LAPLACE: e.sum_of([product_of([root.slope, S]), root.shift])})
+        self._check(leading)
+        name, mark = f"s -> {self.end}", "0" if self.end == ENDS[0] else r"\infty"
+        amount = None if turns else value_of(tf, written_powers(front))
+        unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit else ""
+        own = None if growth or turns else power
+        slope = f"{20 * float(power):+.4g} dB/decade" if own else ""
+        words = ", ".join(filter(None, (self._words(power), slope)))
+        left = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
+        relation = ":".ljust(len(ENDS[1]) - len(self.end) + 2)
+        return Row(name, relation, left, leading, words, amount, unit, own), front
+
+    @property
+    def _order(self) -> int:
+        """Of the root that stands in place of s."""
+        return self.tf.model.root.order if self.tf.model.root else 1
+
+    def _at_zero(self, factor: fmpz_mpoly) -> Lead:
+        """Return the first term of a factor's power series."""
+        ring, laws, waves = self._ring, self._laws, self._waves
+        kernels = [k for k in self.tf.kernels.kernels if int(factor.degrees()[ring.index[k.generator]])]
+        slowest = min((waves.get(k.wavenumber, Fraction(1)) for k in kernels), default=inf)
+        for most in ORDERS:
+            series = {k.generator: self._series(k, most) for k in kernels}
+            whole, total = composed(Factored.polynomial(ring, factor), series), Factored.number(ring, 0)
+            parts = coefficients_of(ring, whole.numerator().expand(), [ring.index[name] for name in laws])
+            for powers, part in parts.items():
+                term = Factored.polynomial(ring, part)
+                for n, (name, (square, order)) in zip(powers, laws.items(), strict=True):
+                    term = term * square ** (n // order) * Factored.generator(ring, name) ** (n % order)
+                total = total + term
+            value, power = self._end(total / whole.denominator(), waves)
+            if not total.is_zero and power < slowest * (most + 1):
+                return value, power, {}
+        raise NotInLettersError("its power series at s = 0 is too long")
+
+    def _series(self, kernel: Kernel, most: int) -> Factored:
+        """Return the Taylor series of a kernel, up to a power of its argument."""
+        ring, wave = self._ring, kernel.wavenumber
+        argument = (Factored.generator(ring, wave) if wave else -kernel.dispersion.shift) * kernel.length
+        step = 1 if kernel.function == "exp" else 2
+        sign = -1 if kernel.function in ("cos", "sin") else 1
+        powers = range(int(kernel.function in ("sinh", "sin")), most + 1, step)
+        terms = (argument**i * Fraction(sign ** (i // 2), factorial(i)) for i in powers)
+        return sum(terms, start=Factored.number(ring, 0))
+
+    def _far_out(self, factor: fmpz_mpoly) -> Lead:
+        """Return what leads in a factor far out: cosh and sinh are half an exponential."""
+        ring, kernels = self._ring, self.tf.kernels.kernels
+        pairs = [(even, odd) for even, odd in self.tf.kernels.pairs if even.function == "cosh"]
+        own = ring.replaced(factor, {odd.generator: ring.generator(even.generator) for even, odd in pairs})
+        growing = [*(even for even, _ in pairs), *(k for k in kernels if k.function == "exp")]
+        parts = coefficients_of(ring, own, [ring.index[k.generator] for k in growing])
+        # A delay decays where a wave grows.
+        top = [
+            max(n) if k.wavenumber else min(n) for k, n in zip(growing, zip(*parts, strict=True), strict=True)
+        ]
+        if tuple(top) not in parts:
+            raise NotInLettersError("which of its exponentials is the largest depends on its parameters")
+        halves = sum(n for k, n in zip(growing, top, strict=True) if k.wavenumber)
+        value, power = self._end(Factored.polynomial(ring, parts[tuple(top)]) / 2**halves, self._waves)
+        others: dict[Any, int] = dict(zip(growing, top, strict=True))
+        turning = [k for k in kernels if k.function in ("cos", "sin") and value.depends_on(k.generator)]
+        if turning:
+            oscillation, below = value.numerator().expand(), value.denominator()
+            parts = coefficients_of(ring, oscillation, [ring.index[k.generator] for k in turning])
+            value = Factored.polynomial(ring, next(iter(parts.values())))
+            terms = []
+            for powers, part in parts.items():
+                if not (ratio := Factored.polynomial(ring, part) / value).is_constant:
+                    raise NotInLettersError("several oscillations lead together")
+                turns = (
+                    e.power(e.Call(k.function, self._phase({k: 1})), n)
+                    for k, n in zip(turning, powers, strict=True)
+                )
+                terms.append(product_of([number(ratio.unit), *turns]))
+            value, others = value / below, others | {e.sum_of(terms): 1}
+        return value, power, others
+
+    def _front(self, value: Factored) -> Powers:
+        """Return a value, wavenumbers without their powers of s, as powers."""
+        parts = []
+        for name, (square, order) in self._laws.items():
+            n = value.exponent_of(self._ring.generator(name))
+            value = value / Factored.generator(self._ring, name) ** n
+            parts.append((self._powers(self._end(square)[0]), Fraction(n, order)))
+            if value.depends_on(name):
+                raise NotInLettersError("several terms lead together")
+        value, _ = cancel(value.numerator(), value.denominator(), radicals=self.tf.radicals)
+        return times((self._powers(value), Fraction(1)), *parts)
+
+    def _phase(self, growth: Mapping[Kernel, int]) -> Expression:
+        """Return the sum of arguments of kernels, each so many times, as a function of s."""
+        terms, s = [], self._ring.generator(LAPLACE)
+        for k, n in growth.items():
+            square, order = self._laws[k.wavenumber] if k.wavenumber else (k.dispersion.shift, 1)
+            of_s = square.exponent_of(s)
+            wave = self._powers(square.filter(lambda f: f != s) * square.unit) | {
+                S: Fraction(of_s, self._order)
+            }
+            length = self._powers(k.length * abs(n))
+            size = written_powers(times((length, Fraction(1)), (wave, Fraction(1, order))))
+            terms.append(size if n > 0 and k.wavenumber else e.negative(size))
+        return e.sum_of(terms)
+
+    def _powers(self, value: Factored) -> Powers:
+        """Return a function without kernels, as it prints shortest, as powers; its sign is one of -1."""
+        kept = Ring(tuple(n for n in self._ring.names if n not in self.tf.kernels.generators))
+        images = [*kept.context.gens(), *[kept.constant(0)] * (len(self._ring.names) - len(kept.names))]
+        own = [(Factored.polynomial(kept, f.compose(*images, ctx=kept.context)), n) for f, n in value.factors]
+        reduced = prod((f**n for f, n in own), start=Factored.number(kept, value.unit))
+        plain = replace(self.tf, reduced=reduced, closed=None, hidden=(), kernels=NO_KERNELS, parts=None)
+        form = print_form(plain)
+        front, powers = powers_of(e.quotient(form.num, form.den))
+        found = {base: Fraction(n) for base, n in powers.items()} | (
+            {MINUS: Fraction(1)} if front < 0 else {}
+        )
+        for side, sign in ((front.numerator, 1), (front.denominator, -1)):
+            found |= {number(int(p)): Fraction(sign * int(n)) for p, n in fmpz.factor(fmpz(abs(side)))}
+        return found
+
+    def _words(self, power: Fraction) -> str:
+        """Return what a person calls a power of s in the quantity."""
+        quantity, is_static, n = self.tf.quantity, self.end == ENDS[0], int(power)
+        if n != power:
+            return ""
+        if quantity in MOTIONS or quantity in EFFORTS:
+            what = "compliance" if quantity in MOTIONS else "stiffness"
+            n = n - MOTIONS[quantity] if quantity in MOTIONS else EFFORTS[quantity] - n
+            return f"static {what}" if is_static and not power and not n else IN_SPRINGS.get(n, "")
+        return (STATIC if is_static else {0: "feedthrough"}).get(n, "")
+
+    def _check(self, leading: Expression) -> None:
+        """Compare the function with the term, read again, ever closer to the end."""
+        text, sign = format_expression(leading), -1 if self.end == ENDS[0] else 1
+        term = opened(self.tf, e.parse(Text.alone("<limit>", text)))
+        root = self.tf.model.root
+        for setting, s in dict(probes_of(self.tf).points).items():
+            with precision(BITS):
+                scale = abs(acb(*map(ball, s)))
+                points = [acb(scale * arb(2) ** (sign * step)) for step in STEPS]
+                known = {name: [acb(enclosure(v)())] * len(points) for name, v in setting.values.items()}
+                known |= {"pi": [acb(arb.pi())] * len(points), LAPLACE: points}
+                place = S if root is None else in_roots(S, root)
+                places, printed = (principal_values(x, len(points), known.__getitem__) for x in (place, term))
+                values = map(setting.evaluate(None, BITS), places)
+                errors = [float(abs(v / p - 1).upper()) for v, p in zip(values, printed, strict=True)]
+            is_waning = all(b < WANING * a or b < NOTHING for a, b in pairwise(errors))
+            if not (is_waning and errors[-1] < CLOSE):
+                raise NotInLettersError(f"{text} seems to lead; that is not proved")
+
+
+def definitions_of(tf: AnyTransferFunction) -> list[tuple[str, Expression]]:
+    """Return what names of a model stand for, its own and those it prints."""
+    return [*((d.name, d.expression) for d in tf.model.definitions), *tf.model.analysis.print]
+
+
+def opened(tf: AnyTransferFunction, expression: Expression) -> Expression:
+    """Return an expression without the names that a model defines."""
+    for _ in (lines := definitions_of(tf)):
+        expression = e.substitute(expression, dict(lines))
+    return expression
+
+
+def value_of(tf: AnyTransferFunction, expression: Expression) -> float | None:
+    """Return the value with the declared numbers, None where one is missing."""
+    expression = opened(tf, expression)
+    declared = {p.name: p.value for p in tf.model.parameters}
+    with precision(BITS):
+        known = {n: [acb(enclosure(v)())] for n, v in declared.items() if v is not None}
+        known["pi"] = [acb(arb.pi())]
+        if any(n.name in declared and n.name not in known for n in e.names(expression)):
+            return None
+        (value,) = principal_values(expression, 1, known.__getitem__)
+    return float(value.real.mid())
+
+
+def times(*parts: tuple[dict[Base, Fraction], Fraction]) -> dict[Base, Fraction]:
+    """Return the product of powers of products."""
+    total: dict[Base, Fraction] = {}
+    for powers, exponent in parts:
+        total |= {base: total.get(base, Fraction(0)) + n * exponent for base, n in powers.items()}
+    return {base: n for base, n in total.items() if n}
+
+
+def written_powers(powers: Powers) -> Expression:
+    """Return powers as one fraction, equal roots as one, and the power of s apart.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name
+    >>> half, k = Fraction(1, 2), Name("k")
+    >>> format_expression(written_powers({number(3): half, k: half, Name("m"): -3 * half, S: -3 * half}))
+    'sqrt(3*k/m)/(m*s^(3/2))'
+    """
+    groups: dict[int, dict[Expression, int]] = {}
+    for base, n in powers.items():
+        whole = int(n) if base != S else 0
+        for share in (Fraction(whole), n - whole) if base != S else ():
+            if share:
+                groups.setdefault(share.denominator, {})[base] = share.numerator
+    factors = []
+    for root, own in sorted(groups.items()):
+        # 1/sqrt(x) rather than sqrt(1/x)
+        sign = 1 if any(n > 0 for n in own.values()) else -1
+        front = prod(
+            (b.value ** (n * sign) for b, n in own.items() if isinstance(b, Number)), start=Fraction(1)
+        )
+        inside = of_powers(front, {b: n * sign for b, n in own.items() if not isinstance(b, Number)})
+        factors.append((_power(inside, Fraction(1, root)), sign))
+    if of_s := powers.get(S):
+        factors.append((_power(S, abs(of_s)), 1 if of_s > 0 else -1))
+    return of_powers(*powers_of(product_of([f if n > 0 else e.quotient(number(1), f) for f, n in factors])))
+
+
+def _power(base: Expression, exponent: Fraction) -> Expression:
+    """Return a positive power as one writes it: ``sqrt(s)``, ``s^2``, ``s^(3/2)``."""
+    if exponent == Fraction(1, 2):
+        return e.Call("sqrt", base)
+    return e.power(base, e.quotient(number(exponent.numerator), number(exponent.denominator)))

@@ -1,0 +1,201 @@
+"""Leading terms at both ends against formulas by hand: statics, and waves that nothing sends back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import mpmath
+import pytest
+import sympy
+
+import symflex
+
+if TYPE_CHECKING:
+    from symflex.letters.limits import InLetters
+
+PARAMETERS = """
+symflex = 1
+[parameters]
+m = "2 kg"
+M = "3 kg"
+k = "8 N/m"
+K = "5 N/m"
+b = "0.3 N*s/m"
+E = "70 GPa"
+I = "2e-9 m^4"
+rho = "2700 kg/m^3"
+A = "1e-4 m^2"
+l = "0.5 m"
+N = "100 N"
+R = "10 Ohm"
+L = "2 mH"
+C = "3 uF"
+T = "0.1 s"
+tau = "2 s"
+c = "3"
+"""
+MASS = '[elements]\nbody = { type = "mass", at = "x", m = "m" }\n'
+SPRING = 'wall = { type = "spring", between = ["x", "ground"], k = "k" }\n'
+DAMPER = 'loss = { type = "damper", between = ["x", "ground"], b = "b" }\n'
+TWO = (
+    MASS + 'other = { type = "mass", at = "y", m = "M" }\n'
+    'link = { type = "spring", between = ["x", "y"], k = "K" }\n'
+)
+FORCE = '[inputs]\nF = { force = "x" }\n[outputs]\n'
+BEAM = (
+    '[elements]\narm = { type = "beam", between = ["a", "z"], '
+    'E = "E", I = "I", rho = "rho", A = "A", l = "l" }\n'
+)
+FIXED = 'end = { type = "fixed", at = "a" }\n'
+ROD = '[elements]\nbar = { type = "rod", between = ["a", "z"], E = "E", rho = "rho", A = "A", l = "l" }\n'
+STRING = (
+    "[elements]\n"
+    'one = { type = "string", between = ["a", "x"], N = "N", rho = "rho", A = "A", l = "l/4" }\n'
+    'two = { type = "string", between = ["x", "z"], N = "N", rho = "rho", A = "A", l = "3*l/4" }\n'
+    'left = { type = "fixed", at = "a" }\nright = { type = "fixed", at = "z" }\n'
+)
+PULL = '[inputs]\nF = { force = "z" }\n[outputs]\n'
+SIGNALS = "[inputs]\nu = {}\n[signals]\n"
+RLC = (
+    '[elements]\nr = { type = "resistor", between = ["p", "q"], R = "R" }\n'
+    'i = { type = "inductor", between = ["q", "o"], L = "L" }\n'
+    'c = { type = "capacitor", between = ["o", "ground"], C = "C" }\n'
+    '[inputs]\nU = { voltage = "p" }\n[outputs]\n'
+)
+TIP = "sqrt(2)*(E*I)**Rational(-1, 4)*(rho*A)**Rational(-3, 4)"
+"""Displacement of the end of a half-infinite beam under a force there, times s^(3/2)."""
+
+CASES = {
+    "oscillator": (MASS + SPRING + DAMPER + FORCE + 'y = "x"', "1/k", "1/(m*s**2)"),
+    "oscillator's mobility": (MASS + SPRING + DAMPER + FORCE + 'y = "s*x"', "s/k", "1/(m*s)"),
+    "free body": (MASS + FORCE + 'y = "x"', "1/(m*s**2)", "1/(m*s**2)"),
+    "damped body": (MASS + DAMPER + FORCE + 'y = "x"', "1/(b*s)", "1/(m*s**2)"),
+    "two masses": (TWO + FORCE + 'y = "y"', "1/((m + M)*s**2)", "K/(m*M*s**4)"),
+    "two masses, one held": (TWO + SPRING + FORCE + 'y = "y"', "1/k", "K/(m*M*s**4)"),
+    "low pass": (RLC + 'y = "o"', "1", "1/(L*C*s**2)"),
+    "current": (RLC + 'y = "(p - q)/R"', "C*s", "1/(L*s)"),
+    "rod": (ROD + FIXED + PULL + 'y = "z"', "l/(E*A)", "1/(A*sqrt(E*rho)*s)"),
+    "free rod": (ROD + PULL + 'y = "z"', "1/(rho*A*l*s**2)", "1/(A*sqrt(E*rho)*s)"),
+    "through a rod": (
+        ROD + PULL + 'y = "a"',
+        "1/(rho*A*l*s**2)",
+        "2*exp(-s*l*sqrt(rho/E))/(A*sqrt(E*rho)*s)",
+    ),
+    "cantilever": (BEAM + FIXED + PULL + 'y = "z.y"', "l**3/(3*E*I)", TIP + "/s**Rational(3, 2)"),
+    "cantilever's speed": (BEAM + FIXED + PULL + 'y = "s*z.y"', "s*l**3/(3*E*I)", TIP + "/sqrt(s)"),
+    "cantilever's angle": (
+        BEAM + FIXED + PULL + 'y = "z.theta"',
+        "l**2/(2*E*I)",
+        "1/(sqrt(E*I*rho*A)*s)",
+    ),
+    "loaded cantilever": (
+        BEAM + FIXED + 'load = { type = "mass", at = "z", m = "m" }\n' + PULL + 'y = "z.y"',
+        "l**3/(3*E*I)",
+        "1/(m*s**2)",
+    ),
+    "free beam": (BEAM + PULL + 'y = "z.y"', "4/(rho*A*l*s**2)", TIP + "/s**Rational(3, 2)"),
+    "pinned and free": (
+        BEAM + FIXED.replace("fixed", "pin") + PULL + 'y = "z.y"',
+        "3/(rho*A*l*s**2)",
+        TIP + "/s**Rational(3, 2)",
+    ),
+    "string": (STRING + FORCE + 'y = "x"', "3*l/(16*N)", "1/(2*sqrt(N*rho*A)*s)"),
+    "loop with a dead time": (
+        SIGNALS + 'e = "u - y"\ny = "c*e*exp(-s*T)/(tau*s + 1)"\n[outputs]\nout = "y"',
+        "c/(1 + c)",
+        "c*exp(-s*T)/(tau*s)",
+    ),
+    "its error": (
+        SIGNALS + 'e = "u - y"\ny = "c*e*exp(-s*T)/(tau*s + 1)"\n[outputs]\nout = "e"',
+        "1/(1 + c)",
+        "1",
+    ),
+    "half a power": (SIGNALS + 'y = "u/(c*s + sqrt(s))"\n[outputs]\nout = "y"', "1/sqrt(s)", "1/(c*s)"),
+    "thermal bar": (
+        SIGNALS + 'y = "u*tanh(sqrt(tau*s))/sqrt(tau*s)"\n[outputs]\nout = "y"',
+        "1",
+        "1/sqrt(tau*s)",
+    ),
+    "triple integrator": (SIGNALS + 'y = "u/(s^3*(s + 1/T))"\n[outputs]\nout = "y"', "T/s**3", "1/s**4"),
+    "differences of letters": (
+        SIGNALS + 'y = "u*(T - tau)*s/((T*s + 1)*(tau*s + 1))"\n[outputs]\nout = "y"',
+        "(T - tau)*s",
+        "(T - tau)/(T*tau*s)",
+    ),
+}
+
+
+def limits_of(text: str) -> InLetters:
+    return symflex.loads(PARAMETERS + text).transfer_functions()[0].limits()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_leading_terms_are_those_found_by_hand(name: str) -> None:
+    text, *expected = CASES[name]
+    limits = limits_of(text)
+    for end, wanted in zip(("s -> 0", "s -> infinity"), expected, strict=True):
+        found = limits.expr(end)
+        assert found is not None, limits
+        names = {x: sympy.Symbol(x, positive=True) for x in ("E", "I", "N", "C", "s")}
+        quotient = found / sympy.sympify(wanted, names)
+        positive = {x: sympy.Symbol(x.name, positive=True) for x in quotient.free_symbols}
+        assert sympy.simplify(quotient.subs(positive)) == 1
+
+
+def test_what_decays_along_a_beam_agrees_with_a_numeric_solution() -> None:
+    term = limits_of(BEAM + PULL + 'y = "a.y"').expr("s -> infinity")
+    assert term is not None
+    stiffness, mass, length = mpmath.mpf(140), mpmath.mpf("0.27"), mpmath.mpf("0.5")
+    for s in (30000, 100000):
+        with mpmath.workdps(40):
+            # w = sum of c_i exp(r_i x), r_i^4 = -rho A s^2/(E I); at the far end E I w''' = -F
+            q = (mass * mpmath.mpf(s) ** 2 / stiffness) ** 0.25 * mpmath.exp(mpmath.pi * 0.25j)
+            roots = [q, -q, 1j * q, -1j * q]
+            rows = [[r**n for r in roots] for n in (2, 3)]
+            rows += [[r**n * mpmath.exp(r * length) for r in roots] for n in (2, 3)]
+            whole = sum(mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix([0, 0, 0, -1 / stiffness]))).real
+        values = {"E": 70e9, "I": 2e-9, "rho": 2700, "A": 1e-4, "l": 0.5, "s": s}
+        assert float(term.subs({x: values[x.name] for x in term.free_symbols})) == pytest.approx(
+            float(whole), rel=1e-5
+        )
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [
+        ("oscillator", ["static compliance, 0.125 m/N", "mass line, -40 dB/decade, 0.5 m/(N*s^2)"]),
+        ("oscillator's mobility", ["spring line, +20 dB/decade", "mass line, -20 dB/decade"]),
+        ("damped body", ["damper line, -20 dB/decade", "both meet at:   b/m   0.0238732 Hz, 0.15 rad/s"]),
+        ("two masses", ["mass line, -40 dB/decade, 0.2 m/(N*s^2)", "-80 dB/decade"]),
+        ("cantilever", ["static compliance", "-30 dB/decade", "on s = j*omega only with losses"]),
+        ("low pass", ["static gain, 1", "both meet at:   1/sqrt(L*C)"]),
+        ("half a power", ["-10 dB/decade, 1", "-20 dB/decade", "both meet at:   1/c^2"]),
+    ],
+)
+def test_terms_are_told_in_words_with_their_values_and_where_they_meet(name: str, lines: list[str]) -> None:
+    text = str(limits_of(CASES[name][0]))
+    assert all(line in text for line in lines), text
+
+
+LOSS = MASS + SPRING.replace('k = "k"', 'k = "k", eta_s = 0.1') + FORCE + 'y = "x"'
+TIMOSHENKO = """[fields.beam]
+unknowns = ["w", "p"]
+domain = ["0", "l"]
+equations = ["N*(w'' - p') = rho*A*s^2*w", "E*I*p'' + N*(w' - p) = rho*I*s^2*p"]
+conditions = ["w(0) = 0", "p(0) = 0", "p'(l) = 0", "N*(w'(l) - p(l)) = F"]
+[inputs]
+F = {}
+[outputs]
+y = "w(l)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (LOSS, "loss factors hold on s = j*omega alone"),
+        (TIMOSHENKO, "its waves are no roots of one term"),
+    ],
+)
+def test_a_term_that_is_not_had_is_refused_with_its_reason(text: str, reason: str) -> None:
+    assert reason in str(limits_of(text))
