@@ -410,7 +410,7 @@ class StabilityOptions:
         "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
     letters: bool = option(
-        False, "--letters", help="Conditions in letters, for all values of all parameters."
+        False, "--letters", help="Conditions in letters; with two of --over, their boundary as a curve."
     )
     of: str = option(
         "poles", "--of", choices=("poles", "zeros"), **SHOWN, help="Whose conditions --letters prints."

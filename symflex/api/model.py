@@ -449,7 +449,9 @@ class Model:
             proved = stability_over(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
 
-    def conditions(self, of: str = "poles", tf: str | None = None) -> Conditions:
+    def conditions(
+        self, of: str = "poles", tf: str | None = None, *, over: tuple[str, str] | None = None
+    ) -> Conditions:
         """Return inequalities that hold exactly where all poles, or zeros, lie left of the imaginary axis.
 
         Parameters
@@ -458,20 +460,8 @@ class Model:
             ``poles``, or ``zeros`` of a transfer function.
         tf : str, optional
             ``"OUT/IN"`` for zeros, the first one by default.
-
-        Returns
-        -------
-        Conditions
-            It prints itself; ``latex()`` and ``to_json_dict()`` are the same in LaTeX and JSON.
-
-        Raises
-        ------
-        UsageError
-            SF902 for an unknown name.
-        ModelError
-            SF801 for beams, rods and delays.
-        BudgetError
-            SF501, SF502 if the conditions are too large to be found.
+        over : pair of str, optional
+            The boundary over two parameters as a curve instead.
 
         Examples
         --------
@@ -481,10 +471,11 @@ class Model:
         >>> print(*model.conditions().conditions)
         T_1 + T_2 > K*T_1*T_2
         """
+        from symflex.letters.boundary import boundary  # for start-up time
         from symflex.letters.routh import conditions  # for start-up time
 
         with budget_of(None).entered():
-            return conditions(self.resolved, of, tf)
+            return boundary(self.resolved, over) if over else conditions(self.resolved, of, tf)
 
     def locus(
         self,

@@ -132,7 +132,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     number of poles right of the axis is proved; boxes about a boundary stay undecided.
 
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
-    zeros of a transfer function, lie left of the axis.
+    zeros of a transfer function, lie left of the axis; with two of --over, the boundary as a curve.
 
     Exit code 4: something is not proved; the output says what. Structures without loss have poles all along
     the axis; these are counted up to a frequency, which is printed.
@@ -146,15 +146,13 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
         other = "--letters" if given.letters else "--over"
         raise UsageError(Diagnostic("SF902", f"give only one of --gain and {other}"))
     if given.letters:
+        from symflex.letters.boundary import boundary
         from symflex.letters.routh import conditions
 
         tf = "/".join(first_pair(model, given.tf, "showing zeros of")) if given.of == "zeros" else None
         with entered_budget().entered():
-            shown = conditions(model, given.of, tf)
-        if given.format == "latex" and not given.as_json:
-            say(shown.latex())
-        else:
-            answer(given.as_json, shown.to_json_dict, lambda: str(shown))
+            shown = boundary(model, given.over) if given.over else conditions(model, given.of, tf)
+        answer(given.as_json, shown.to_json_dict, shown.latex if given.format == "latex" else shown.__str__)
         return 0
     if given.of != "poles" or given.tf or given.format != "text":
         raise UsageError(Diagnostic("SF902", "--of, --tf and --format are for --letters"))

@@ -34,7 +34,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.letters.routh import Inequality, NeverError, Signs, inequality_of
+from symflex.letters.routh import Relation, Signs, relation_of
 from symflex.print.forms.arrange import length, with_squares
 from symflex.print.forms.naming import Naming
 from symflex.print.roots import SHORT_DIGITS
@@ -86,7 +86,7 @@ class RootKind:
     """What the roots of a factor are if inequalities hold, all of them."""
 
     words: str  # ``a complex pair``
-    inequalities: tuple[Inequality, ...]  # none: for all positive values
+    inequalities: tuple[Relation, ...]  # none: for all positive values
     holds: bool | None  # at the model's values, proved; None if undecided
 
     def __str__(self) -> str:
@@ -238,18 +238,17 @@ class LetterReader:
             tried = (("a complex pair", [(spread, -1)]), ("two real roots", [(spread, 1)]))
         for words, terms in tried:
             plain = [(self.tf.radicals.reduced(Factored.polynomial(self.tf.ring, f)), x) for f, x in terms]
-            try:
-                needed = self.signs.reduced([f.numerator().expand() * x for f, x in plain])
-            except NeverError:
+            needed = self.signs.reduced([f.numerator().expand() * x for f, x in plain])
+            if self.signs.is_never(needed):
                 continue
-            shown = tuple(inequality_of(self.printer.arranger, f, relation) for f, relation in needed)
+            shown = tuple(relation_of(self.printer.arranger, f, sign) for f, sign in needed)
             over = [
                 (self.value(each.sides[0]) - self.value(each.sides[1])).real for each in shown if each.sides
             ]
             if len(over) == len(shown):
                 is_open = any(x.contains(0) and not x.is_zero() for x in over)
                 proved = all(
-                    x > 0 if each.relation == ">" else x != 0 for x, each in zip(over, shown, strict=True)
+                    x > 0 if each.sign == ">" else x != 0 for x, each in zip(over, shown, strict=True)
                 )
                 yield RootKind(words, shown, None if is_open else proved)
 

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 from math import prod
 from random import Random
 from typing import TYPE_CHECKING, Final, Literal
@@ -25,8 +24,8 @@ from flint import acb, acb_poly
 
 from symflex.algebra import Ring, by_powers, degree_in, irreducible_factors, summed, terms_of
 from symflex.balls import precision
-from symflex.budget import spend
-from symflex.errors import REPORT, BudgetError, Diagnostic, InternalError, ModelError, Text, UsageError
+from symflex.equations.elimination.determinants import Minors
+from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, Text, UsageError
 from symflex.expressions import PROGRAM_LIMITS, format_expression, number, parse
 from symflex.library.elements import CIRCUITS
 from symflex.loops.over import seen_pair
@@ -42,7 +41,7 @@ from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all, pick_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from flint import fmpz_mpoly
 
@@ -52,8 +51,8 @@ if TYPE_CHECKING:
 
 LONGEST: Final = 40
 """Terms of a condition that a person still reads: half a page."""
-MOST_PRODUCTS: Final = 1_000_000
-"""Products of terms in one step of the elimination, which take about half a second."""
+MOST_TERMS: Final = 20_000
+"""Terms of a determinant, which take about a second."""
 SQUARES: Final = 3
 """Generators one after the other whose squares are completed to prove a sign."""
 POINTS: Final = 12
@@ -61,25 +60,25 @@ BITS: Final = 192
 """Random values of all letters at which conditions are compared with roots, and precision of these."""
 POLES: Final = "poles"
 ALL_LEFT: Final = "all left of the imaginary axis"
-Relation = Literal[">", "!="]
+Sign = Literal[">", "!=", "="]
 Factor = tuple["fmpz_mpoly", int]
 
 
 @dataclass(frozen=True, slots=True)
-class Inequality:
-    """``left > right`` or ``left != right``; without sides where these are too long to be read."""
+class Relation:
+    """``left > right``, ``left != right`` or ``left = right``; without sides too long to be read."""
 
     terms: int
-    relation: Relation
+    sign: Sign
     sides: tuple[Expression, Expression] | None
 
     def __str__(self) -> str:
         if self.sides is None:
-            return f"a sum of {self.terms} terms, too long to be read, {self.relation} 0"
-        return f" {self.relation} ".join(map(format_expression, self.sides))
+            return f"a sum of {self.terms} terms, too long to be read, {self.sign} 0"
+        return f" {self.sign} ".join(map(format_expression, self.sides))
 
 
-Found = Sequence[tuple["fmpz_mpoly", Inequality]]
+Found = Sequence[tuple["fmpz_mpoly", Relation]]
 
 
 @dataclass(frozen=True)
@@ -88,46 +87,30 @@ class Conditions:
 
     model: Model
     of: str  # ``poles`` or ``zeros of OUT/IN``
-    conditions: tuple[Inequality, ...]
-    never: str  # why roots lie right of the axis for all values; empty where they need not
-    on_axis: tuple[tuple[str, int], ...]  # factors whose roots stay on the axis, with multiplicities
-
-    @property
-    def sentence(self) -> str:
-        """What holds exactly under the conditions."""
-        if self.never:
-            return f"{self.of}: for no values {ALL_LEFT}: {self.never}"
-        parts = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in self.on_axis)
-        said = f"those of {parts} on the imaginary axis, all others left of it" if parts else ALL_LEFT
-        return f"{self.of}: {said}{' exactly when' if self.conditions else ''}"
+    sentence: str  # what holds exactly under the conditions
+    conditions: tuple[Relation, ...]
+    on_axis: tuple[tuple[str, int], ...] = ()  # factors whose roots stay on the axis, with multiplicities
+    is_never: bool = False  # True if no values meet the conditions
 
     def __str__(self) -> str:
         loose = ", ".join(p.name for p in self.model.parameters if p.assume != "positive")
         values = f"for positive values of all letters{f' but {loose}' if loose else ''}"
-        return "\n".join(
-            [*broken(self.sentence), *(f"    {line}" for line in (*map(str, self.conditions), values))]
-        )
+        return "\n    ".join(["\n".join(broken(self.sentence)), *map(str, self.conditions), values])
 
     def latex(self) -> str:
         """Return the conditions as a display, the sentence above them as a comment."""
-        labels, signs = model_labels(self.model), {">": ">", "!=": r"\neq"}
-        shown = [(c.sides, f" &{signs[c.relation]} ") for c in self.conditions if c.sides]
-        rows = [sign.join(latex_expression(e, labels) for e in sides) for sides, sign in shown]
-        long = [f"% {c}" for c in self.conditions if not c.sides]
+        labels = model_labels(self.model)
+        comments = [f"% {x}" for x in (self.sentence, *(c for c in self.conditions if not c.sides))]
+        sides = [(c.sides, c.sign.replace("!=", r"\neq")) for c in self.conditions if c.sides]
+        rows = [f" &{sign} ".join(latex_expression(e, labels) for e in both) for both, sign in sides]
         display = [r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}"] if rows else []
-        return "\n".join([f"% {self.sentence}", *long, *display])
+        return "\n".join([*comments, *display])
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the conditions in the schema ``symflex.stability/1``."""
-        return {
-            "schema": "symflex.stability/1",
-            "of": self.of,
-            "never": self.never or None,
-            "on_axis": [list(each) for each in self.on_axis],
-            "conditions": [
-                {"condition": str(c) if c.sides else None, "terms": c.terms} for c in self.conditions
-            ],
-        }
+        shown = [{"condition": str(c) if c.sides else None, "terms": c.terms} for c in self.conditions]
+        own = {"of": self.of, "never": self.is_never, "on_axis": [*map(list, self.on_axis)]}
+        return {"schema": "symflex.stability/1", **own, "conditions": shown}
 
 
 def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditions:
@@ -135,35 +118,19 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
 
     Raises ModelError: SF801 with beams, rods or delays; UsageError: SF902 for no such function; BudgetError:
     SF501, SF502 when the conditions are too large to be found.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { K = {}, T_1 = {}, T_2 = {} }
-    ... signals.y = "K/(s*(T_1*s + 1)*(T_2*s + 1))*(r - y)"
-    ... inputs.r = {}
-    ... outputs.Y = "y"
-    ... ''')
-    >>> print(conditions(model))
-    poles: all left of the imaginary axis exactly when
-        T_1 + T_2 > K*T_1*T_2
-        for positive values of all letters
     """
     if of not in (POLES, "zeros"):
         raise UsageError(Diagnostic("SF902", f"conditions are those of poles or zeros, not of '{of[:64]}'"))
     check_causal(model, "stability in letters")
     if model.is_distributed:
         message = "conditions in letters are for models without beams, rods and delays"
-        hint = "boundaries in numbers are: --gain K, or --over any parameter"
+        hint = "a boundary of two parameters in letters: --letters --over K --over T"
         raise ModelError(Diagnostic("SF801", message, None, hint))
     pairs = pick_pairs(model, [tf] if tf else [])
     (own,) = derive_all(model, [seen_pair(model) if of == POLES else pairs[0]])
-    if of == POLES:
-        hidden = ((h.polynomial, h.multiplicity) for h in own.hidden)
-        return conditions_of(own, of, [*own.den.factors, *hidden])
-    return conditions_of(own, f"zeros of {own.name}", own.num.factors)
+    hidden = ((h.polynomial, h.multiplicity) for h in own.hidden)
+    factors = [*own.den.factors, *hidden] if of == POLES else own.num.factors
+    return conditions_of(own, of if of == POLES else f"zeros of {own.name}", factors)
 
 
 def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) -> Conditions:
@@ -180,45 +147,31 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     for factor, times in every.values():
         is_even = not any(m[0] % 2 for m in factor.monoms())
         if is_even or len(factor) == 1:
-            is_long = len(factor) > LONGEST
-            text = (
-                f"a factor of {len(factor)} terms"
-                if is_long
-                else format_expression(arranger.collected(factor))
-            )
-            on_axis.append((text, times))
+            on_axis.append((format_expression(arranger.collected(factor)), times))
         # Energy keeps poles from the right of the axis: then poles that are their own mirror images lie on
         # it, and others meet it only where the last determinant vanishes.
         is_kept_left = of == POLES and is_passive(tf.model)
         if len(factor) > 1 and not (is_even and is_kept_left):
-            moving.append((factor, is_even))
-            needed += _hurwitz(signs, factor, is_even=is_even, is_kept_left=is_kept_left)
-    try:
-        found, never = (
-            [(f, inequality_of(arranger, f, relation)) for f, relation in signs.reduced(needed)],
-            "",
-        )
-    except NeverError as error:
-        (impossible,) = error.args
-        found, never = [], f"{inequality_of(arranger, impossible, '>')} would have to hold"
-        if impossible.is_zero():
-            never = "a power of s is missing, or a Hurwitz determinant is 0"
-    _check(tf, signs, moving, None if never else found)
-    return Conditions(tf.model, of, tuple(condition for _, condition in found), never, tuple(on_axis))
+            moving.append((factor, 1 + is_even))
+            needed += _hurwitz(signs, factor, is_even=is_even)[: 3 if is_kept_left else None]
+    kept = signs.reduced(needed)
+    found, is_never = [(f, relation_of(arranger, f, sign)) for f, sign in kept], signs.is_never(kept)
+    _check(tf, signs, moving, found)
+    stay = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in on_axis)
+    said = f"those of {stay} on the imaginary axis, all others left of it" if on_axis else ALL_LEFT
+    said = f"for no values {ALL_LEFT}, as then" if is_never else said + " exactly when" * bool(found)
+    relations = tuple(relation for _, relation in found)
+    return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
 
 
-def inequality_of(arranger: Arranger, polynomial: fmpz_mpoly, relation: Relation) -> Inequality:
+def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign) -> Relation:
     """Return a condition in its shortest print: all on the left, or no minus sign."""
     if len(polynomial) > LONGEST:
-        return Inequality(len(polynomial), relation, None)
+        return Relation(len(polynomial), sign, None)
     parts = [{m: c * sign for m, c in polynomial.terms() if c * sign > 0} for sign in (1, -1)]
     above, below = (arranger.grouped(polynomial.context().from_dict(part)) for part in parts)
     tried = (arranger.grouped(polynomial), number(0)), (above, below)
-    return Inequality(len(polynomial), relation, min(tried, key=lambda sides: length(*sides)))
-
-
-class NeverError(Exception):
-    """A condition that no values meet: its argument would have to be positive."""
+    return Relation(len(polynomial), sign, min(tried, key=lambda sides: length(*sides)))
 
 
 def is_passive(model: Model) -> bool:
@@ -231,8 +184,11 @@ def is_passive(model: Model) -> bool:
     )
 
 
-def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool, is_kept_left: bool) -> list[fmpz_mpoly]:
-    """Return what is positive exactly when all roots lie left of the axis, or on it and are simple."""
+def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool) -> list[fmpz_mpoly]:
+    """Return what is positive exactly when all roots lie left of the axis, or on it and are simple.
+
+    First come both ends of the polynomial and the largest determinant.
+    """
     ring = signs.ring
     a = ring.coefficients(polynomial)[::-1]
     if is_even:  # the derivative of Q by s^2, times s
@@ -240,35 +196,15 @@ def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool, is_kept_lef
     known = [c for c in a if signs.of_polynomial(c)]
     front = ring.constant(signs.of_polynomial(known[0])) if known else a[0]
     a = [c * front for c in a]
-    n, zero = len(a) - 1, ring.constant(0)
-    pivots = _pivots(
-        [[a[k] if 0 <= (k := 2 * j - i + 1) <= n else zero for j in range(n - 1)] for i in range(n - 1)]
-    )
-    halves = [a[n::-2], [a[n], *a[n - 1 :: -2]]]
+    n = len(a) - 1
+
+    def determinant(size: int) -> fmpz_mpoly:
+        rows = ({j: a[k] for j in range(size) if 0 <= (k := 2 * j - i + 1) <= n} for i in range(size))
+        return Minors(tuple(rows), ring=ring, most=MOST_TERMS).determinant((1 << size) - 1)
+
+    halves = [a[n::-2], a[n - 1 :: -2]]
     half = min(halves, key=lambda each: sum(len(c) for c in each if signs.of_polynomial(c) != 1))
-    return [a[0], a[n], *pivots[-1:]] if is_kept_left else [a[0], *half, *pivots[::-2]]
-
-
-def _pivots(rows: list[list[fmpz_mpoly]]) -> list[fmpz_mpoly]:
-    """Return the leading principal minors of a matrix (Bareiss 1968); 0 from the first that vanishes on."""
-    minors: list[fmpz_mpoly] = []
-    last = None
-    for k in range(len(rows)):
-        pivot = rows[k][k]
-        minors.append(pivot)
-        if pivot.is_zero():
-            return minors + [pivot] * (len(rows) - k - 1)
-        for i, j in product(range(k + 1, len(rows)), repeat=2):
-            spend()
-            terms = len(pivot) * len(rows[i][j]) + len(rows[i][k]) * len(rows[k][j])
-            if terms > MOST_PRODUCTS:
-                message = f"conditions in letters would be sums of more than {MOST_PRODUCTS} products"
-                hint = "give numbers to the letters that do not matter: write them in place of their names"
-                raise BudgetError(Diagnostic("SF501", message, None, hint))
-            value = pivot * rows[i][j] - rows[i][k] * rows[k][j]
-            rows[i][j] = value if last is None else value / last
-        last = pivot
-    return minors
+    return [a[0], a[n], *(determinant(k) for k in range(n - 1, 0, -2)), *half]
 
 
 @dataclass(frozen=True)
@@ -282,10 +218,10 @@ class Signs:
     @classmethod
     def of(cls, tf: TransferFunction) -> Signs:
         """Return what a model assumes of its parameters; real roots and exponentials are positive."""
-        positive = {p.name for p in tf.model.parameters if p.assume == "positive"} | {"pi"}
-        positive |= {c.generator for c in tf.constants if c.expression.name in ("sqrt", "exp", "cosh")}
+        roots = {c.generator for c in tf.constants if c.expression.name == "sqrt"}
+        signed = frozenset(roots | {tf.ratio.ring.names[i] for i in tf.radicals.positive})
         loose = {p.name for p in tf.model.parameters if p.assume == "nonnegative"}
-        return cls(tf.ratio.ring, frozenset(positive), frozenset(positive | loose))
+        return cls(tf.ratio.ring, signed - loose, signed)
 
     def of_polynomial(self, polynomial: fmpz_mpoly) -> int:
         """Return 1 where it is proved to be positive, -1 negative, and 0 where its sign is not known."""
@@ -319,28 +255,33 @@ class Signs:
                     return True
         return False
 
-    def reduced(self, needed: Sequence[fmpz_mpoly]) -> list[tuple[fmpz_mpoly, Relation]]:
-        """Return what holds exactly where some polynomials are positive, without conditions that follow."""
-        products: list[tuple[int, list[fmpz_mpoly]]] = []
-        nonzero: dict[str, fmpz_mpoly] = {}
-        for polynomial in needed:
-            number, factors = (-1, []) if polynomial.is_zero() else irreducible_factors(polynomial)
-            signs = [(f, self.of_polynomial(f), times) for f, times in factors]
-            sign = prod((s**times for _, s, times in signs if s), start=1 if number > 0 else -1)
-            odd = [f for f, s, times in signs if not s and times % 2]
-            nonzero |= {str(f): f for f, s, times in signs if not s and not times % 2}
-            if not odd and sign < 0:
-                raise NeverError(polynomial)
-            products.append((sign, odd))
+    def is_never(self, reduced: Iterable[tuple[fmpz_mpoly, Sign]]) -> bool:
+        """Tell whether what :meth:`reduced` returned is met for no values."""
+        return any(f.is_zero() or self.of_polynomial(f) < 0 for f, _ in reduced)
+
+    def reduced(self, needed: Sequence[fmpz_mpoly]) -> list[tuple[fmpz_mpoly, Sign]]:
+        """Return what holds exactly where some polynomials are positive, without conditions that follow.
+
+        Of conditions that are never met one is returned.
+        """
         known: dict[str, int] = {}
-        kept: dict[str, fmpz_mpoly] = {}
-        for sign, odd in sorted(products, key=lambda each: len(each[1])):
-            left = [f for f in odd if str(f) not in known or len(odd) == 1]
-            front = sign * prod(known[str(f)] for f in odd if f not in left)
-            whole = prod(left, start=self.ring.constant(front))
-            if not left and front < 0:
-                raise NeverError(whole)
-            known |= {str(left[0]): front} if len(left) == 1 else {}
+        nonzero, kept = dict[str, "fmpz_mpoly"](), dict[str, "fmpz_mpoly"]()
+        split = [((-1, []) if f.is_zero() else irreducible_factors(f), f) for f in needed]
+        split.sort(key=lambda each: sum(not self.of_polynomial(f) for f, _ in each[0][1]))
+        for (front, factors), polynomial in split:
+            sign, left = (1 if front > 0 else -1), []
+            for factor, times in factors:
+                if own := self.of_polynomial(factor) or known.get(str(factor), 0):
+                    sign *= own**times
+                elif times % 2:
+                    left.append(factor)
+                else:
+                    nonzero[str(factor)] = factor
+            if not left and sign < 0:
+                return [(polynomial, ">")]
+            if len(left) == 1:
+                known[str(left[0])] = sign
+            whole = prod(left, start=self.ring.constant(sign))
             kept |= {str(whole): whole} if left else {}
         scales = [self.ring.constant(1), *(c for c in needed if self.of_polynomial(c) == 1)]
         chosen = sorted(kept.values(), key=len)
@@ -349,55 +290,49 @@ class Signs:
             more = (c * one - other for other in others for c in scales)
             if any(each.is_zero() or self.is_positive(each, 0) for each in more):
                 chosen = others
-        signed = {str(f) for _, odd in products for f in odd}
-        loose = [f for text, f in nonzero.items() if text not in signed]
-        return [*((c, ">") for c in chosen), *((f, "!=") for f in loose)]
+        return [*((c, ">") for c in chosen), *((f, "!=") for text, f in nonzero.items() if text not in known)]
 
 
-def _check(
-    tf: TransferFunction, signs: Signs, moving: Sequence[tuple[fmpz_mpoly, bool]], found: Found | None
-) -> None:
+def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: Found) -> None:
     """Compare conditions with roots, and what is printed with its polynomial, at random values.
 
-    ``found`` is None where they are never met. Raises InternalError: SF992 where they differ.
+    ``moving`` are polynomials, each with 2 where it is even in s, else 1. Raises InternalError: SF992.
     """
-    random, names = Random(tf.name), signs.ring.names
-    known: dict[str, acb] = {}
+    random, ring, known = Random(tf.name), signs.ring, dict[str, acb]()
 
     def value(polynomial: fmpz_mpoly) -> acb:
-        return acb(summed(terms_of(polynomial), names, known.__getitem__, acb(1)))
-
-    def read(side: Expression) -> acb:
-        text = Text.alone("<printed>", format_expression(side))
-        return principal_values(parse(text, limits=PROGRAM_LIMITS), 1, lambda name: [known[name]])[0]
+        return acb(summed(terms_of(polynomial), ring.names, known.__getitem__, acb(1)))
 
     for _ in range(POINTS):
-        for n in names:
+        for n in ring.names:
             size = random.randrange(1, 2 ** random.randrange(2, 9))
             known[n] = acb(size if n in signs.nonnegative else random.choice((1, -1)) * size)
         with precision(BITS):
             known["pi"] = acb.pi()
-            known |= {c.generator: read(c.expression) for c in tf.constants}
-            holds, wrong = found is not None, ""
-            for polynomial, condition in found or ():
-                own = value(polynomial)
-                holds &= bool(own.real > 0 if condition.relation == ">" else own != 0)
-                left, right = map(read, condition.sides or (number(0), number(0)))
-                wrong = wrong or ("" if not condition.sides or own.overlaps(left - right) else str(condition))
-            placed = [
-                _is_placed([value(c) for c in signs.ring.coefficients(f)], is_even=e) for f, e in moving
-            ]
+            known |= {c.generator: read(c.expression, known) for c in tf.constants}
+            holds, wrong = True, ""
+            for polynomial, shown in found:
+                own, sides = value(polynomial), [read(side, known) for side in shown.sides or ()]
+                holds &= bool(own.real > 0 if shown.sign == ">" else own != 0)
+                wrong = str(shown) if sides and not own.overlaps(sides[0] - sides[1]) else wrong
+            placed = [_is_placed([*map(value, ring.coefficients(f))][::step], step) for f, step in moving]
         if wrong or (None not in placed and holds != all(placed)):
             message = f"conditions are not shown, as they are wrong: {wrong or known}"
             raise InternalError(Diagnostic("SF992", message, None, REPORT))
 
 
-def _is_placed(numbers: Sequence[acb], *, is_even: bool) -> bool | None:
-    """Tell whether all roots lie left of the axis, or on it if even; None where one is too close."""
+def read(expression: Expression, known: Mapping[str, acb]) -> acb:
+    """Return the value of what is printed, read as a user's text would be."""
+    parsed = parse(Text.alone("<printed>", format_expression(expression)), limits=PROGRAM_LIMITS)
+    return principal_values(parsed, 1, lambda name: [known[name]])[0]
+
+
+def _is_placed(numbers: Sequence[acb], step: int) -> bool | None:
+    """Tell whether all roots lie left of the axis, squares on the negative one; None where one is close."""
     try:
-        roots = acb_poly(numbers[::2] if is_even else numbers).roots()
+        roots = acb_poly(numbers).roots()
     except ValueError:  # they are not simple
         return None
     if numbers[-1].contains(0) or any(root.real.contains(0) for root in roots):
         return None
-    return all(root.real < 0 and not (is_even and root.imag != 0) for root in roots)
+    return all(root.real < 0 and not (step > 1 and root.imag != 0) for root in roots)

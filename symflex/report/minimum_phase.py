@@ -68,15 +68,15 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
     except BudgetError:
         spend()  # the time may be over
         return PhaseCondition("unknown", "")
-    if found.never:
-        return PhaseCondition("never", f"the zeros are left of the axis for no values: {found.never}")
+    if found.is_never:
+        return PhaseCondition("never", "a condition of Routh and Hurwitz is met for no values")
     if not found.conditions:
         return PhaseCondition("always", "this follows from the signs of the numerator's coefficients")
     (first, *others), reason = (
         found.conditions,
         "this is the only condition of Routh and Hurwitz that is left",
     )
-    if others or first.sides is None or first.relation != ">":
+    if others or first.sides is None or first.sign != ">":
         return PhaseCondition("unknown", "")
     left, right = first.sides
     return PhaseCondition("if positive", reason, sum_of([left, negative(right)]))

@@ -24,7 +24,7 @@ from symflex.expressions import (
     quotient,
 )
 from symflex.model.model import IMAGINARY as LOSS_UNIT
-from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
+from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
@@ -120,6 +120,13 @@ class FrequencyPage:
 
     def form(self) -> PrintedForm:
         """Return the printed form."""
+        (sides,), lines, symbols = self.printed(self.value())
+        argument = product_of([symbols[IMAGINARY], symbols[LAPLACE]])
+        # What the left side says is explained also where the right one does not need it.
+        return PrintedForm("frequency", *sides, reachable((*sides, argument), lines), argument=argument)
+
+    def value(self) -> Factored:
+        """Return the function in the ring of the page, whose s is the frequency."""
         value = Factored.number(self.ring, self._value.unit)
         turns = 0
         waves = {
@@ -134,15 +141,16 @@ class FrequencyPage:
                 continue
             image, times = self._real(factor)
             value, turns = value * image**exponent, turns + times * exponent
-        value = self._turned(value, turns)
-        lines, symbols = self._explained(self.ring.used_in(f for f, _ in value.factors))
-        printer = self._printer(symbols)
-        sides = shortest_sides(printer, value, self.laws())
-        argument = product_of([symbols[IMAGINARY], symbols[LAPLACE]])
-        # What the left side says is explained also where the right one does not need it.
-        return PrintedForm("frequency", *sides, reachable((*sides, argument), lines), argument=argument)
+        return self._turned(value, turns)
 
-    def _printer(self, symbols: dict[str, Expression]) -> ProductPrinter:
+    def printed(self, *values: Factored) -> tuple[list[Sides], tuple[Line, ...], dict[str, Expression]]:
+        """Return numerators and denominators of values over the ring, lines of names, and symbols."""
+        lines, symbols = self._explained(self.ring.used_in(f for value in values for f, _ in value.factors))
+        printer = self.printer(symbols)
+        return [shortest_sides(printer, value, self.laws()) for value in values], lines, symbols
+
+    def printer(self, symbols: dict[str, Expression]) -> ProductPrinter:
+        """Return what prints values of the ring."""
         kept = KeptDefinitions.of(self._tf, self.ring)
         return ProductPrinter(Arranger.plain(self.ring, symbols, self._functions, kept), IMAGINARY)
 
@@ -179,7 +187,7 @@ class FrequencyPage:
                 images[krylov_name(i, order)] = image
         zero = ring.constant(0)
         work = lowered.compose(*(images.get(n, zero) for n in source.names), ctx=ring.context)
-        work = self._reduced(work)
+        work = self.reduced(work)
         parts = by_powers(ring, work, ring.index[IMAGINARY])
         if set(parts) == {1}:
             return self._in_whole_lengths(parts[1]) * scale, 1
@@ -201,7 +209,7 @@ class FrequencyPage:
             if doubled is None:
                 continue
             images = {g: ring.generator(whole[f]) for f, g in half.items()}
-            work, halvings = self._reduced(ring.replaced(doubled[0], images)), halvings + doubled[1]
+            work, halvings = self.reduced(ring.replaced(doubled[0], images)), halvings + doubled[1]
         return Factored.polynomial(ring, work) / Factored.number(ring, 2) ** halvings
 
     def _lowered(self, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, Factored]:
@@ -237,7 +245,7 @@ class FrequencyPage:
             scale = scale * Factored.generator(self.ring, source.names[w]) ** least[w]
         return source.context.from_dict(lowered), scale
 
-    def _reduced(self, work: fmpz_mpoly) -> fmpz_mpoly:
+    def reduced(self, work: fmpz_mpoly) -> fmpz_mpoly:
         """Use ``j^2 = -1``, ``sin^2 = 1 - cos^2`` and ``sinh^2 = cosh^2 - 1``."""
         ring = self.ring
         squares = {IMAGINARY: ring.constant(-1)}
@@ -290,7 +298,7 @@ class FrequencyPage:
         (omega,) = naming.take("omega")
         (j,) = (LOSS_UNIT,) if tf.model.imaginary else naming.take("j")
         symbols = {**constant_symbols(tf), LAPLACE: Name(omega), IMAGINARY: Name(j)}
-        axis = self._printer(symbols)
+        axis = self.printer(symbols)
         lengths = plain_printer(tf)
         waves = [w for d in tf.kernels.dispersions for w in d.wavenumbers]
         symbols |= {w: Name(n) for w, n in zip(waves, naming.take("beta", len(waves)), strict=True)}
