@@ -26,7 +26,7 @@ from symflex.algebra.ring import coefficients_of
 from symflex.balls import at_centre, ball, precision
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UsageError
 from symflex.expressions import Call, Name, format_expression, product_of, quotient
-from symflex.letters.routh import BITS, LONGEST, POINTS, Conditions, Relation, read, relation_of
+from symflex.letters.routh import BITS, LONGEST, POINTS, Conditions, SymbolicRelation, read, relation_of
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import seen_pair
 from symflex.model import ExactValue
@@ -92,7 +92,9 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     where = [line for line in reachable(right, lines) if Name(line[0]) not in (omega, symbols[IMAGINARY])]
     counts = [sum(len(f) for f, _ in value.factors) for value in values] + [1] * len(where)
     equal = [*zip(left, right, strict=True), *((Name(name), e) for name, e in where)]
-    curve = [Relation(n, "=", e if n <= LONGEST else None) for n, e in zip(counts, equal, strict=True)]
+    curve = [
+        SymbolicRelation(n, "=", e if n <= LONGEST else None) for n, e in zip(counts, equal, strict=True)
+    ]
     if not any(d.wavenumbers for d in tf.kernels.dispersions):
         at_rest = {k.generator: ring.constant(1) for k in tf.kernels.kernels} | {LAPLACE: ring.constant(0)}
         factors = irreducible_factors(ring.replaced(moving[0], at_rest))[1]
@@ -120,7 +122,7 @@ def _solved(
         found = coefficients_of(page.ring, of, index)
         return [found.get((i, *key), page.ring.constant(0)) for i in (0, 1)]
 
-    def over_(above: fmpz_mpoly, below: fmpz_mpoly) -> Factored:
+    def lowest(above: fmpz_mpoly, below: fmpz_mpoly) -> Factored:
         above, below = page.reduced(above), page.reduced(below)
         top, bottom = (Factored.polynomial(page.ring, f / above.gcd(below)) for f in (above, below))
         return top / bottom
@@ -131,7 +133,7 @@ def _solved(
         if (0, 1, 0) in split:  # the gain is before what is not delayed
             above, below = below, above
         k = page.ring.generator(gain) * below
-        return page, [over_(above, below), over_(-n * d - n_j * d_j, k), over_(n_j * d - n * d_j, k)]
+        return page, [lowest(above, below), lowest(-n * d - n_j * d_j, k), lowest(n_j * d - n * d_j, k)]
     (moving,) = [f for f, _ in value.factors if page.ring.used_in((f,)) & {*over}]
     if any(m[index[1]] + m[index[2]] > 1 for m in moving.monoms()):
         return None
@@ -139,7 +141,7 @@ def _solved(
     below = b * c_j - b_j * c
     if below.is_zero():
         return None
-    return page, [over_(a_j * c - a * c_j, below), over_(a * b_j - a_j * b, below)]
+    return page, [lowest(a_j * c - a * c_j, below), lowest(a * b_j - a_j * b, below)]
 
 
 def _check(

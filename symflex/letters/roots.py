@@ -34,7 +34,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.letters.routh import Relation, Signs, relation_of
+from symflex.letters.routh import Signs, SymbolicRelation, relation_of
 from symflex.print.forms.arrange import length, with_squares
 from symflex.print.forms.naming import Naming
 from symflex.print.roots import SHORT_DIGITS
@@ -86,7 +86,7 @@ class RootKind:
     """What the roots of a factor are if inequalities hold, all of them."""
 
     words: str  # ``a complex pair``
-    inequalities: tuple[Relation, ...]  # none: for all positive values
+    inequalities: tuple[SymbolicRelation, ...]  # none: for all positive values
     holds: bool | None  # at the model's values, proved; None if undecided
 
     def __str__(self) -> str:

@@ -65,7 +65,7 @@ Factor = tuple["fmpz_mpoly", int]
 
 
 @dataclass(frozen=True, slots=True)
-class Relation:
+class SymbolicRelation:
     """``left > right``, ``left != right`` or ``left = right``; without sides too long to be read."""
 
     terms: int
@@ -78,7 +78,7 @@ class Relation:
         return f" {self.sign} ".join(map(format_expression, self.sides))
 
 
-Found = Sequence[tuple["fmpz_mpoly", Relation]]
+Found = Sequence[tuple["fmpz_mpoly", SymbolicRelation]]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Conditions:
     model: Model
     of: str  # ``poles`` or ``zeros of OUT/IN``
     sentence: str  # what holds exactly under the conditions
-    conditions: tuple[Relation, ...]
+    conditions: tuple[SymbolicRelation, ...]
     on_axis: tuple[tuple[str, int], ...] = ()  # factors whose roots stay on the axis, with multiplicities
     is_never: bool = False  # True if no values meet the conditions
 
@@ -164,14 +164,14 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
 
 
-def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign) -> Relation:
+def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign) -> SymbolicRelation:
     """Return a condition in its shortest print: all on the left, or no minus sign."""
     if len(polynomial) > LONGEST:
-        return Relation(len(polynomial), sign, None)
+        return SymbolicRelation(len(polynomial), sign, None)
     parts = [{m: c * sign for m, c in polynomial.terms() if c * sign > 0} for sign in (1, -1)]
     above, below = (arranger.grouped(polynomial.context().from_dict(part)) for part in parts)
     tried = (arranger.grouped(polynomial), number(0)), (above, below)
-    return Relation(len(polynomial), sign, min(tried, key=lambda sides: length(*sides)))
+    return SymbolicRelation(len(polynomial), sign, min(tried, key=lambda sides: length(*sides)))
 
 
 def is_passive(model: Model) -> bool:
