@@ -461,6 +461,9 @@ class PlotOptions:
     )
     record: str | None = option(None, "--record", **RECORD)
     columns: str = option("", "--columns", **COLUMNS_OF_RECORD)
+    asymptotes: bool = option(
+        False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

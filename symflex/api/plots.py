@@ -64,6 +64,7 @@ class Plotted:
         phase: Ends | None = None,
         width: float | str | None = None,
         font: str | None = None,
+        asymptotes: bool = False,
         ax: AxesGiven | None = None,
     ) -> Figure:
         r"""Return a Bode plot, of other transfer functions too, as ``symflex plot bode`` draws it.
@@ -80,6 +81,8 @@ class Plotted:
             Width of the figure [mm], or ``"ieee"`` or ``"a4"``.
         font : str, optional
             ``times``, ``latex`` or ``sans``.
+        asymptotes : bool
+            Draw the leading terms at both ends, of functions of finite order.
         ax : two matplotlib axes, optional
             Your own axes to draw on, in your own style; lines that are already there keep their colours,
             and the next ones are used. One axes alone shows magnitudes.
@@ -105,7 +108,9 @@ class Plotted:
         >>> [axes.get_ylabel() for axes in figure.axes], figure.axes[0].get_ylim() == (-60, 0)
         (['Magnitude [dB, 0 dB = 1 $\\mathrm{s^{2}}$]', 'Phase [deg]'], True)
         """
-        given = PlotOptions("bode", band=band, ylim=ylim, phase=phase, width=width, font=font)
+        given = PlotOptions(
+            "bode", band=band, ylim=ylim, phase=phase, width=width, font=font, asymptotes=asymptotes
+        )
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
     def pole_zero_plot(

@@ -195,6 +195,7 @@ class AxisLimits:
     x: Limits | None = None
     y: Limits | None = None
     phase: Limits | None = None  # of a Bode plot [deg]
+    has_asymptotes: bool = False  # of a Bode plot
 
     def __post_init__(self) -> None:
         for ends in (self.x, self.y, self.phase):

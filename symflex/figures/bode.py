@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import cycle, islice
-from math import ceil
+from math import ceil, tau
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -34,6 +34,7 @@ from symflex.figures.style import (
     stability_lines,
     title_lines,
 )
+from symflex.letters.limits import limits_of
 from symflex.roots import Band
 from symflex.roots.loss_modes import NO_STABILITY
 
@@ -62,6 +63,8 @@ UNDAMPED: Final = 1e-4
 """Damping ratio below which a peak or trough has no end worth showing and is cut off at the frame."""
 UNDAMPED_REACH: Final = 0.01
 """Values this close to such a root, relative to its frequency, do not count for the limits."""
+ASYMPTOTE: Final = 0.4
+"""Width of asymptotes [pt]; they are drawn of functions of finite order, whose limits hold on s = j omega."""
 UNDAMPED_MARGIN_DB: Final = 15.0
 """Room beyond the damped values where peaks are cut off."""
 
@@ -105,6 +108,11 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
         top.plot(*_magnitude_curve(response, located, limits), color=colour, linestyle=dash, label=label)
         for axes in below:
             axes.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
+        for row in limits_of(bound.source).rows if canvas.frame.has_asymptotes and bound.is_rational else ():
+            if row.value and row.power is not None:
+                ends = np.array([low, high])
+                level = 20 * np.log10(abs(row.value) * (tau * ends) ** float(row.power))
+                top.plot(ends, level, color=colour, linewidth=ASYMPTOTE)
     top.set_ylim(*limits)
     set_magnitude_ticks(top)
     label_magnitudes(top, units.pop() if len(units) == 1 else "")

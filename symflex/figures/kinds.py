@@ -130,11 +130,14 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         if band is not None:
             raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
         band, xlim = xlim, None
+    if given.asymptotes and kind != "bode":
+        raise UsageError(Diagnostic("SF902", f"--asymptotes is for bode, not for '{kind}'"))
     is_plane = kind in ("locus", "poles_zeros")
     frame = AxisLimits(
         axis_ends(xlim, "--xlim", is_frequency=is_plane),
         axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
         axis_ends(given.phase, "--phase"),
+        given.asymptotes,
     )
     is_logarithmic = kind in ("bode", "nyquist")  # without 0
     return None if band is None else band_ends(band, above_zero=is_logarithmic), frame

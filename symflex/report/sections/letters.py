@@ -1,10 +1,12 @@
-"""What a person reads off the formulas of a model, in letters: natural frequencies and kinds of roots."""
+"""What a person reads off the formulas of a model, in letters: roots, limits, groups without dimension."""
 
 from __future__ import annotations
 
 from symflex.errors import SymflexError
 from symflex.expressions import Expression, Name
 from symflex.letters.frequency_equation import roots_in_letters
+from symflex.letters.groups import dimensionless_of
+from symflex.letters.limits import InLetters, limits_of
 from symflex.letters.roots import FactorInLetters
 from symflex.print.latex.equation import model_labels
 from symflex.report.document import Block, ChapterPart, Code, Run, Section, labelled, parted, text
@@ -20,9 +22,20 @@ def letter_section(study: Study) -> ChapterPart | None:
     maps, labels, sections = {x.tf: x for x in study.maps}, model_labels(study.model), list[Section]()
     for i, (tf, bound) in enumerate(pairs, start=1):
         found = roots_in_letters(tf, bound, maps[tf.name]) if tf.name in maps else ()
-        if blocks := tuple(_factor(each, each.factor, labels) for each in found if each.factor):
+        blocks = tuple(_factor(each, each.factor, labels) for each in found if each.factor)
+        read = (_lines(each, labels) for each in (limits_of(tf), dimensionless_of(tf)) if each.rows)
+        if blocks := (*blocks, *read):
             sections.append(Section(tf.name, blocks, f"{study.stem}-letters-{i}", ratio(tf)))
     return ChapterPart("In letters", tuple(parted(sections)), {}) if sections else None
+
+
+def _lines(found: InLetters, labels: dict[str, str]) -> Block:
+    """Return a paragraph: what is read off a formula."""
+    runs: list[Run] = []
+    for row in (*found.rows, *found.where):
+        comment = f", {row.comment}; " if row.comment else "; "
+        runs += [Code(row.name), f"{row.relation.strip()} ", labelled(row.expression, labels), comment]
+    return text(*runs[:-1], ".")
 
 
 def _factor(factor: FactorInLetters, zero: Expression, labels: dict[str, str]) -> Block:

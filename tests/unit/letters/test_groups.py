@@ -46,11 +46,6 @@ CASES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         OF_BODY,
         {"y/F": "1/(S**2 + 2*zeta*S + 1)", "scale": "1/k", "S": "s*sqrt(m/k)", "zeta": "b/(2*sqrt(k*m))"},
     ),
-    "its acceleration": (
-        MASS + SPRING + FORCE.replace('"x"\n', '"s^2*x"\n'),
-        OF_BODY,
-        {"y/F": "S**2/(S**2 + 1)", "scale": "1/m", "S": "s*sqrt(m/k)"},
-    ),
     "free body": (MASS + FORCE, OF_BODY, {"y/F": "1", "scale": "1/(m*s**2)"}),
     "two masses": (
         MASS

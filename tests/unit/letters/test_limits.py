@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -175,6 +176,13 @@ def test_what_decays_along_a_beam_agrees_with_a_numeric_solution() -> None:
 def test_terms_are_told_in_words_with_their_values_and_where_they_meet(name: str, lines: list[str]) -> None:
     text = str(limits_of(CASES[name][0]))
     assert all(line in text for line in lines), text
+
+
+def test_a_bode_plot_shows_both_asymptotes() -> None:
+    function = symflex.loads(PARAMETERS + CASES["oscillator"][0]).transfer_functions()[0].bind()
+    _, static, inertia = function.bode(band=(0.01, 10), asymptotes=True).axes[0].get_lines()
+    assert static.get_ydata() == pytest.approx([20 * math.log10(1 / 8)] * 2)
+    assert inertia.get_ydata()[1] == pytest.approx(-20 * math.log10(2 * (20 * math.pi) ** 2))
 
 
 LOSS = MASS + SPRING.replace('k = "k"', 'k = "k", eta_s = 0.1') + FORCE + 'y = "x"'
