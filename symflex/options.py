@@ -130,6 +130,22 @@ class DeriveOptions:
     dimensionless: bool = option(
         False, "--dimensionless", help="Print functions in as few dimensionless groups as there are."
     )
+    short: Stated | None = option(
+        None,
+        "--short",
+        metavar="SHARE",
+        help="Drop terms while no coefficient of s changes by more than this share, such as 1%.",
+    )
+    spread: Stated | None = option(
+        None, "--spread", metavar="SHARE", help="--short: spread of all parameters, in place of their own."
+    )
+    order: int | None = option(
+        None,
+        "--order",
+        least=0,
+        most=12,
+        help="Expand functions of beams, rods and delays in s, exactly, up to this power.",
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -807,14 +823,23 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
     return value
 
 
-def resolution(given: Stated) -> float:
-    """Return a share of one, given in percent or as a number."""
+def share_of(given: Stated, flag: str) -> Fraction:
+    """Return a share of one, given in percent or as a number; a double counts as its shortest decimal.
+
+    >>> share_of("1 %", "--short"), share_of(0.1, "--spread")
+    (Fraction(1, 100), Fraction(1, 10))
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no number between 0 and 1.
+    """
     value = plain_number(given, ("%",))
-    share = value / 100 if isinstance(given, str) and "%" in given else value
-    if not 0 < share < 1:
-        message = f"--resolve takes a share such as '1 %', found '{str(given)[:40]}'"
+    is_percent = isinstance(given, str) and "%" in given
+    if not 0 < value < (100 if is_percent else 1):
+        message = f"{flag} takes a share such as '1 %', found '{str(given)[:40]}'"
         raise refused(message)
-    return share
+    return Fraction(Decimal(str(value))) / (100 if is_percent else 1)
 
 
 def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> tuple[float, float] | None:

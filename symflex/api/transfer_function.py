@@ -22,7 +22,7 @@ from symflex.letters.limits import limits_of
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
-from symflex.options import checked_digits
+from symflex.options import DeriveOptions, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from symflex.analysis.input_shaping import InputShaper
     from symflex.letters.limits import InLetters
     from symflex.model import Model
+    from symflex.options import Stated
 
 
 Number = int | float | Fraction | Decimal | str
@@ -98,6 +99,11 @@ class Form:
     def closed(self) -> tuple[tuple[sympy.Expr, sympy.Expr], ...]:
         """Closed forms of tapered members, ``Z_11(l)``, ``besseli(0, q)``, then the names in them."""
         return tuple((self._sympy(left), self._sympy(e)) for left, e in self.printed.closed)
+
+    @property
+    def statement(self) -> tuple[str, ...]:
+        """What is proved of a form that is not exact, a sentence an entry."""
+        return self.printed.approximation.said if self.printed.approximation else ()
 
     def latex(self, width: float | str | None = None) -> str:
         """Return the equation in LaTeX: on one line, or as a display for a column of a width.
@@ -270,6 +276,47 @@ class TransferFunction(_Derived):
         (1/(S + 1), T*s, 1)
         """
         return dimensionless_of(self.exact)
+
+    def short(self, bound: Stated, spread: Stated | None = None) -> Form:
+        r"""Return a shorter formula, and by how much coefficients, roots and magnitude are proved to change.
+
+        Parameters
+        ----------
+        bound : number or str
+            Largest relative change of a coefficient of s, ``0.01`` or ``"1 %"``.
+        spread : number or str, optional
+            Spread of all parameters, in place of their own.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> text = 'symflex = 1\nparameters = { m = "1 kg", c = "1 g" }\ninputs.F = {}\n'
+        >>> G = loads(text + 'outputs.a = "F/(m + c)"').transfer_function("a", "F")
+        >>> G.short("1 %").expr, G.short("1 %").statement[0]
+        (1/m, '1 of 2 terms; coefficients change by at most 0.1 %')
+        """
+        from symflex.letters.short import approximation  # imports the search of roots
+
+        return Form(*approximation(self.exact, DeriveOptions(short=bound, spread=spread)))
+
+    def order(self, power: int) -> Form:
+        """Return a function of beams, rods and delays as a rational one, exact up to a power of s, 0 to 12.
+
+        At the driven point of a compliance it is the dynamic stiffness that is expanded.
+
+        Raises
+        ------
+        UsageError
+            SF902 for a rational function, or one whose waves do not come to rest at s = 0.
+        """
+        from symflex.letters.short import approximation
+
+        return Form(*approximation(self.exact, DeriveOptions(order=power)))
 
     def state_space(self, *, minimal: bool = False) -> StateSpace:
         """Return state equations of the model's network with SymPy matrices.

@@ -132,6 +132,9 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
 
     Without --tf, all are printed. A long denominator that several share is printed once, as D. Strings in
     JSON follow the expression grammar of specifications, with every denominator in full.
+
+    --short and --order print formulas that are not exact, and below them what is proved: how much
+    coefficients, poles and zeros change, and in which band the magnitude keeps within 1 dB.
     """
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print, with_shared_denominators
@@ -157,9 +160,14 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     for tf in derived:
         if (terms := terms_to_print(tf, given.form)) > LONG:
             note(f"printing {tf.name}: about {terms} terms; --representation nested is shorter")
-    forms, sentences = print_forms(derived, given.form, given.digits)
-    for sentence in sentences:
-        note(sentence)
+    if given.short is given.order is given.spread is None:
+        forms, sentences = print_forms(derived, given.form, given.digits)
+        for sentence in sentences:
+            note(sentence)
+    else:
+        from symflex.letters.short import approximation
+
+        derived, forms = zip(*(approximation(tf, given) for tf in derived), strict=True)
     is_json = given.as_json or given.format == "json"
     printed_forms = forms if is_json else with_shared_denominators(derived, forms)
     entries = list(zip(derived, printed_forms, strict=True))
@@ -171,7 +179,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     elif given.format == "latex":
         from symflex.print.latex import transfer_function_latex
 
-        verdicts = (f"% {printed.stability.headline}\n" if printed.stability else "" for printed in forms)
+        verdicts = ("".join(f"% {line}\n" for line in printed.remarks) for printed in forms)
         equations = (transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
         say("\n\n".join(map(str.__add__, verdicts, equations)))
     else:

@@ -30,7 +30,7 @@ from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval,
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
-from symflex.options import StabilityOptions, gain_ends, resolution
+from symflex.options import StabilityOptions, gain_ends, share_of
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
 
@@ -92,7 +92,8 @@ def stability_over(
             message = f"no pole of the model depends on '{parameter.name}'"
             raise ModelError(Diagnostic("SF801", message, parameter.span, _sweep(parameter.name)))
     if len(names) > 1:
-        return find_chart(function, limits, nominal, [p.unit for p in parameters], resolution(given.resolve))
+        undecided = float(share_of(given.resolve, "--resolve"))
+        return find_chart(function, limits, nominal, [p.unit for p in parameters], undecided)
     digits = given.digits or model.analysis.digits or 15
     return find_intervals(function, limits[0], digits, parameters[0], nominal[0])
 

@@ -40,6 +40,7 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
         "hidden": hidden if tf.is_reduced else None,
         "stability": form.stability.to_json_dict() if form.stability else None,
         **({"closed": closed} if closed else {}),
+        **({"approximation": form.approximation.facts} if form.approximation else {}),
     }
 
 

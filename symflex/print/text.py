@@ -78,6 +78,8 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
     elif tf.hidden:
         lines.append("")
+    for line in form.approximation.said if form.approximation else ():
+        lines += wrap(line, width, initial_indent=INDENT, subsequent_indent=INDENT * 2)
     return "\n".join(lines)
 
 

@@ -42,6 +42,15 @@ SQUARE: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
+class Approximation:
+    """What is proved of a formula that is not exact."""
+
+    said: tuple[str, ...]  # a sentence an entry
+    facts: dict[str, object]  # the same as JSON data
+    is_whole: bool = False  # nothing was left out
+
+
+@dataclass(frozen=True, slots=True)
 class PrintedForm:
     """A transfer function as an author would write it."""
 
@@ -63,6 +72,13 @@ class PrintedForm:
     source: TransferFunction | None = field(default=None, compare=False, repr=False)
     # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     stability: StabilityVerdict | None = None
+    approximation: Approximation | None = None  # of a form that is not exact
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is said of it besides the formula, a sentence an entry."""
+        verdict = (self.stability.headline,) if self.stability else ()
+        return verdict + (self.approximation.said if self.approximation else ())
 
     def in_roots(self, root: RootOfS) -> PrintedForm:
         """Return the form with a root of s in place of s."""

@@ -97,7 +97,7 @@ def equation_section(study: Study) -> ChapterPart:
     if study.why_nested:
         blocks.append(text(f"Shown {study.why_nested}."))
     sections = [
-        Section(tf.name, _of(tf, form, f"eq:{study.stem}:{i}"), f"{study.stem}-tf-{i}", ratio(tf))
+        Section(tf.name, displayed(tf, form, f"eq:{study.stem}:{i}"), f"{study.stem}-tf-{i}", ratio(tf))
         for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True), start=1)
     ]
     blocks += parted(sections)
@@ -112,7 +112,8 @@ def ratio(tf: AnyTransferFunction) -> Mathematics:
     return Mathematics(f"{above}</mrow><mo>/</mo><mrow>{below}", ratio_latex(tf))
 
 
-def _of(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
+def displayed(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
+    """Return a transfer function in a form, what it is, and what cancelled."""
     form, hidden = with_hidden(tf, form)
     rows = transfer_function_mathml(tf, form)
     latex = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM, label=label)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from symflex.errors import SymflexError
 from symflex.expressions import Expression, Name
 from symflex.letters.frequency_equation import roots_in_letters
 from symflex.letters.groups import dimensionless_of
 from symflex.letters.limits import InLetters, limits_of
 from symflex.letters.roots import FactorInLetters
+from symflex.letters.short import approximation
+from symflex.options import DeriveOptions
 from symflex.print.latex.equation import model_labels
 from symflex.report.document import Block, ChapterPart, Code, Run, Section, labelled, parted, text
-from symflex.report.sections.formulas import ratio
+from symflex.report.sections.formulas import displayed, ratio
 from symflex.report.sections.roots import decimal
 from symflex.report.study import Study, attempt
+from symflex.transfer import AnyTransferFunction
 
 
 def letter_section(study: Study) -> ChapterPart | None:
@@ -24,7 +29,7 @@ def letter_section(study: Study) -> ChapterPart | None:
         found = roots_in_letters(tf, bound, maps[tf.name]) if tf.name in maps else ()
         blocks = tuple(_factor(each, each.factor, labels) for each in found if each.factor)
         read = (_lines(each, labels) for each in (limits_of(tf), dimensionless_of(tf)) if each.rows)
-        if blocks := (*blocks, *read):
+        if blocks := (*blocks, *read, *_near(tf, f"eq:{study.stem}:near:{i}")):
             sections.append(Section(tf.name, blocks, f"{study.stem}-letters-{i}", ratio(tf)))
     return ChapterPart("In letters", tuple(parted(sections)), {}) if sections else None
 
@@ -36,6 +41,16 @@ def _lines(found: InLetters, labels: dict[str, str]) -> Block:
         comment = f", {row.comment}; " if row.comment else "; "
         runs += [Code(row.name), f"{row.relation.strip()} ", labelled(row.expression, labels), comment]
     return text(*runs[:-1], ".")
+
+
+def _near(tf: AnyTransferFunction, label: str) -> tuple[Block, ...]:
+    """Return a shorter function or one that is rational, and what is proved of it."""
+    given = DeriveOptions(short="1 %") if tf.is_reduced and tf.is_rational else DeriveOptions(order=2)
+    near = attempt(partial(approximation, tf, given))
+    proof = None if isinstance(near, SymflexError) else near[1].approximation
+    if isinstance(near, SymflexError) or not proof or proof.is_whole:
+        return ()
+    return *displayed(*near, label), text("; ".join(proof.said), ".")
 
 
 def _factor(factor: FactorInLetters, zero: Expression, labels: dict[str, str]) -> Block:

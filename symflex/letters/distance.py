@@ -1,0 +1,197 @@
+"""How far two functions with numbers are apart.
+
+Input: a function and one in its place, both bound to the same values.
+Output: the largest displacement of a pole and of a zero in a band, and where the magnitudes agree.
+
+    1/(m s^2 + b s + k) with k 1 % less     the poles move by 0.5 %, the magnitude differs most beside them
+
+On a piece of the imaginary axis about s_0 the quotient is ``Q = Q(s_0) exp((s - s_0) Q'/Q)``, with Q'/Q in
+balls on the whole piece (the mean value theorem for ln Q); pieces are halved until they are decided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from decimal import ROUND_CEILING, Context
+from fractions import Fraction
+from functools import cache
+from math import inf, isfinite, isnan, log, nextafter
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.balls import covered, precision
+from symflex.print.forms.printed import Approximation
+from symflex.roots.locate import locate
+from symflex.roots.region import Band
+from symflex.roots.root import modes_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import BoundTransferFunction
+
+BITS = 128
+DECADE = 10
+"""Ratio of a band's ends to the lowest and the highest root, where the model declares no band."""
+NARROWEST = 1e-4
+"""Shortest piece of a band whose magnitude is examined, as a share of the band's logarithm."""
+UNCHANGED = 1e-12
+"""Change below which the radius of a ball is all there is."""
+LOST = 0.5
+"""Displacement from which a root is no longer taken for the same one."""
+DECIBELS = 1.0
+"""Difference in magnitude that statements are about: 12 %."""
+BESIDE = 1.05
+"""Ratio of frequencies up to which a part of the band is not told apart from a resonance or from a gap."""
+SHOWN = 6
+"""Number of parts of a band, or of roots, that a sentence lists."""
+
+
+def percent(share: float) -> str:
+    """Return a bound in percent, rounded up.
+
+    Examples
+    --------
+    >>> percent(0.005401), percent(0.0)
+    ('0.55 %', '0 %')
+    """
+    shown = Context(prec=2, rounding=ROUND_CEILING).create_decimal_from_float(100 * share)
+    return f"{float(shown):.10g} %" if isfinite(share) else "an unknown share"
+
+
+def distance(
+    before: BoundTransferFunction,
+    after: BoundTransferFunction,
+    roots: tuple[PoleZeroMap, PoleZeroMap],
+    errors: Sequence[float] = (),
+) -> Approximation:
+    """Return how far a function is from the one it stands in place of, in the band of the model.
+
+    For each of some relative ``errors`` it says up to which frequency it is not exceeded.
+    """
+    first, second = roots
+    low, high = band = band_of(before, first)
+    said: list[str] = []
+    facts: dict[str, object] = {"band_hz": [low, high]}
+    places = {}
+    for kind, one, other in (("poles", first.poles, second.poles), ("zeros", first.zeros, second.zeros)):
+        worst, compared, lost = _moved(one, other, high)
+        how = f"moved by at most {percent(worst)}" if worst > UNCHANGED else "where they were"
+        parts = [f"{compared} {how}"] * bool(compared) + [f"{lost} without a counterpart"] * bool(lost)
+        said += [f"{kind} up to {high:.4g} Hz: {', '.join(parts)}"] if parts else []
+        facts[kind] = {"displacement": worst, "compared": compared, "lost": lost}
+        places[kind] = tuple({r.frequency_hz(): None for r in modes_of(one)})
+    quotient = _quotient(before, after)
+    for error in errors:
+        pieces = _proved(quotient, band, lambda q: abs(q - 1), error)
+        end = next((b for a, b in pieces if a == low), None)
+        facts[f"within_{100 * error:g}_percent_to_hz"] = end
+        said += [f"error at most {percent(error)}: {low:.4g} to {end:.4g} Hz"] if end else []
+    kept = _proved(quotient, band, lambda q: abs(abs(q).log()), DECIBELS / 20 * log(10))
+    where = " and ".join(f"{a:.4g} to {b:.4g}" for a, b in kept[:SHOWN]) or "nowhere"
+    said.append(f"magnitude within {DECIBELS:g} dB: {where} Hz")
+    ends, excepted = [low, *(end for piece in kept for end in piece), high], []
+    for a, b in zip(ends[::2], ends[1::2], strict=True):
+        if a < b:
+            inside = {k: [f for f in v if a <= BESIDE * f and f <= BESIDE * b] for k, v in places.items()}
+            shown = [f"{k} at {', '.join(f'{x:.4g}' for x in v[:SHOWN])} Hz" for k, v in inside.items() if v]
+            said.append(", ".join([f"excepted: {a:.4g} to {b:.4g} Hz", *shown]))
+            excepted.append({"band_hz": [a, b], **{f"{k}_hz": v for k, v in inside.items()}})
+    facts |= {"within_1_db_hz": [[*piece] for piece in kept], "excepted": excepted}
+    return Approximation(tuple(said), facts)
+
+
+def roots_of(
+    before: BoundTransferFunction, after: BoundTransferFunction, first: PoleZeroMap | None = None
+) -> tuple[PoleZeroMap, PoleZeroMap]:
+    """Return the roots of two functions, of distributed ones those in the band of the first."""
+    band = before.source.model.analysis.band
+    region = None if before.is_rational or band is None else Band(Fraction(0), band[1])
+    first = first or locate(before, region, 15)
+    if after is before:
+        return first, first
+    more = Band(Fraction(0), Fraction(band_of(before, first)[1]) * 5 / 4)
+    # Nothing is known of the second from the model's energy.
+    return first, locate(replace(after, is_of_model=False), None if after.is_rational else more, 15)
+
+
+def band_of(bound: BoundTransferFunction, roots: PoleZeroMap) -> tuple[float, float]:
+    """Return the declared band [Hz], or one that shows all roots."""
+    band = bound.source.model.analysis.band
+    if band is not None:
+        return float(band[0]), float(band[1])
+    sizes = [r.frequency_hz() for r in (*roots.poles, *roots.zeros) if not r.is_zero] or [1.0]
+    poles = [r.frequency_hz() for r in roots.poles if not r.is_zero]
+    # A distributed system has further poles above the last one found.
+    return min(sizes) / DECADE, max(poles or sizes) * (1 if roots.is_infinite else DECADE)
+
+
+def _quotient(before: BoundTransferFunction, after: BoundTransferFunction) -> Callable[[float, float], acb]:
+    """Return what encloses the quotient of two functions between two frequencies [Hz]."""
+    sides = [(1, after.enclosed(BITS)), (-1, before.enclosed(BITS))]
+    if before.ratio.ring.names == after.ratio.ring.names and before.is_rational == after.is_rational:
+        # What both have cancels.
+        sides = [(1, replace(before, ratio=after.ratio / before.ratio, parts=None).enclosed(BITS))]
+
+    def enclosed(low: float, high: float) -> acb:
+        turn = 2 * arb.pi()
+        piece = acb(0, (low * turn).union(high * turn))
+        value, slope = acb(1), acb(0)
+        for sign, each in sides:
+            value *= each(piece.mid()) ** sign
+            slope += sign * each.logarithmic_derivative(piece)
+        return value * ((piece - piece.mid()) * slope).exp()
+
+    return cache(enclosed)
+
+
+def upper(value: arb) -> float:
+    """Return a double that no number in a ball exceeds."""
+    found = nextafter(float(value.upper()), inf) if value != 0 else 0.0
+    return inf if isnan(found) else found
+
+
+def _moved(before: Sequence[Root], after: Sequence[Root], high_hz: float) -> tuple[float, int, int]:
+    """Match roots, the closest ones first, and bound how far they are apart."""
+    one = [r for r in modes_of(before) if r.frequency_hz() <= high_hz]
+    other = modes_of(after)
+    gaps = [
+        (abs(complex(a) - complex(b)) / abs(complex(a)), i, j)
+        for i, a in enumerate(one)
+        for j, b in enumerate(other)
+    ]
+    pairs: dict[int, int] = {}
+    for gap, i, j in sorted(gaps):
+        if gap <= LOST and i not in pairs and j not in pairs.values():
+            pairs[i] = j
+    balls = [(one[i].enclosure(), other[j].enclosure()) for i, j in pairs.items()]
+    worst = max((upper(abs(a - b) / abs(a)) for a, b in balls), default=0.0)
+    return worst, len(pairs), len(one) - len(pairs)
+
+
+def _proved(
+    quotient: Callable[[float, float], acb],
+    band: tuple[float, float],
+    measure: Callable[[acb], arb],
+    most: float,
+) -> tuple[tuple[float, float], ...]:
+    """Return the parts of a band [Hz] in which a measure of the quotient is proved below a bound."""
+
+    def at(t: float) -> float:
+        return band[int(t)] if t in (0, 1) else band[0] * (band[1] / band[0]) ** t
+
+    def decide(a: float, b: float) -> bool | None:
+        with precision(BITS):
+            found = measure(quotient(at(a), at(b)))
+            is_decided = found < most or found > most or b - a < 2 * NARROWEST
+            return bool(found < most) if is_decided else None
+
+    joined: list[tuple[float, float]] = []
+    for a, b in sorted((at(a), at(b)) for a, b, good in covered(decide, 16, NARROWEST / 4) if good):
+        if joined and a <= joined[-1][1]:
+            joined[-1] = joined[-1][0], b
+        else:
+            joined.append((a, b))
+    return tuple((a, b) for a, b in joined if b > BESIDE * a)

@@ -1,0 +1,325 @@
+"""Short formulas: a transfer function with fewer terms, whose coefficients are proved to change little.
+
+Input: a transfer function, a bound, and the ends of the parameters that may be off.
+Output: the shortest print that was found whose coefficients of s keep within the bound, and its distance.
+
+    m_1 m_2 s^2 + k (m_1 + m_2)   with m_2 = m_1/200 and 1 %   ->   m_1 m_2 s^2 + k m_1 = m_1 (m_2 s^2 + k)
+
+Terms of one sign add up to ``P(x) >= P(x_0) prod(t_i^a_i)`` where every letter is ``t_i`` times its value and
+``a_i`` is the mean of its exponents, weighted by the terms at the values (the inequality of arithmetic and
+geometric means). So a term M is at most ``M(x_0)/P(x_0) prod(t_i^(e_i - a_i))`` of them, each factor at one
+end of its letter. Terms of the other sign take away what they are at most.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import Factored, evaluated
+from symflex.algebra.ring import irreducible_factors
+from symflex.algebra.vanishing import OriginSeries
+from symflex.balls import ball, precision
+from symflex.budget import spend
+from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError, counted
+from symflex.letters.distance import BITS, UNCHANGED, band_of, distance, percent, roots_of, upper
+from symflex.letters.order import truncated
+from symflex.model import spread_box
+from symflex.model.model import IMAGINARY
+from symflex.options import share_of
+from symflex.print.forms import print_form
+from symflex.print.forms.arrange import Arranged, length
+from symflex.print.forms.printed import Approximation, terms_of
+from symflex.transfer import TransferFunction, bind
+from symflex.transfer.bind import values_for
+from symflex.transfer.enclose import enclose, enclosure
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.options import DeriveOptions
+    from symflex.print.forms import PrintedForm
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import AnyTransferFunction
+
+    Key = tuple[int, ...]
+    Term = tuple[tuple[int, ...], int]
+    Share = tuple[arb, int]
+
+MOST_TERMS = 20_000
+"""Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
+FACTORED_TERMS = 120
+"""Terms of a shortened polynomial up to which it is tried whether it has factors now."""
+BUDGETS = (1.0, 0.85, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05, 0.0)
+"""Shares of the bound that are tried for each factor of a product."""
+TINY = 2.0**-60
+"""Relative radius up to which a value counts as one number."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Letters:
+    """The generators of a ring that have values, and how far these may be off."""
+
+    keys: tuple[int, ...]  # positions of the others: s, wavenumbers, kernels, the imaginary unit
+    values: Mapping[int, arb]
+    ends: Mapping[int, tuple[arb, arb]]  # logarithms of what they may be multiplied by
+
+    @staticmethod
+    def of(tf: TransferFunction, box: Mapping[str, tuple[Fraction, Fraction]]) -> _Letters:
+        """Return the letters of a function."""
+        known = {"pi": arb.pi()} | {p.name: enclosure(p.value)() for p in tf.model.parameters if p.value}
+        wide = {n: ball(box[n][0]).union(ball(box[n][1])) if n in box else v for n, v in known.items()}
+        known.pop(IMAGINARY, None)
+        for values in (known, wide):
+            for constant in tf.constants:
+                each = {name: (lambda v=v: v) for name, v in values.items()}
+                try:
+                    values[constant.generator] = enclose(constant.expression, each)
+                except (ModelError, KeyError):
+                    continue  # of parameters without value, or wider than the function is defined
+            for name, value in tf.definitions:
+                if value.ring.used_in(f for f, _ in value.factors) <= values.keys():
+                    values[name] = evaluated(value, values.__getitem__, arb(1))
+        index, ends = tf.ratio.ring.index, {}
+        for name in index.keys() & known.keys():
+            scale = wide.get(name, arb("nan")) / known[name]
+            if known[name] != 0 and not scale.rad() < TINY:
+                ends[index[name]] = scale.lower().log(), scale.upper().log()
+        keys = tuple(i for name, i in index.items() if name not in known)
+        return _Letters(keys, {index[n]: v for n, v in known.items() if n in index}, ends)
+
+    def groups(self, polynomial: fmpz_mpoly) -> dict[Key, list[Term]]:
+        """Return the terms of each coefficient of s and of kernels."""
+        groups: dict[Key, list[Term]] = {}
+        for monomial, number in polynomial.terms():
+            exponents = tuple(map(int, monomial))
+            groups.setdefault(tuple(exponents[i] for i in self.keys), []).append((exponents, int(number)))
+        return groups
+
+    def value(self, term: Term) -> arb:
+        """Return a term of a coefficient at the values."""
+        return prod((v ** term[0][i] for i, v in self.values.items() if term[0][i]), start=arb(term[1]))
+
+    def shares(self, whole: Sequence[Term], wanted: Sequence[Term]) -> list[Share]:
+        """Return how large terms are at most beside a whole coefficient, and their signs; nan if unknown."""
+        sizes = [(term, self.value(term)) for term in whole]
+        sign = 1 if sum((v for _, v in sizes), arb(0)) > 0 else -1
+        main = [(term, v) for term, v in sizes if v * sign > 0]
+        weight = sum((v for _, v in main), arb(0))
+        means = {i: sum((v * m[i] for (m, _), v in main), arb(0)) / weight for i in self.ends}
+
+        def share(term: Term, size: arb) -> arb:
+            grows = arb(0)
+            for i, (low, high) in self.ends.items():
+                exponent = term[0][i] - means[i]
+                grows += (exponent * low).max(exponent * high)
+            return abs(size / weight) * grows.exp()
+
+        floor = 1 - sum((share(*each) for each in sizes if not each[1] * sign > 0), arb(0))
+        floor = floor if floor > 0 else arb("nan")
+        found = [(term, self.value(term)) for term in wanted]
+        return [(share(t, v) / floor, 1 if v > 0 else -1) for t, v in found]
+
+    def change(self, before: fmpz_mpoly, after: fmpz_mpoly) -> tuple[float, float]:
+        """Return the largest relative change of a coefficient, at the values and over the box, rounded up."""
+        gone, whole, worst = self.groups(before - after), self.groups(before), (0.0, 0.0)
+        for key, terms in gone.items():
+            spend()
+            total = sum(map(self.value, whole[key]), arb(0))
+            each = abs(sum(map(self.value, terms), arb(0)) / total), _most(self.shares(whole[key], terms))
+            worst = max(worst[0], upper(each[0])), max(worst[1], upper(each[1]))
+        return worst
+
+
+def _most(shares: Sequence[Share]) -> arb:
+    """Return a bound of a sum of terms, of which those of either sign may be next to nothing."""
+    one, other = (sum((x for x, each in shares if each == sign), arb(0)) for sign in (1, -1))
+    return one.max(other)
+
+
+class _Pruned:
+    """A polynomial of one side, and which of its terms may go."""
+
+    def __init__(self, polynomial: fmpz_mpoly, exponent: int, letters: _Letters) -> None:
+        self.polynomial, self.exponent = polynomial, exponent
+        self.inner = letters.keys[1:]  # positions of kernels
+        self.whole: set[Key] = set()  # coefficients that stay as they are
+        groups = letters.groups(polynomial)
+        self.shares = {key: [*zip(letters.shares(g, g), g, strict=True)] for key, g in groups.items()}
+        for shares in self.shares.values():
+            shares.sort(key=lambda each: upper(each[0][0]))
+
+    def gone(self, most: float) -> dict[Key, list[tuple[Share, Term]]]:
+        """Return the terms that go where every coefficient may change by so much, at most all but one."""
+        gone: dict[Key, list[tuple[Share, Term]]] = {}
+        for key in self.shares.keys() - self.whole:
+            for each in self.shares[key][:-1]:
+                if not _most([share for share, _ in (*gone.get(key, ()), each)]) < most:
+                    break
+                gone.setdefault(key, []).append(each)
+        # A sum of kernels is a function of s only with all its terms: those with the same letters.
+        there = Counter(self.letters_of(term) for shares in self.shares.values() for _, term in shares)
+        there.subtract(self.letters_of(term) for own in gone.values() for _, term in own)
+        kept = (
+            (key, [each for each in own if not there[self.letters_of(each[1])]]) for key, own in gone.items()
+        )
+        return {key: own for key, own in kept if own}
+
+    def letters_of(self, term: Term) -> tuple[int, ...]:
+        """Return the exponents of letters and s in a term."""
+        return tuple(0 if i in self.inner else e for i, e in enumerate(term[0]))
+
+
+def _without(each: _Pruned, gone: Mapping[Key, Sequence[tuple[Share, Term]]]) -> fmpz_mpoly:
+    context = each.polynomial.context()
+    return each.polynomial - context.from_dict(dict(term for own in gone.values() for _, term in own))
+
+
+def _shorter(
+    tf: TransferFunction, sums: Sequence[_Pruned], letters: _Letters, most: float
+) -> tuple[TransferFunction, tuple[float, float], list[tuple[float, _Pruned, Key]]]:
+    """Return a function without the terms that both sides allow, the changes, and what went where."""
+    ring, one = tf.ratio.ring, tf.ratio.ring.constant(1)
+    changes: list[tuple[float, float]] = []
+    images: list[tuple[fmpz_mpoly, Factored]] = []
+    dropped: list[tuple[float, _Pruned, Key]] = []
+    for sign in (1, -1):
+        side = [each for each in sums if each.exponent * sign > 0]
+        if prod(len(each.polynomial) ** abs(each.exponent) for each in side) > MOST_TERMS:
+            message = f"a side of {tf.name} has more than {MOST_TERMS} terms, which are not compared"
+            raise BudgetError(Diagnostic("SF501", message, None, "keep repeated sums in [definitions]"))
+        before = prod((each.polynomial ** abs(each.exponent) for each in side), start=one)
+        for budget in BUDGETS:
+            gone = [each.gone(most * budget) for each in side]
+            after = [_without(*pair) for pair in zip(side, gone, strict=True)]
+            powers = (p ** abs(each.exponent) for p, each in zip(after, side, strict=True))
+            change = letters.change(before, prod(powers, start=one))
+            if max(change) <= most:
+                break
+        changes.append(change)
+        for each, own, polynomial in zip(side, gone, after, strict=True):
+            image = Factored.polynomial(ring, polynomial)
+            if own and len(polynomial) <= FACTORED_TERMS and not tf.kernels:
+                number, factors = irreducible_factors(polynomial)
+                image = Factored(ring, Fraction(number), tuple(factors))
+            images.append((each.polynomial, image))
+            dropped += [(upper(_most([x for x, _ in terms])), each, key) for key, terms in own.items()]
+
+    def shorter(value: Factored) -> Factored:
+        return value.map_factors(
+            ring, lambda f: next((new for old, new in images if old == f), Factored.polynomial(ring, f))
+        )
+
+    parts = (shorter(tf.num), shorter(tf.den)) if tf.parts else None
+    short = replace(tf, reduced=shorter(tf.ratio), closed=None, hidden=(), parts=parts, solve=None)
+    return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped
+
+
+def _counts(located: PoleZeroMap, end: float) -> list[int]:
+    """Return the numbers of roots up to a frequency on the right; of a rational function also on the axis."""
+    sides = [[r for r in side for _ in range(r.multiplicity)] for side in (located.poles, located.zeros)]
+    right = [sum(bool(r.re > 0) and r.frequency_hz() <= end for r in side) for side in sides]
+    if located.is_infinite:
+        return right
+    return [*right, *(sum(r.re.contains(0) for r in side) for side in sides), *map(len, sides)]
+
+
+def _at_rest(tf: TransferFunction) -> list[int | None]:
+    """Return the orders of numerator and denominator at s = 0, of functions with kernels."""
+    series = OriginSeries(tf.ratio.ring, tf.kernels) if tf.kernels else None
+    return [series.order(part) if series else None for part in (tf.num, tf.den)]
+
+
+def shortened(
+    tf: TransferFunction, most: Fraction, share: Fraction | None = None, form: str | None = None
+) -> tuple[TransferFunction, PrintedForm]:
+    """Return a function with as few terms as a bound on its coefficients allows.
+
+    ``share`` is the spread of every parameter; by default each has its own. Raises ModelError: SF229 for a
+    parameter without value; BudgetError: SF501 for a side of too many terms.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { m = "200 kg", m_n = "1 kg", k = "1 kN/m" }
+    ... inputs.F = {}
+    ... outputs.x = "F/((m + m_n)*s^2 + k)"
+    ... ''')
+    >>> short, form = shortened(pipeline.derive_all(model)[0], Fraction(1, 100), Fraction(1, 10))
+    >>> str(short.ratio), form.approximation.said[0]
+    ('(s^2*m + k)^-1', '2 of 3 terms; coefficients change by at most 0.5 %, over the spread by 0.61 %')
+    """
+    values_for(tf.model, tf.parameters, {})
+    has_box = share is not None or any(p.spread is not None for p in tf.parameters)
+    box = spread_box(tf.parameters, share) if has_box else {}
+    own, closed = bind(tf), Arranged().definitions.of(tf) if tf.definitions else None
+    first, _ = roots_of(own, own)
+    end, found = band_of(own, first)[1], []
+    for source in (tf, closed):
+        if source is None or source.is_rational != tf.is_rational:
+            continue
+        # What kernels of other waves divide by vanishes with them only as a whole.
+        is_plain = all(law.kind in ("exponential", "wave", "bending") for law in source.kernels.dispersions)
+        opaque = frozenset() if is_plain else frozenset(source.kernels.generators)
+        with precision(BITS):
+            letters = _Letters.of(source, box)
+            factors = [(f, e) for f, e in source.ratio.factors if len(f) > 1]
+            sums = [_Pruned(f, e, letters) for f, e in factors if not source.ratio.ring.used_in([f]) & opaque]
+        kept, at_rest = -1, _at_rest(source)
+        while True:
+            kept += 1
+            with precision(BITS):
+                short, changes, dropped = _shorter(source, sums, letters, float(most))
+            if not dropped or _at_rest(short) == at_rest:
+                after = bind(short)
+                second = roots_of(own, after, first)[1]
+                if not dropped or (after.symbolic is None and _counts(first, end) == _counts(second, end)):
+                    break
+            _, owner, key = max(dropped, key=lambda each: each[0])
+            owner.whole.add(key)
+        printed = print_form(short, form)
+        size = length(printed.num, printed.den, *(e for _, e in printed.where))
+        found.append((size, printed, short, changes, kept, after, second))
+    _, printed, short, changes, kept, after, second = min(found, key=lambda each: each[0])
+    static = None
+    if own.is_rational:
+        quotient = replace(own, ratio=after.ratio / own.ratio).enclosed(BITS)
+        static = upper(abs(quotient(acb(0)) - 1))
+    terms = terms_of(short.ratio), terms_of(tf.ratio)
+    over = f", over the spread by {percent(changes[1])}" if box else ""
+    said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
+    said += [f"value for s -> 0: changed by {percent(static)}"] if static and static > UNCHANGED else []
+    whole = f"{counted(kept, 'coefficient')} kept whole, as a root would cross the imaginary axis or cancel"
+    said += [whole] if kept else []
+    coefficients = {"nominal": changes[0], "spread": changes[1] if box else None}
+    facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
+    apart = distance(own, after, (first, second))
+    facts |= {"static": static, "kept_whole": kept} | apart.facts
+    return short, replace(printed, approximation=Approximation((*said, *apart.said), facts, not changes[0]))
+
+
+def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:
+    """Return a function as ``--short`` or ``--order`` asks for it, and its form with what is proved.
+
+    Raises UsageError: SF902 where there is no such form.
+    """
+    if not tf.is_reduced:
+        message = f"{tf.name} was derived in nested form, which has no coefficients"
+        raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
+    if (given.short is None) == (given.order is None) or (given.spread is not None and given.short is None):
+        raise UsageError(
+            Diagnostic("SF902", "--short and --order exclude each other; --spread is for --short")
+        )
+    if given.order is not None:
+        return truncated(tf, given.order)
+    spread = None if given.spread is None else share_of(given.spread, "--spread")
+    return shortened(tf, share_of(given.short or "", "--short"), spread, given.form)

@@ -1,0 +1,87 @@
+"""Distributed functions up to a power of s: the books' effective masses, and the errors that are stated."""
+
+import mpmath
+import pytest
+
+from symflex import pipeline
+from symflex.errors import UsageError
+from symflex.letters.order import truncated
+from symflex.print.text import form_text
+
+VALUES = {"E": "70 GPa", "I": "1e-8 m^4", "rho": "2700 kg/m^3", "A": "1e-3 m^2", "l": "1 m", "m": "1 kg"}
+VALUES |= {"G": "26 GPa", "J": "1 g*m^2", "J_p": "1e-8 m^4", "eta": "1 us"}
+HEAD = "symflex = 1\n" + "".join(f'parameters.{name} = "{value}"\n' for name, value in VALUES.items())
+CLAMP = 'elements.clamp = { type = "fixed", at = "a" }\n'
+MASS = 'elements.load = { type = "mass", at = "b", m = "m" }\ninputs.F = { force = "b" }\noutputs.X = "b"\n'
+INERTIA = (
+    'elements.load = { type = "inertia", at = "b", J = "J" }\ninputs.F = { torque = "b" }\noutputs.X = "b"\n'
+)
+BEAM, ROD = (
+    'type = "beam", E = "E", I = "I", rho = "rho", A = "A"',
+    'type = "rod", E = "E", rho = "rho", A = "A"',
+)
+
+
+def member(law, between='["a", "b"]', length="l", name="arm"):
+    return f'elements.{name} = {{ {law}, between = {between}, l = "{length}" }}\n'
+
+
+def function(text):
+    return pipeline.derive_all(pipeline.loads(HEAD + text))[0]
+
+
+CANTILEVER = CLAMP + MASS + member(BEAM)
+PINS = 'elements.p = { type = "pin", at = "a" }\nelements.q = { type = "pin", at = "c" }\n'
+BOOKS = [
+    # Rayleigh 1877, section 182 a; Blevins 1979, table 8-8
+    (CANTILEVER, 2, "3*E*I/l^3 + (33*rho*A*l/140 + m)*s^2"),
+    (
+        PINS + MASS + member(BEAM, length="l/2") + member(BEAM, '["b", "c"]', "l/2", "other"),
+        2,
+        "48*E*I/l^3 + (17*rho*A*l/35 + m)*s^2",
+    ),
+    # a third of a spring's mass, of a shaft's inertia
+    (CLAMP + MASS + member(ROD), 2, "E*A/l + (rho*A*l/3 + m)*s^2"),
+    (
+        CLAMP + INERTIA + member('type = "shaft", G = "G", J = "J_p", rho = "rho"'),
+        2,
+        "G*J_p/l + (rho*l*J_p/3 + J)*s^2",
+    ),
+    # E (1 + eta s) A/l
+    (CLAMP + MASS + member(ROD + ', eta = "eta"'), 1, "E*A/l + E*A*eta/l*s"),
+    # x^3 (1 + cos x cosh x)/(sin x cosh x - cos x sinh x) = 3 - 33/140 x^4 - 1037/1940400 x^8 - ..., by SymPy
+    (CANTILEVER, 4, "3*E*I/l^3 + (33*rho*A*l/140 + m)*s^2 - 1037*rho^2*A^2*l^5/(1940400*E*I)*s^4"),
+]
+
+
+@pytest.mark.parametrize(("text", "order", "expected"), BOOKS)
+def test_the_dynamic_stiffness_is_that_of_books(text, order, expected):
+    assert form_text(*truncated(function(text), order)) == f"X/F = 1/({expected})"
+
+
+def test_the_stated_error_is_not_exceeded_and_the_pole_lies_where_it_is_said():
+    facts = truncated(function(CANTILEVER), 2)[1].approximation.facts
+    ei, rho_a, m = 700, mpmath.mpf(27) / 10, 1
+
+    def stiffness(omega):
+        x = mpmath.sqrt(omega * mpmath.sqrt(rho_a / ei))
+        sin, cos, sinh, cosh = (f(x) for f in (mpmath.sin, mpmath.cos, mpmath.sinh, mpmath.cosh))
+        return ei * x**3 * (1 + cos * cosh) / (sin * cosh - cos * sinh) - m * omega**2
+
+    def short(omega):
+        return 3 * ei - (mpmath.mpf(33) / 140 * rho_a + m) * omega**2
+
+    for error in (1, 10):
+        end = 2 * mpmath.pi * facts[f"within_{error}_percent_to_hz"]
+        errors = [abs(stiffness(w) / short(w) - 1) for w in mpmath.linspace(end / 1000, end, 200)]
+        assert 0.9 * error / 100 <= max(errors) <= error / 100
+    with mpmath.workdps(30):
+        exact = mpmath.findroot(stiffness, 35.7)
+        moved = abs(mpmath.sqrt(3 * ei / (m + mpmath.mpf(33) / 140 * rho_a)) / exact - 1)
+    assert moved <= facts["poles"]["displacement"] <= 1.000001 * moved
+
+
+@pytest.mark.parametrize("law", [', theory = "timoshenko", G = "G", kappa = "5/6"', ', N = "100 N"'])
+def test_waves_of_two_kinds_are_refused(law):
+    with pytest.raises(UsageError, match="of more than one kind"):
+        truncated(function(CLAMP + MASS + member(BEAM + law)), 2)

@@ -1,0 +1,138 @@
+"""Short formulas: what is said of coefficients, roots and magnitude holds, and what must stay stays."""
+
+from fractions import Fraction
+from random import Random
+
+import numpy as np
+import pytest
+import sympy
+
+from symflex import pipeline
+from symflex.api.transfer_function import Form
+from symflex.errors import UsageError
+from symflex.letters.short import approximation, shortened
+from symflex.options import DeriveOptions
+from symflex.print.forms import print_form
+from symflex.print.text import form_text
+
+HEAD = "symflex = 1\ninputs.u = {}\n"
+
+
+def function(output, **values):
+    """Return the function of a formula; a pair is a value and its spread."""
+    pairs = {n: v if isinstance(v, tuple) else (v, 0) for n, v in values.items()}
+    entries = (
+        f'parameters.{n} = {{ value = {v}, assume = "real"{f", spread = {s}" if s else ""} }}\n'
+        for n, (v, s) in pairs.items()
+    )
+    (tf,) = pipeline.derive_all(pipeline.loads(HEAD + "".join(entries) + f'outputs.y = "{output}"'))
+    return tf
+
+
+def test_a_term_that_keeps_a_pole_in_the_left_half_plane_stays():
+    # Routh 1877: s^3 + a s^2 + s + c is stable for a > c; 1.005 > 1.002 > 1
+    form = shortened(function("u/(s^3 + (a + d)*s^2 + s + c)", a=1, d=0.005, c=1.002), Fraction(1, 100))[1]
+    assert form.approximation.facts["terms"] == [5, 5]
+    assert form.approximation.facts["kept_whole"] == 1
+
+
+def test_a_coefficient_of_both_signs_is_measured_by_its_difference():
+    # d is 0.1 % of a, and 1 % of a - b + d at the values, but up to 1.25 % over the spread
+    tf = function("u/(s + a - b + d)", a=(10, 0.01), b=(9, 0.01), d=0.01)
+    assert shortened(tf, Fraction(1, 100))[1].approximation.facts["terms"][0] == 4
+    assert shortened(tf, Fraction(1, 70))[1].approximation.facts["terms"][0] == 3
+
+
+def test_terms_of_opposite_sign_in_which_nothing_is_left_stay():
+    # over the spread a - b is zero
+    tf = function("u/(s + a - b + d)", a=(10, 0.1), b=(9, 0.1), d=1e-9)
+    assert shortened(tf, Fraction(1, 100))[1].approximation.facts["terms"][0] == 4
+
+
+@pytest.mark.parametrize(
+    ("output", "values", "expected"),
+    [
+        # sums inside products: (a + d) and (b + e) share the bound
+        ("u/(((a + d)*s + 1)*((b + c)*s + 2))", {"a": 1, "d": 4e-3, "b": 7, "c": 2e-2},
+            "1/((a*s + 1)*(b*s + 2))"),
+        # a zero next to a pole does not cancel it
+        ("u*(a*s + 1)/((a + d)*s + 1)", {"a": 1, "d": 0.001}, "(a*s + 1)/((a + d)*s + 1)"),
+        # two springs in series of which one is rigid
+        ("u*(k + c)/(m*s^2*(k + c) + k*c)", {"m": 1, "k": 5, "c": 5000}, "1/(m*s^2 + k)"),
+        # the dead time is as it was
+        ("u*exp(-T*s)/(s + a + d)", {"T": 1, "a": 2, "d": 0.001}, "exp(-T*s)/(s + a)"),
+    ],
+)  # fmt: skip
+def test_a_short_formula_is_what_an_author_would_write(output, values, expected):
+    tf, form = shortened(function(output, **values), Fraction(1, 100))
+    assert form_text(tf, form) == f"y/u = {expected}"
+
+
+VALUES = {"a": 3.0, "b": 0.02, "c": 2.0, "d": 0.01, "e": 0.5}
+OUTPUT = "u*(e*s + a + d)/(a*c*s^2 + (a*d + c*e + b*d)*s + a - b*c^2 + d*e)"
+
+
+def coefficients(expression, values):
+    """Return the coefficients of a SymPy expression in s, in doubles."""
+    symbols = {x.name: x for x in expression.free_symbols}
+    numbers = {symbols[n]: v for n, v in values.items() if n in symbols}
+    return np.array([float(c) for c in sympy.Poly(expression.subs(numbers), symbols["s"]).all_coeffs()])
+
+
+def test_a_sum_of_kernels_loses_what_stands_before_all_of_it():
+    # a beam with a spring at its tip that is a thousandth of its own stiffness, and one that is not
+    text = """
+    symflex = 1
+    parameters = { EI = "3 N*m^2", m = "2 kg/m", l = "1 m", k = "1 N/m", c = "1 mN/m" }
+    inputs.F = { force = "b" }
+    outputs.X = "b"
+    [elements]
+    clamp = { type = "fixed", at = "a" }
+    arm = { type = "beam", between = ["a", "b"], EI = "EI", rhoA = "m", l = "l" }
+    spring = { type = "spring", between = ["b", "ground"], k = "k + c" }
+    """
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    short, form = shortened(tf, Fraction(1, 100))
+    assert "c" not in {p.name for p in short.parameters}
+    assert (
+        form.approximation.facts["poles"]["lost"]
+        == 0
+        < form.approximation.facts["poles"]["displacement"]
+        < 1e-3
+    )
+
+
+def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
+    spread, random = 0.1, Random(3)
+    tf = function(OUTPUT, **{name: (value, spread) for name, value in VALUES.items()})
+    short, printed = shortened(tf, Fraction(3, 100))
+    before, after, facts = Form(tf, print_form(tf)), Form(short, printed), printed.approximation.facts
+    assert facts["terms"][0] < facts["terms"][1]
+    worst = 0.0
+    for _ in range(200):
+        point = {name: value * (1 + spread * random.choice((-1, 1))) for name, value in VALUES.items()}
+        pairs = [(before.num, after.num), (before.den, after.den)]
+        shares = [coefficients(y, point) / coefficients(x, point) for x, y in pairs]
+        worst = max(worst, *(float(abs(each - 1).max()) for each in shares))
+    assert worst <= facts["coefficients"]["spread"] <= 1.5 * worst
+    num, den, num_s, den_s = (coefficients(x, VALUES) for x in (before.num, before.den, after.num, after.den))
+    for kind, one, other in (("poles", den, den_s), ("zeros", num, num_s)):
+        gaps = [min(abs(np.roots(other) - root)) / abs(root) for root in np.roots(one)]
+        assert max(gaps) <= facts[kind]["displacement"] * (1 + 1e-9)
+    for low, high in facts["within_1_db_hz"]:
+        s = 2j * np.pi * np.geomspace(low, high, 200)
+        quotient = np.polyval(num_s, s) * np.polyval(den, s) / (np.polyval(num, s) * np.polyval(den_s, s))
+        assert np.all(np.abs(20 * np.log10(np.abs(quotient))) <= 1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"short": "2"}, "--short takes a share"),
+        ({"short": "1 %", "order": 2}, "exclude each other"),
+        ({"order": 2}, "it is a rational function of s already"),
+    ],
+)
+def test_what_cannot_be_short_is_refused(given, said):
+    with pytest.raises(UsageError, match=said):
+        approximation(function("u/(s + a)", a=1), DeriveOptions(**given))
