@@ -168,7 +168,7 @@ class Analyses(Plotted):
         digits: int = 15,
         budget: float | None = None,
     ) -> tuple[Root, ...]:
-        r"""Return the poles by natural frequency, both members of each conjugate pair.
+        """Return the poles by natural frequency, both members of each conjugate pair.
 
         Poles in the right half plane are always included; those outside the region asked for come last.
         :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether these are all.
@@ -198,7 +198,7 @@ class Analyses(Plotted):
 
         Examples
         --------
-        >>> from symflex import Model, loads
+        >>> from symflex import Model
         >>> from symflex.errors import BudgetError
         >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
         >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
@@ -212,9 +212,6 @@ class Analyses(Plotted):
         ...     poles = () if error.found is None else error.found.poles
         >>> [round(float(p.im), 6) for p in poles]
         [1.570796, -1.570796, 4.712389, -4.712389]
-        >>> model = loads('symflex = 1\nparameters = {T = "2 s"}\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"')
-        >>> model.transfer_function("y", "u").bind().poles()[0].letters
-        ('tau_p = T',)
         """
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return self._table(located, located.all_poles)

@@ -24,26 +24,15 @@ from flint import acb, arb
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors, terms_of
 from symflex.balls import precision
 from symflex.errors import UsageError
-from symflex.expressions import (
-    Call,
-    Expression,
-    Name,
-    Quotient,
-    names_among,
-    number,
-    power,
-    product_of,
-    quotient,
-    sum_of,
-)
-from symflex.letters.roots import CHECK_BITS, MOST_TERMS, FactorInLetters, LetterReader, RootFormula, numbered
-from symflex.letters.routh import Signs
+from symflex.expressions import Call, Expression, Name, Quotient, names, power, product_of, quotient, sum_of
+from symflex.letters.roots import MOST_TERMS, FactorInLetters, LetterReader, RootFormula, numbered
+from symflex.letters.routh import BITS, Signs
 from symflex.library.elements import LineElement
 from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.naming import Naming
-from symflex.print.forms.notation import plain_printer, wavenumber_laws
+from symflex.print.forms.notation import plain_printer, wave_times_length, wavenumber_laws
 from symflex.print.roots import roots_of
 from symflex.transfer.enclose import enclosure, later
 
@@ -63,12 +52,12 @@ MOST_RATIOS: Final = 3
 BESIDE: Final = arb("1e-6")
 """Part of q by which the two sides of a root are apart from it."""
 Q: Final = "q"
-ONE: Final = number(1)
 EXACT: Final = {"cos": "all solutions: q = (2*n - 1)*pi/2", "sin": "all solutions: q = n*pi"}
 """The solutions of an equation that is one function, n = 1, 2, ..."""
-SEVERAL: Final = "a factor depends on several lengths or wavenumbers, or on many ratios of parameters"
-LOSSES: Final = "with losses, no root is a number times a power of parameters"
-OTHERS: Final = "frequency equations are for Euler beams, rods, shafts and strings alone, without tension"
+NO_EQUATION: Final = (
+    "a frequency equation takes Euler beams, rods, shafts or strings without losses, tension and delays, of "
+    "one wavenumber, whose lengths are multiples of one, and at most three ratios of parameters"
+)
 
 
 def roots_in_letters(
@@ -99,7 +88,7 @@ def roots_in_letters(
     reader = LetterReader(tf, known, plain_printer(tf), Signs.of(tf))
     sides = {"poles": [f for f, _ in tf.den.factors], "zeros": [f for f, _ in tf.num.factors]}
     sides["hidden"] = [h.polynomial for h in tf.hidden]
-    with precision(CHECK_BITS):
+    with precision(BITS):
         found = [
             each
             for kind, factors in sides.items()
@@ -117,13 +106,11 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
     """Return the frequency equations whose roots are listed, and why there is none of a factor."""
     tf, naming = reader.tf, Naming.of(reader.tf)
     try:
-        page = (
-            FrequencyPage(tf) if all(d.kind in ("bending", "wave") for d in tf.kernels.dispersions) else None
-        )
+        page = FrequencyPage(tf) if {d.kind for d in tf.kernels.dispersions} <= {"bending", "wave"} else None
     except UsageError:
         page = None
     if page is None:
-        return [FactorInLetters("", None, note=OTHERS)]
+        return [FactorInLetters("", None, note=NO_EQUATION)]
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
     axes = (
@@ -141,7 +128,7 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
     for kind in ("poles", "zeros"):
         roots = [r for r in roots_of(located, kind) if not r.is_zero]
         if roots and not any(axis.place(r) > 0 for axis, _ in axes for r in roots):
-            made.append(FactorInLetters(kind, None, note=LOSSES))
+            made.append(FactorInLetters(kind, None, note=NO_EQUATION))
     return [each for each in made if each.solutions or not each.factor]
 
 
@@ -158,9 +145,8 @@ class _Axis:
 
     def place(self, root: Root) -> arb:
         """Return where a root is on the axis, 0 of one that is not proved to be there."""
-        if self.name == "omega":
-            return root.im if root.on_imaginary_axis else arb(0)
-        return root.re if root.is_real else arb(0)
+        where = (root.on_imaginary_axis, root.im) if self.name == "omega" else (root.is_real, root.re)
+        return where[1] if where[0] else arb(0)
 
     def equation(self, part: fmpz_mpoly, kind: str, roots: Sequence[Root]) -> FactorInLetters:
         """Return the equation of a factor with those of the roots that are its own, or why there is none."""
@@ -168,19 +154,17 @@ class _Axis:
         kernels = {g: x for g, x in self.functions.items() if g in used}
         waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
         if IMAGINARY in used or not waves <= self.laws.keys():
-            return FactorInLetters("", None, note=LOSSES)
+            return FactorInLetters(kind, None, note=NO_EQUATION)
         lengths = [x for _, _, x in kernels.values()]
         longest = [x for x in lengths if all((y / x).is_constant and y.unit <= x.unit for y in lengths)]
         if len(waves) > 1 or not longest or len(part) > MOST_TERMS:
-            return FactorInLetters("", None, note=SEVERAL)
+            return FactorInLetters(kind, None, note=NO_EQUATION)
         (wave,), whole = waves, longest[0]
         # omega^2 = square*wavenumber^order
-        order, s = (
-            self.laws[wave].exponent_of(self.ring.generator(wave)),
-            Factored.generator(self.ring, LAPLACE),
-        )
+        law, beta, s = self.laws[wave], *(Factored.generator(self.ring, n) for n in (wave, LAPLACE))
+        order = law.exponent_of(self.ring.generator(wave))
         images = [own.generator(n) if n in own.index else own.constant(0) for n in self.ring.names]
-        square = (self.laws[wave] * s**2 / Factored.generator(self.ring, wave) ** order).map_factors(
+        square = (law * s**2 / beta**order).map_factors(
             own, lambda f: Factored.polynomial(own, f.compose(*images, ctx=own.context))
         )
         terms: dict[Key, Factored] = {}
@@ -188,22 +172,22 @@ class _Axis:
         for monomial, c in terms_of(part):
             powers = {self.ring.names[i]: e for i, e in monomial}
             times, odd = divmod(powers.pop(LAPLACE, 0) - lowest, 2)
-            if odd:
-                return FactorInLetters("", None, note=LOSSES)
+            if odd or square.depends_on(LAPLACE):
+                return FactorInLetters(kind, None, note=NO_EQUATION)
             n, *shape = (powers.pop(g, 0) for g in (wave, *kernels))
             term = prod((Factored.generator(own, a) ** e for a, e in powers.items()), start=square**times * c)
             terms[n + order * times, *shape] = terms.get((n + order * times, *shape), term * 0) + term
         ratios, factor = self._equation(terms, whole, kernels)
         if len(ratios) > MOST_RATIOS:
-            return FactorInLetters("", None, note=SEVERAL)
+            return FactorInLetters(kind, None, note=NO_EQUATION)
         printer, value = self.reader.printer, self.reader.value
         scale = printer.square_root(square / whole**order)
-        above, low = (scale.numerator, scale.denominator) if isinstance(scale, Quotient) else (scale, ONE)
-        frequency = quotient(product_of([power(Name(Q), order // 2), above]), low)
-        formulas = [
-            RootFormula(a, e, value(e).real) for a, x in ratios.items() for e in [printer.quotient(x)]
-        ]
-        known = {f.name: value(f.expression) for f in formulas}
+        above, *below = scale.children if isinstance(scale, Quotient) else (scale,)
+        frequency = product_of([power(Name(Q), order // 2), above])
+        frequency = quotient(frequency, *below) if below else frequency
+        said = [(a, printer.quotient(x)) for a, x in ratios.items()]
+        formulas = [RootFormula(a, e, value(e).real) for a, e in said]
+        known = {a: value(e) for a, e in said}
         solutions = tuple(self._solutions(factor, value(scale).real, order // 2, known, roots))
         formulas.append(RootFormula(self.name, frequency, None, "rad/s", tuple(r for _, r in solutions)))
         note = EXACT.get(factor.name, "") if isinstance(factor, Call) else ""
@@ -217,8 +201,8 @@ class _Axis:
         All is divided by the coefficient that is most of the distributed members' own parameters.
         """
         ring, model, ratios = self.reader.tf.ring, self.reader.tf.model, dict[str, Factored]()
-        members = [u for u in model.elements if isinstance(u.element, LineElement)]
-        native = {n for u in members for _, e in u.values for n in names_among(e, ring.index)}
+        used = [e for u in model.elements if isinstance(u.element, LineElement) for _, e in u.values]
+        native = {n.name for e in used for n in names(e) if isinstance(n, Name)}
 
         def weight(item: tuple[Key, Factored]) -> tuple[int, int, int]:
             own = ring.used_in(f for f, _ in item[1].factors)
@@ -238,15 +222,13 @@ class _Axis:
             groups.setdefault((held, n), {})[0, *shape] = rest.unit
         small, least = Ring((LAPLACE, *kernels)), min(n for _, n in groups)
         below = lcm(*(c.denominator for group in groups.values() for c in group.values()))
-        symbols = {}
-        for g, (function, _, x) in kernels.items():
-            share = (x / whole).unit
-            angle = quotient(product_of([number(share.numerator), Name(Q)]), number(share.denominator))
-            symbols[g] = Call(function, angle)
+        plain, q = self.reader.printer, Name(Q)
+        angles = {g: wave_times_length(plain, q, x / whole) for g, (_, _, x) in kernels.items()}
+        symbols = {g: Call(f, angles[g]) for g, (f, _, _) in kernels.items()}
         printer, parts = ProductPrinter(Arranger.plain(small, symbols, kernels)), list[Expression]()
         for (held, n), group in groups.items():
             total = printer.sum(small.context.from_dict({m: int(c * below) for m, c in group.items()}))
-            parts.append(product_of([*map(Name, held), power(Name(Q), n - least), total]))
+            parts.append(product_of([*map(Name, held), power(q, n - least), total]))
         return ratios, sum_of(parts)
 
     def _solutions(

@@ -34,7 +34,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.letters.routh import Signs, SymbolicRelation, relation_of
+from symflex.letters.routh import Factor, Signs, relation_of
 from symflex.print.forms.arrange import length, with_squares
 from symflex.print.forms.naming import Naming
 from symflex.print.roots import SHORT_DIGITS
@@ -53,18 +53,13 @@ if TYPE_CHECKING:
     from symflex.roots import Root
     from symflex.transfer import TransferFunction
 
-Term = tuple["fmpz_mpoly", int]
-"""A polynomial, and the sign it has to have."""
 PAIR: Final = 2
 """Degree of a factor with a natural frequency and a damping ratio."""
-MOST_PAIRS: Final = 4
-"""Degree in s^2 up to which conditions on roots are stated."""
+IF: Final = " if "
 LONGEST: Final = 140
 """Characters of a formula or a side of a condition that one still reads off."""
 MOST_TERMS: Final = 200
 """Terms of a factor that is read back; longer ones have no short formulas."""
-CHECK_BITS: Final = 256
-"""Precision of the comparison with proved roots: more than their 15 digits have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,26 +77,14 @@ class RootFormula:
 
 
 @dataclass(frozen=True, slots=True)
-class RootKind:
-    """What the roots of a factor are if inequalities hold, all of them."""
-
-    words: str  # ``a complex pair``
-    inequalities: tuple[SymbolicRelation, ...]  # none: for all positive values
-    holds: bool | None  # at the model's values, proved; None if undecided
-
-    def __str__(self) -> str:
-        shown = " and ".join(map(str, self.inequalities))
-        return f"{self.words} if {shown}" if shown else f"{self.words}: for all positive values"
-
-
-@dataclass(frozen=True, slots=True)
 class FactorInLetters:
     """A factor of numerator or denominator with what is said of its roots."""
 
     kind: str  # ``poles``, ``zeros`` or ``hidden``
     factor: Expression | None  # None of the reason why more is not said
     formulas: tuple[RootFormula, ...] = ()
-    kinds: tuple[RootKind, ...] = ()
+    # What roots are, if which inequalities hold; whether they do at the model's values, None if undecided.
+    kinds: tuple[tuple[str, bool | None], ...] = ()
     solutions: tuple[tuple[arb, Root], ...] = ()  # q of a frequency equation, and the root it belongs to
     note: str = ""  # why there is no formula, or what all solutions are
 
@@ -116,7 +99,7 @@ class FactorInLetters:
         """Yield what is no formula."""
         if self.solutions:
             yield f"q = {', '.join(figure(q, 2 * SHORT_DIGITS) for q, _ in self.solutions)}, ..."
-        yield from (f"{kind}{', as here' * bool(kind.holds and kind.inequalities)}" for kind in self.kinds)
+        yield from (f"{text}{', as here' * bool(holds and IF in text)}" for text, holds in self.kinds)
         yield from [self.note] * bool(self.note)
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
@@ -127,7 +110,7 @@ class FactorInLetters:
             "formulas": {f.name: format_expression(f.expression) for f in self.formulas},
             "values": {f.name: figure(f.value, digits) for f in self.formulas if f.value is not None},
             "q": [figure(q, digits) for q, _ in self.solutions],
-            "kinds": [{"statement": str(kind), "holds": kind.holds} for kind in self.kinds],
+            "kinds": [{"statement": text, "holds": holds} for text, holds in self.kinds],
             "note": self.note,
         }
 
@@ -136,9 +119,8 @@ def letters_text(found: Sequence[FactorInLetters], width: int = WIDTH) -> str:
     """Return what is said of factors as lines for a terminal."""
     lines = []
     for each in found:
-        head = (
-            f"{each.kind} in letters: {format_expression(each.factor)} = 0" if each.factor else "in letters:"
-        )
+        zero = f" {format_expression(each.factor)} = 0" if each.factor else ""
+        head = f"{each.kind} in letters:{zero}".lstrip()
         lines += ["", INDENT + head, *(2 * INDENT + line for line in each.lines())]
     return "\n".join(part for line in lines for part in broken(line, width) or [""])
 
@@ -202,8 +184,8 @@ class LetterReader:
                 root = Call("sqrt", quotient(sum_of([middle, side]), below))
                 tried += [("omega", root, x, "rad/s") for x in sizes]
         for name, expression, value, unit in tried:
-            read = self.value(expression)
-            if length(expression) <= LONGEST and read.imag.contains(0) and read.real.overlaps(value):
+            apart = self.value(expression) - value  # not finite where zeta is 0
+            if length(expression) <= LONGEST and apart.is_finite() and apart.contains(0):
                 mine = own if degree <= PAIR else [r for r in own if r.size().overlaps(value)]
                 yield RootFormula(name, expression, value, unit, tuple(mine))
 
@@ -224,14 +206,14 @@ class LetterReader:
         zeta = quotient(self.printer.quotient(middle), product_of([number(2), self.root(low * high)]))
         return zeta, quotient(number(1), product_of([number(2), zeta]))
 
-    def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[RootKind]:
+    def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[tuple[str, bool | None]]:
         """Yield what the roots may be, each with its conditions."""
         model, degree = self.tf.model, len(c) - 1
-        is_even, free = all(each.is_zero() for each in c[1::2]), [p.name for p in model.parameters]
-        tried: Sequence[tuple[str, Sequence[Term]]] = ()
+        is_even, free = not any(map(len, c[1::2])), [p.name for p in model.parameters if p.assume != "real"]
+        tried: Sequence[tuple[str, Sequence[Factor]]] = ()
         if is_even and kind == "poles" and energy_proof(model, (), self.tf.output, free).is_passive:
             tried = (("on the imaginary axis, as nothing supplies energy", ()),)
-        elif is_even and degree <= 2 * MOST_PAIRS:
+        elif is_even and degree <= 4 * PAIR:
             tried = _even_kinds(self.tf.ring, c[::2])
         elif degree == PAIR:
             spread = c[1] ** 2 - 4 * c[0] * c[2]
@@ -241,19 +223,17 @@ class LetterReader:
             needed = self.signs.reduced([f.numerator().expand() * x for f, x in plain])
             if self.signs.is_never(needed):
                 continue
-            shown = tuple(relation_of(self.printer.arranger, f, sign) for f, sign in needed)
-            over = [
-                (self.value(each.sides[0]) - self.value(each.sides[1])).real for each in shown if each.sides
-            ]
+            shown = [relation_of(self.printer.arranger, f, sign) for f, sign in needed]
+            sides = [(each, *each.sides) for each in shown if each.sides]
+            over = [((self.value(a) - self.value(b)).real, each.sign) for each, a, b in sides]
             if len(over) == len(shown):
-                is_open = any(x.contains(0) and not x.is_zero() for x in over)
-                proved = all(
-                    x > 0 if each.sign == ">" else x != 0 for x, each in zip(over, shown, strict=True)
-                )
-                yield RootKind(words, shown, None if is_open else proved)
+                said = " and ".join(map(str, shown))
+                text = f"{words}{IF}{said}" if said else f"{words}: for all positive values"
+                is_met = all(x > 0 if sign == ">" else x != 0 for x, sign in over)
+                yield text, None if any(x.contains(0) and not x.is_zero() for x, _ in over) else is_met
 
 
-def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequence[Term]]]:
+def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequence[Factor]]]:
     """Return the kinds of roots of a polynomial in s^2, each with signs that imply it."""
     pairs, last, s = len(c) - 1, c[0] * c[-1], ring.generator(LAPLACE)
     imaginary, real = ([(x * c[-1], sign ** (pairs - i)) for i, x in enumerate(c[:-1])] for sign in (1, -1))
@@ -263,7 +243,7 @@ def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequ
     apart, mixed = [(spread, 1)], [(spread, -1)]
     if pairs == PAIR:
         others = {"a quartet": mixed, "an imaginary and a real pair": [(last, -1)]}
-    elif pairs < MOST_PAIRS:
+    elif pairs == PAIR + 1:
         others = {"a quartet and an imaginary pair": [*mixed, (last, 1)]}
         others |= {"a quartet and a real pair": [*mixed, (last, -1)]}
     else:
