@@ -14,6 +14,7 @@ import click
 from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
 from symflex.errors import Diagnostic, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.model.spec.read import NETLISTS, read
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,13 +41,25 @@ TEMPLATES: dict[str, str] = {
 )
 @click.argument("template", required=False)
 @click.option("--list", "is_list", is_flag=True, help="List the templates.")
+@click.option(
+    "--from",
+    "netlist",
+    metavar="NETLIST",
+    help="A SPICE netlist (.cir, .net, .sp) to write as a specification.",
+)
 @click.option("-o", "--output", type=click.Path(), help="File to write.  [default: standard output]")
 @reporting
-def new(template: str | None, *, output: str | None, is_list: bool) -> int:
+def new(template: str | None, *, output: str | None, is_list: bool, netlist: str | None) -> int:
     """Write a specification to start from; without TEMPLATE, list the templates.
 
     A template begins with comments that say what it is and what to try next.
     """
+    if netlist is not None:
+        if not netlist.lower().endswith(NETLISTS):
+            hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
+            raise UsageError(Diagnostic("SF902", f"'{netlist}' is no netlist by its name", None, hint))
+        _write_new(read(netlist).text, output)
+        return 0
     if template is None or is_list:
         width = max(len(name) for name in TEMPLATES)
         for name, summary in TEMPLATES.items():
@@ -56,18 +69,22 @@ def new(template: str | None, *, output: str | None, is_list: bool) -> int:
         hint = nearest(template, TEMPLATES) or "templates: " + ", ".join(TEMPLATES)
         raise UsageError(Diagnostic("SF902", f"there is no template '{template[:64]}'", None, hint))
     text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
+    _write_new(text if output is None else text.replace(f"{template}.toml", Path(output).name), output)
+    return 0
+
+
+def _write_new(text: str, output: str | None) -> None:
     if output is None:
         say(text, nl=False)
-        return 0
+        return
     if Path(output).exists():
         raise UsageError(
             Diagnostic("SF903", f"'{output}' exists and is not overwritten", None, "choose another name")
         )
     from symflex.files.write import write_atomically
 
-    write_atomically(Path(output), text.replace(f"{template}.toml", Path(output).name).encode())
+    write_atomically(Path(output), text.encode())
     note(f"wrote {output}; try: symflex derive {output}, and read its comments")
-    return 0
 
 
 MODEL_SIGNATURE = "model(spec, tf)"

@@ -92,3 +92,10 @@ def test_the_motor_has_the_poles_of_its_state_matrix():
         map(complex, model.transfer_function("W/u_q").bind().poles()), key=lambda z: (z.real, z.imag)
     )
     assert poles == pytest.approx(sorted(np.linalg.eigvals(a), key=lambda z: (z.real, z.imag)), rel=1e-9)
+
+
+def test_the_filter_has_the_frequency_and_q_of_sallen_and_key():
+    model, v = model_and_values("../classics/sallen_key")
+    omega = (v["R1"] * v["R2"] * v["C1"] * v["C2"]) ** -0.5
+    q = 1 / (omega * v["C2"] * (v["R1"] + v["R2"]))
+    assert value(model, "V_out/V1") == pytest.approx(1 / ((S / omega) ** 2 + S / (q * omega) + 1), rel=1e-12)

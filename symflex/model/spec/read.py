@@ -19,6 +19,8 @@ DATA: Final = (
     ".tdms", ".xlsx", ".lvm",
 )  # fmt: skip
 """Ends of the names of files that hold measured data and never a specification."""
+NETLISTS: Final = (".cir", ".net", ".sp", ".ckt")
+"""Ends of the names of SPICE netlists, which are read as specifications."""
 _NUMBERS = re.compile(rb"^[-+\d.][-+\d.e]*[\t ,;]+[-+\d.][-+\d.e \t,;]*\r?\n[-+\d.]", re.M | re.I)
 """Two lines of numbers, as in a table."""
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
@@ -46,10 +48,40 @@ def read(path: str | Path) -> Source:
     if len(data) > MAX_BYTES:
         message = f"'{name}' is larger than {MAX_BYTES} bytes"
         raise SpecError(Diagnostic("SF901", message, hint="is this the right file?"))
+    if name.lower().endswith(NETLISTS):
+        from symflex.model.spec.netlist import specification_of  # few specifications are netlists
+
+        text = specification_of(Source(name, _decoded(data)), lambda other: _beside(name, other))
+        return Source(f"{name}, as a specification", text)  # so that lines are not taken for the netlist's
     try:
         return Source(name, data.decode("utf-8").removeprefix("\ufeff"))
     except UnicodeDecodeError as error:
         raise SpecError(_not_utf8(name, data, error.start)) from None
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text of a netlist, in the encodings in which LTspice has saved them."""
+    if data.startswith(_UTF16_MARKS):
+        return data.decode("utf-16", "replace")
+    if data[1:2] == b"\0":
+        return data.decode("utf-16-le", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _beside(netlist: str, other: str) -> Source:
+    """Return a file that a netlist includes. Raises SpecError: SF258 outside of its folder."""
+    folder = os.path.realpath(os.path.dirname(netlist) or ".")
+    path = os.path.realpath(os.path.join(folder, other))
+    if os.path.commonpath([folder, path]) != folder:
+        raise SpecError(Diagnostic("SF258", "it is outside of the folder of the netlist"))
+    try:
+        data = read_bytes(path, MAX_BYTES)
+    except (OSError, ValueError, UsageError):
+        raise SpecError(Diagnostic("SF901", "it cannot be read")) from None
+    return Source(other, _decoded(data[:MAX_BYTES]))
 
 
 def read_file(name: str, limit: int) -> bytes:
