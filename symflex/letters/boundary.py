@@ -65,14 +65,16 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     (tf,) = derive_all(model, [seen_pair(model)])
     ring = tf.ratio.ring
     whole = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
-    shaped = {n for n in over if any(v.depends_on(n) for v in tf.kernels.values)}
-    gain, other = sorted(over, key=shaped.__contains__)  # a dead time comes last
-    delays = [k.generator for k in tf.kernels.kernels if k.function == "exp" and k.length.depends_on(other)]
+    shaped = [n for n in over for v in tf.kernels.values if v.depends_on(n)]
+    gain, other = sorted(over, key=shaped.count)  # a dead time comes last
+    turn = Factored.generator(ring, LAPLACE) * Factored.generator(ring, other)  # of exp(-s*T)
+    angles = {k.generator: k.dispersion.shift * k.length for k in tf.kernels.kernels if k.function == "exp"}
+    delays = [name for name, angle in angles.items() if (angle / turn).is_one]
     moving = [f for f, e in whole.factors if e > 0 and ring.used_in((f,)) & {gain, other, *delays}]
     laws = [x for d in tf.kernels.dispersions for c in d.characteristic for x in c.factors]
     is_lossless = not any(m[0] % 2 for f, e in laws if len(f) > 1 or e % 2 for m in f.monoms())
     solved = None
-    if len(moving) == 1 and tf.has_formula and is_lossless and [*shaped] == [other] * len(delays):
+    if len(moving) == 1 and tf.has_formula and is_lossless and shaped == [other] * len(delays):
         solved = _solved(tf, whole, moving[0], (gain, other), delays)
     if solved is None:
         message = f"the characteristic function cannot be solved for {gain} and {other} in letters"
@@ -115,7 +117,7 @@ def _solved(
             return None
         still, turned = (Factored.polynomial(ring, split[key]) for key in sorted(split))
         whole = still / turned
-    page = FrequencyPage(replace(tf, reduced=whole, closed=None, parts=None))
+    page = FrequencyPage(replace(tf, reduced=whole, closed=None, parts=None, definitions=()))
     value, index = page.value(), [page.ring.index[n] for n in (IMAGINARY, gain, other)]
 
     def parts(of: fmpz_mpoly, *key: int) -> list[fmpz_mpoly]:
