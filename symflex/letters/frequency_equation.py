@@ -113,8 +113,9 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
         return [FactorInLetters("", None, note=NO_EQUATION)]
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
+    turning = {g: (f, a.wavenumber, a.length * n) for a, n, own in page.angles() for f, g in own.items()}
     axes = (
-        (_Axis(reader, "omega", page.ring, page.functions(), page.laws(), naming), page.images()),
+        (_Axis(reader, "omega", page.ring, turning, page.laws(), naming), page.value().factors),
         (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming), tf.ratio.factors),
     )
     made = [

@@ -92,25 +92,13 @@ class FrequencyPage:
             *delays,
         ]
 
-    def images(self) -> list[tuple[fmpz_mpoly, int]]:
-        """Return the factors on the axis, without a power of the imaginary unit, and their exponents."""
-        waves = {d.wavenumbers[0] for d in self._change.table.dispersions}
-        moving = [(f, e) for f, e in self._value.factors if self._change.ring.used_in([f]) - waves]
-        return [(part, e * times) for f, e in moving for part, times in self._real(f)[0].factors]
-
-    def functions(self) -> dict[str, tuple[str, str, Factored]]:
-        """Return what the generators of kernels are: function, wavenumber and length."""
-        known: dict[str, tuple[str, str, Factored]] = {}
-        for i, k in self._arguments:
-            angle = self._bent[i]
-            known |= {g: (f, angle.wavenumber, angle.length * 2**k) for f, g in _functions(i, k).items()}
+    def angles(self) -> list[tuple[Angle, int, dict[str, str]]]:
+        """Return angles, times their length in arguments, and the generators of functions of these."""
+        angles = [(self._bent[i], 2**k, _functions(i, k)) for i, k in self._arguments]
         for angle in self._straight:
-            pair = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
-            sides = zip(("cosh", "sinh"), pair, strict=True)
-            known |= {
-                angle.kernels[g]: (f, angle.wavenumber, angle.length) for g, f in sides if g in angle.kernels
-            }
-        return known
+            even, odd = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
+            angles.append((angle, 1, {even: angle.kernels["cosh"], odd: angle.kernels["sinh"]}))
+        return angles
 
     @staticmethod
     def _turns(kernel: Kernel) -> bool:
@@ -302,11 +290,7 @@ class FrequencyPage:
         lengths = plain_printer(tf)
         waves = [w for d in tf.kernels.dispersions for w in d.wavenumbers]
         symbols |= {w: Name(n) for w, n in zip(waves, naming.take("beta", len(waves)), strict=True)}
-        functions = [(self._bent[i], 2**k, _functions(i, k)) for i, k in self._arguments]
-        for angle in self._straight:
-            even, odd = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
-            functions.append((angle, 1, {even: angle.kernels["cosh"], odd: angle.kernels["sinh"]}))
-        functions = [f for f in functions if used.intersection(f[2].values())]
+        functions = [f for f in self.angles() if used.intersection(f[2].values())]
         products = [wave_times_length(lengths, symbols[a.wavenumber], a.length * n) for a, n, _ in functions]
         arguments, lines = _short_or_named(products, "q", naming)
         for q, (_, _, own) in zip(arguments, functions, strict=True):
