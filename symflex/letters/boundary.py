@@ -35,12 +35,12 @@ from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
 from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
-from symflex.print.forms.notation import constant_symbols, reachable
+from symflex.print.forms.notation import Line, constant_symbols, reachable
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from flint import fmpz_mpoly
 
@@ -48,8 +48,9 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.transfer import TransferFunction
 
-    Pair = tuple[str, str]
-    Lines = Mapping[str, Expression]
+
+TINY = 2.0**-64
+"""Radius of a value of the characteristic function on its boundary, where it vanishes."""
 
 
 def boundary(model: Model, over: Sequence[str]) -> Conditions:
@@ -90,13 +91,12 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
         right[0] = page.printer(symbols).square_root(values[0]) if is_square else Call("sqrt", right[0])
         left[1:] = (Call(f, product_of([omega, Name(other)])) for f in ("cos", "sin"))
         turns = f" with {other} = (atan2(sin, cos) + 2*n*pi)/{format_expression(omega)}, n = 0, 1, 2, ..."
-    _check(tf, moving[0], (gain, other), right, dict(lines))
+    _check(tf, moving[0], (gain, other), right, lines)
     where = [line for line in reachable(right, lines) if Name(line[0]) not in (omega, symbols[IMAGINARY])]
-    counts = [sum(len(f) for f, _ in value.factors) for value in values] + [1] * len(where)
-    equal = [*zip(left, right, strict=True), *((Name(name), e) for name, e in where)]
-    curve = [
-        SymbolicRelation(n, "=", e if n <= LONGEST else None) for n, e in zip(counts, equal, strict=True)
-    ]
+    counts = [sum(len(f) for f, _ in value.factors) for value in values]
+    both = zip(counts, zip(left, right, strict=True), strict=True)
+    curve = [SymbolicRelation(n, "=", sides if n <= LONGEST else None) for n, sides in both]
+    curve += [SymbolicRelation(1, "=", (Name(name), e)) for name, e in where]
     if not any(d.wavenumbers for d in tf.kernels.dispersions):
         at_rest = {k.generator: ring.constant(1) for k in tf.kernels.kernels} | {LAPLACE: ring.constant(0)}
         factors = irreducible_factors(ring.replaced(moving[0], at_rest))[1]
@@ -107,7 +107,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
 
 
 def _solved(
-    tf: TransferFunction, whole: Factored, factor: fmpz_mpoly, over: Pair, delays: Sequence[str]
+    tf: TransferFunction, whole: Factored, factor: fmpz_mpoly, over: Sequence[str], delays: Sequence[str]
 ) -> tuple[FrequencyPage, list[Factored]] | None:
     """Return both parameters; or the square of a gain, and cosine and sine of frequency times dead time."""
     ring, (gain, other) = tf.ratio.ring, over
@@ -147,7 +147,11 @@ def _solved(
 
 
 def _check(
-    tf: TransferFunction, factor: fmpz_mpoly, over: Pair, right: Sequence[Expression], lines: Lines
+    tf: TransferFunction,
+    f: fmpz_mpoly,
+    over: Sequence[str],
+    right: Sequence[Expression],
+    lines: Sequence[Line],
 ) -> None:
     """Put a curve into the characteristic function at random values. Raises InternalError: SF992."""
     random = Random(tf.name)
@@ -158,17 +162,17 @@ def _check(
         with precision(BITS):
             known = {name: acb(ball(x.rational)) for name, x in numbers}
             known |= {"pi": acb.pi(), LAPLACE: acb(0, ball(omega))}
-            for name in lines_in_order(right, lines)[0]:
-                known[name] = read(lines[name], known)
+            meanings = dict(lines)
+            for name in lines_in_order(right, meanings)[0]:
+                known[name] = read(meanings[name], known)
             gain = known[over[0]] = read(right[0], known)
             more, *sine = (read(e, known).real for e in right[1:])
             time = (arb.atan2(sine[0], more) + 2 * arb.pi()) / ball(omega) if sine else more
-            values = []
-            for off in (0, 1):
-                fixed = ((over[0], partial(arb, gain.real + off)), (over[1], partial(arb, time)))
-                bound = BoundTransferFunction(tf, numbers, tf.ratio, (), tf.kernels, fixed=fixed)
-                kernels = bound.kernel_values()
-                values.append(at_centre(kernels.polynomial(factor, kernels.at(known[LAPLACE]))))
-        if not values[0].contains(0) or values[1].contains(0):
+            fixed = ((over[0], partial(arb, gain.real)), (over[1], partial(arb, time)))
+            kernels = BoundTransferFunction(
+                tf, numbers, tf.ratio, (), tf.kernels, fixed=fixed
+            ).kernel_values()
+            value = at_centre(kernels.polynomial(f, kernels.at(known[LAPLACE])))
+        if not value.contains(0) or not value.rad() < TINY:
             message = f"the boundary is not shown, as it is wrong for {dict(numbers)}"
             raise InternalError(Diagnostic("SF992", message, None, REPORT))
