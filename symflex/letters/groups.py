@@ -26,12 +26,22 @@ from symflex.algebra.ring import terms_of
 from symflex.balls import precision
 from symflex.errors import SymflexError, Text
 from symflex.expressions import Expression, Name, format_expression
-from symflex.letters.limits import InLetters, NotInLettersError, Row, opened, times, value_of, written_powers
+from symflex.letters.limits import (
+    InLetters,
+    NotInLettersError,
+    Row,
+    definitions_of,
+    opened,
+    times,
+    value_of,
+    written_powers,
+)
+from symflex.library.elements import LineElement
 from symflex.model import ExactValue, with_numbers
 from symflex.print.forms import print_form
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.printed import S
-from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.print.forms.shapes import plain, powers_of
 from symflex.print.label import symbol
 from symflex.print.latex.equation import ratio_latex
 from symflex.quantities import Dimension, unit_of
@@ -117,7 +127,7 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     echelon = _echelon(invariant, [*others, S.name, *(p.name for p in ordered)])
     for pivot, row in echelon.items():
         scale = times((scale, ONE), (row, -scale.get(pivot, Fraction(0))))
-    own = {pivot: row for pivot, row in echelon.items() if pivot not in others}
+    own = {name: echelon[name] for name in (S.name, *parameters) if name in echelon}
     for text, row in wanted.items():
         main = next(iter(row), "")
         if main not in own or times((row, ONE), (own[main], -row[main])):
@@ -128,6 +138,8 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     if form.laws:
         raise NotInLettersError("its waves have no formula")
     naming, rows, images = Naming.of(tf), list[Row](), dict[str, Expression]()
+    # A form may take the names of the base, which it does not know.
+    images |= {name: Name(naming.take(name)[0]) for name, _ in form.where if name in base}
     naming.keep(name for name, _ in form.where)
     for main, row in own.items():
         unit = _unit(parameters[main]) if main != S.name else ""
@@ -141,11 +153,13 @@ def _in_groups(tf: TransferFunction) -> InLetters:
         images[main] = written_powers(halves | {Name(name): ONE})
         rows.append(_row(tf, name, group, words))
     images |= {} if S.name in own else {S.name: e.number(1)}
-    lines = {name: e.substitute(line, images) for name, line in form.where}
-    plain = {name: line for name, line in lines.items() if isinstance(line, Name)}
-    lines = {name: e.substitute(line, plain) for name, line in lines.items() if name not in plain}
-    function = e.substitute(e.substitute(e.quotient(form.num, form.den), images), plain)
-    function = function if S.name in own else of_powers(*powers_of(function))
+    lines, meant = dict(form.where), dict(definitions_of(tf))
+    # The model's own names mean something else in groups; what is only another name is left out as well.
+    inside = {name: lines.pop(name) for name in (*lines,) if name in meant or isinstance(lines[name], Name)}
+    function = e.quotient(form.num, form.den)
+    for put in (*[inside] * len(inside), images):
+        function, lines = plain(function, put), {name: plain(line, put) for name, line in lines.items()}
+    lines = {format_expression(images.get(name, Name(name))): line for name, line in lines.items()}
     size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
     head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
     named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
@@ -168,6 +182,8 @@ def _unit(parameter: ModelParameter) -> str:
 def _choice(tf: TransferFunction, parameter: ModelParameter) -> tuple[bool, int, int]:
     """Return a key that is larger, the better a parameter serves as one of the base."""
     waves = {name for x in tf.kernels.values for name in tf.ring.used_in(f for f, _ in x.factors)}
+    members = (use for use in tf.model.elements if isinstance(use.element, LineElement))
+    waves |= {n.name for use in members for _, x in use.values for n in e.names(opened(tf, x))}
     unit = _unit(parameter)
     rank = BASE.index(unit) if unit in BASE else len(BASE) + (unit in DAMPERS) + 2 * (unit == "1")
     return parameter.name in waves, -rank, -tf.model.parameters.index(parameter)

@@ -40,7 +40,7 @@ def _lines(found: InLetters, labels: dict[str, str]) -> Block:
     for row in (*found.rows, *found.where):
         comment = f", {row.comment}; " if row.comment else "; "
         runs += [Code(row.name), f"{row.relation.strip()} ", labelled(row.expression, labels), comment]
-    return text(*runs[:-1], ".")
+    return text(*runs[:-1], str(runs[-1]).rstrip("; ") + ".")
 
 
 def _near(tf: AnyTransferFunction, label: str) -> tuple[Block, ...]:

@@ -75,6 +75,12 @@ CASES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         OF_BEAM,
         {"y/F": "tanh(S)/S", "scale": "l/(E*A)", "S": "l*sqrt(rho/E)*s"},
     ),
+    "piston on a column": (
+        '[elements]\nbar = { type = "rod", between = ["a", "x"], E = "E", rho = "rho", A = "A", l = "l" }\n'
+        'end = { type = "fixed", at = "a" }\nload = { type = "mass", at = "x", m = "m" }\n' + FORCE,
+        {**OF_BEAM, **OF_BODY},
+        {"y/F": "sinh(S)/(S*(mu*S*sinh(S) + cosh(S)))", "scale": "l/(E*A)", "mu": "m/(rho*A*l)"},
+    ),
     "string": (
         "[elements]\n"
         'one = { type = "string", between = ["a", "x"], N = "N", rho = "rho", A = "A", l = "a" }\n'
@@ -126,7 +132,9 @@ def test_groups_are_those_of_books(name: str) -> None:
         positive = {x: sympy.Symbol(x.name, positive=True) for x in quotient.free_symbols}
         assert sympy.simplify(quotient.subs(positive)) == 1, reading
     groups = {row.name for row in reading.rows} - {"y/F", "y/u", "y/U", "scale"}
-    assert name in ("coil", "loop with a dead time") or groups - {"q", "q_1", "q_2"} <= set(expected), reading
+    assert name in ("coil", "loop with a dead time") or groups - {"q", "q_1", "q_2", "S"} <= set(expected), (
+        reading
+    )
 
 
 def test_scale_times_the_function_in_groups_is_the_function() -> None:

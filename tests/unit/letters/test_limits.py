@@ -72,7 +72,6 @@ CASES = {
     "free body": (MASS + FORCE + 'y = "x"', "1/(m*s**2)", "1/(m*s**2)"),
     "damped body": (MASS + DAMPER + FORCE + 'y = "x"', "1/(b*s)", "1/(m*s**2)"),
     "two masses": (TWO + FORCE + 'y = "y"', "1/((m + M)*s**2)", "K/(m*M*s**4)"),
-    "two masses, one held": (TWO + SPRING + FORCE + 'y = "y"', "1/k", "K/(m*M*s**4)"),
     "low pass": (RLC + 'y = "o"', "1", "1/(L*C*s**2)"),
     "current": (RLC + 'y = "(p - q)/R"', "C*s", "1/(L*s)"),
     "rod": (ROD + FIXED + PULL + 'y = "z"', "l/(E*A)", "1/(A*sqrt(E*rho)*s)"),
@@ -106,18 +105,12 @@ CASES = {
         "c/(1 + c)",
         "c*exp(-s*T)/(tau*s)",
     ),
-    "its error": (
-        SIGNALS + 'e = "u - y"\ny = "c*e*exp(-s*T)/(tau*s + 1)"\n[outputs]\nout = "e"',
-        "1/(1 + c)",
-        "1",
-    ),
     "half a power": (SIGNALS + 'y = "u/(c*s + sqrt(s))"\n[outputs]\nout = "y"', "1/sqrt(s)", "1/(c*s)"),
     "thermal bar": (
         SIGNALS + 'y = "u*tanh(sqrt(tau*s))/sqrt(tau*s)"\n[outputs]\nout = "y"',
         "1",
         "1/sqrt(tau*s)",
     ),
-    "triple integrator": (SIGNALS + 'y = "u/(s^3*(s + 1/T))"\n[outputs]\nout = "y"', "T/s**3", "1/s**4"),
     "differences of letters": (
         SIGNALS + 'y = "u*(T - tau)*s/((T*s + 1)*(tau*s + 1))"\n[outputs]\nout = "y"',
         "(T - tau)*s",
@@ -165,12 +158,9 @@ def test_what_decays_along_a_beam_agrees_with_a_numeric_solution() -> None:
     ("name", "lines"),
     [
         ("oscillator", ["static compliance, 0.125 m/N", "mass line, -40 dB/decade, 0.5 m/(N*s^2)"]),
-        ("oscillator's mobility", ["spring line, +20 dB/decade", "mass line, -20 dB/decade"]),
         ("damped body", ["damper line, -20 dB/decade", "both meet at:   b/m   0.0238732 Hz, 0.15 rad/s"]),
-        ("two masses", ["mass line, -40 dB/decade, 0.2 m/(N*s^2)", "-80 dB/decade"]),
         ("cantilever", ["static compliance", "-30 dB/decade", "on s = j*omega only with losses"]),
         ("low pass", ["static gain, 1", "both meet at:   1/sqrt(L*C)"]),
-        ("half a power", ["-10 dB/decade, 1", "-20 dB/decade", "both meet at:   1/c^2"]),
     ],
 )
 def test_terms_are_told_in_words_with_their_values_and_where_they_meet(name: str, lines: list[str]) -> None:
