@@ -284,14 +284,17 @@ def export(spec: Specification, given: ExportOptions) -> int:
         note(f"warning: {warning}")
     if given.output:
         path = Path(given.output)
-        files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
+        files: dict[Path, str | bytes] = {path: made.archive or made.text}
+        files |= {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
             message = f"'{given.output}' would overwrite a file that the export writes next to it"
             hint = f"end its name with {exporter.suffix}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         for file, text in files.items():
-            write_atomically(file, text.encode())
+            write_atomically(file, text.encode() if isinstance(text, str) else text)
             note(f"wrote {file}")
+    elif made.archive:
+        raise UsageError(Diagnostic("SF902", "this export is an archive", None, f"-o NAME{exporter.suffix}"))
     else:
         say(made.text, nl=False)
     return 4 if given.strict and made.warnings else 0

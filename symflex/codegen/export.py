@@ -57,6 +57,7 @@ class Export:
     text: str  # the file's content
     warnings: tuple[str, ...] = ()  # what the user should know, for instance an accuracy that was not reached
     companions: Mapping[str, str] = field(default_factory=dict)  # files that belong beside it, by suffix
+    archive: bytes = b""  # in place of the text, where the file is no text
     name: str = ""  # of the module or main function, where the language has such
     # How well the functions agree with ball arithmetic: one for each function of s, in order, then one for
     # each frequency response in real arithmetic.

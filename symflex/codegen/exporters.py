@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.c.module import C99
 from symflex.codegen.c.sampled import SAMPLED_C
+from symflex.codegen.fmu import FMU
 from symflex.codegen.javascript import JAVASCRIPT
 from symflex.codegen.julia import JULIA
 from symflex.codegen.latex import LatexExporter
@@ -36,6 +37,7 @@ EXPORTERS: dict[str, Exporter] = {
 SAMPLED: dict[str, SampledLanguage] = {
     "c": SAMPLED_C,
     "numpy": SAMPLED_PYTHON,
+    "fmu": FMU,
 }
 """``symflex export --sample``, besides state-space; what is no key of ``EXPORTERS`` exists only sampled."""
 
