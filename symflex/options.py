@@ -75,6 +75,12 @@ SHAPERS: Final = ("zv", "zvd", "ei")
 SHAPED_MODES: Final = {"least": 1, "most": 20, **SHOWN, "help": "Shape the N lowest modes."}
 MOST_DIGITS: Final = 10_000
 JOINT: Final = {"help": "Has no effect any more: shapers of several modes are convolved."}
+SPREAD: Final = {
+    "metavar": "[SHARE]",
+    "is_flag": False,
+    "flag_value": "",
+    "help": "Every parameter at once, each up to this share off, 10%; without a share those with a 'spread'.",
+}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
 WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5 mm, 170 mm or a number in mm."}
@@ -433,6 +439,7 @@ class StabilityOptions:
     )
     tf: str | None = option(None, "--tf", **ONE_TF)
     format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
+    spread: Stated | None = option(None, "--spread", **SPREAD)
     as_json: bool = option(False, "--json", **JSON)
 
 

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
     from symflex.loops.chart import StabilityChart
+    from symflex.loops.spread import SpreadStability
     from symflex.model import Setting
     from symflex.options import Ends
 
@@ -351,6 +352,7 @@ class Model:
         over: str = "",
         ranges: Mapping[str, tuple[float, float]] | None = None,
         resolve: float = 0.01,
+        spread: None = None,
         **values: Number,
     ) -> Stability: ...
 
@@ -366,10 +368,16 @@ class Model:
         resolve: float = 0.01,
         budget: float | None = None,
         up_to_hz: float | None = None,
+        spread: None = None,
         **values: Number,
     ) -> StabilityChart: ...
 
+    @overload
     def stability(
+        self, *, spread: str | float, budget: float | None = None, **values: Number
+    ) -> SpreadStability: ...
+
+    def stability(  # type: ignore[misc]  # options of gains could be values beside a spread
         self,
         gain: str = "",
         limits: tuple[float | None, float | None] | None = None,
@@ -380,8 +388,9 @@ class Model:
         over: str | tuple[str, str] = "",
         ranges: Mapping[str, tuple[float, float]] | None = None,
         resolve: float = 0.01,
+        spread: str | float | None = None,
         **values: Number,
-    ) -> Stability | StabilityChart:
+    ) -> Stability | StabilityChart | SpreadStability:
         """Return the gains for which all closed-loop poles are in the open left half plane, proved.
 
         Parameters
@@ -404,13 +413,16 @@ class Model:
             or half the value, to ten times or twice the value.
         resolve : float
             Share of the chart that may stay undecided.
+        spread : str or float, optional
+            In place of a gain: every parameter at once, each off by up to this share, "10 %" or 0.1; "" for
+            those that declare a ``spread``.
         **values : number or str
             In place of declared values, as for :meth:`TransferFunction.bind`.
 
         Returns
         -------
-        Stability or StabilityChart
-            A chart for two parameters.
+        Stability, StabilityChart or SpreadStability
+            A chart for two parameters; what holds for every combination of a spread.
 
         Raises
         ------
@@ -435,15 +447,21 @@ class Model:
         >>> chart = model.stability(over=("K", "T"), ranges={"K": (0, 4), "T": (0, 2)})
         >>> chart.at(1, 1.4), chart.at(1, 1.8)
         ('stable', 'unstable by 2')
+        >>> model.stability(spread="50 %", T=1.0)
+        <SpreadStability of 2 parameters: unstable>
         """
         from symflex.loops.chart import StabilityChart
         from symflex.loops.of_model import stability  # imports numpy
         from symflex.loops.over import stability_over
+        from symflex.loops.spread import stability_spread
 
         names: tuple[str, ...] = tuple(over) if not isinstance(over, str) else (over,) if over else ()
         each = tuple((name, *ends) for name, ends in (ranges or {}).items())
-        given = StabilityOptions(gain, limits, up_to_hz, checked_digits(digits), names, each, resolve)
+        own = (gain, limits, up_to_hz, checked_digits(digits), names, each, resolve)
+        given = StabilityOptions(*own, spread=spread)
         with budget_of(budget).besides().entered():
+            if spread is not None:
+                return stability_spread(self.resolved, given, values)
             if not names:
                 return Stability(stability(self.resolved, given, values))
             proved = stability_over(self.resolved, given, values)

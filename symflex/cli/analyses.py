@@ -17,6 +17,9 @@ from symflex.options import ColocationOptions, RationalOptions, RootsOptions, St
 
 if TYPE_CHECKING:
     from symflex.analysis.sensitivity import RootDerivative
+    from symflex.loops.chart import StabilityChart
+    from symflex.loops.spread import SpreadStability
+    from symflex.loops.stability_map import StabilityMap
 
 
 _NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
@@ -131,6 +134,10 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --over takes any parameter: a dead time, a length, a mass. Two of them make a chart of boxes in which the
     number of poles right of the axis is proved; boxes about a boundary stay undecided.
 
+    --spread asks whether SPEC is stable for every combination of its values at once, each off by up to a
+    share; or prints a combination for which it is proved not to be. Put it after SPEC, with or without a
+    share.
+
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie left of the axis; with two of --over, the boundary as a curve.
 
@@ -140,6 +147,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.loops import of_model
     from symflex.loops.over import stability_over
+    from symflex.loops.spread import stability_spread
 
     model = spec.load()
     if given.gain and (given.over or given.letters):
@@ -156,8 +164,12 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
         return 0
     if given.of != "poles" or given.tf or given.format != "text":
         raise UsageError(Diagnostic("SF902", "--of, --tf and --format are for --letters"))
+    stable: StabilityMap | StabilityChart | SpreadStability
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
-        stable = stability_over(model, given) if given.over else of_model.stability(model, given)
+        if given.spread is not None:
+            stable = stability_spread(model, given)
+        else:
+            stable = stability_over(model, given) if given.over else of_model.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
 

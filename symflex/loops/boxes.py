@@ -102,6 +102,15 @@ class CharacteristicFunction:
     def _entire(self) -> tuple[fmpz_mpoly, ...]:
         return () if self.nameless is None else _factors(self.nameless)
 
+    @cached_property
+    def leading(self) -> frozenset[str]:
+        """The generators beside the highest power of s in each factor."""
+        ring = self.tf.ratio.ring
+        tops = [(f, max(int(m[0]) for m in f.monoms())) for f in self.factors]
+        return frozenset(
+            ring.names[i] for f, top in tops for m in f.monoms() if m[0] == top for i, e in enumerate(m) if e
+        )
+
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
         tf = self.tf
@@ -164,12 +173,13 @@ class CharacteristicFunction:
             if not any(value.contains(0) for value, _ in around):
                 continue
             steps = [slope * way * ball(high - point) for _, slope in around]
-            values = own.at(start + way * ball(point), ones)
-            shares = [share_of(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
+            at_point = own.at(start + way * ball(point), ones)
+            values = [(c, [x * half for x, half in zip(xs, own.halves, strict=True)]) for c, xs in at_point]
+            shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
             if all(share < 1 for share, _ in shares):
                 continue
             # Where the box alone leaves it open, or nearly so, shorter pieces do not help.
-            is_open = any(share_of(*value)[0] >= 1 for value in values)
+            is_open = any(share_taken(*value)[0] >= 1 for value in values)
             weights = max(shares, key=lambda each: each[0])[1]
             is_spent = NEARLY * weights.pop() < sum(weights)
             if is_open or is_spent or (high - low) * 2 ** current_bits() < high:
@@ -223,14 +233,19 @@ class FirstOrder:
         return self.function.kernels(self.tf, self.box)
 
     @cached_property
-    def _terms(self) -> list[tuple[KernelValues, arb]]:
-        """The evaluators at the middle, and along each parameter with half of its range."""
+    def halves(self) -> list[arb]:
+        """Half of each parameter's range."""
+        return [ball((b - a) / 2) for a, b in self.box]
+
+    @cached_property
+    def _known(self) -> list[KernelValues]:
+        """The evaluators at the middle, and along each parameter."""
         middle = tuple(((a + b) / 2,) * 2 for a, b in self.box)
-        terms = [(self.function.kernels(self.tf, middle), arb(0))]
-        for i, (name, (a, b)) in enumerate(zip(self.function.names, self.box, strict=True)):
-            part = (*self.box[: i + 1], *middle[i + 1 :])
-            terms.append((self.function.kernels(self.tf, part, name), ball((b - a) / 2)))
-        return terms
+        parts = [(*self.box[:i], *middle[i:]) for i in range(len(middle) + 1)]
+        return [
+            self.function.kernels(self.tf, part, along)
+            for part, along in zip(parts, ("", *self.function.names), strict=True)
+        ]
 
     def around(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, acb]]:
         """Return values and slopes in s of some factors, for all s in a ball and for all parameters."""
@@ -239,20 +254,19 @@ class FirstOrder:
         return [(at_centre(value), _slope(value)) for value in values]
 
     def at(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, list[acb]]]:
-        """Return values of some factors at the middle of the box, and what each parameter adds at most."""
-        (middle, _), *along = self._terms
-        known = middle.at(s)
-        points = [(kernels, kernels.at(acb_series([s, 0], 2)), half) for kernels, half in along]
+        """Return values of some factors at the middle of the box, and their slopes in every parameter."""
+        middle, *along = self._known
+        known, points = middle.at(s), [(kernels, kernels.at(s)) for kernels in along]
         return [
             (
                 at_centre(middle.polynomial(f, known)),
-                [_slope(kernels.polynomial(f, at)) * half for kernels, at, half in points],
+                [_slope(kernels.polynomial(f, at)) for kernels, at in points],
             )
             for f in (self.polynomials[i] for i in ones)
         ]
 
 
-def share_of(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
+def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
     """Return how much of a value sums of terms, each times -1 to 1, take away in the best direction.
 
     Below 1 no sum takes it to 0: a zonotope and 0 are parted by the normal of one of its edges, if by any.

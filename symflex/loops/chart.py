@@ -26,7 +26,7 @@ from symflex.errors import BudgetError, SymflexError
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict
 from symflex.roots.region import Modes
 from symflex.roots.root import count_roots
 from symflex.transfer import bind
@@ -318,13 +318,16 @@ def connected(boxes: Sequence[ChartBox]) -> list[int]:
     return [int(labels[corner]) for corner in corners]
 
 
+def located_at(function: CharacteristicFunction, point: Sequence[Fraction], modes: int = 1) -> PoleZeroMap:
+    """Return the poles at one point, of a distributed model so many modes."""
+    bound = bind(function.tf, dict(zip(function.names, point, strict=True)))
+    return locate(bound, None if bound.is_rational else Modes(modes), COUNT_DIGITS, with_zeros=False)
+
+
 def count_at(function: CharacteristicFunction, point: Sequence[Fraction]) -> tuple[StabilityVerdict, int]:
     """Return what holds at one point, as ``symflex roots`` says it, and how many poles lie on the axis."""
-    values = dict(zip(function.names, point, strict=True))
     try:
-        bound = bind(function.tf, values)
-        region = None if bound.is_rational else Modes(1)
-        located = locate(bound, region, COUNT_DIGITS, with_zeros=False)
+        located = located_at(function, point)
     except SymflexError as error:
         return StabilityVerdict("unknown", None, False, error.diagnostics[0].message), 0
     axis = count_roots([root for root in located.all_poles if root.on_imaginary_axis])

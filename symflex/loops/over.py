@@ -66,13 +66,7 @@ def stability_over(
     if given.up_to is not None:
         hint = "where poles have no end, ask for a gain: --gain K --up-to FREQUENCY"
         raise UsageError(Diagnostic("SF902", "--up-to does not apply to --over", None, hint))
-    check_causal(model, "stability over a parameter")
-    stated = {name: pick_gain(model.parameters, name) for name in values or {}}
-    exact = dict(read_values(tuple(stated.values()), values or {}))
-    model = replace(
-        model,
-        parameters=tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters),
-    )
+    model = with_values(model, values)
     parameters = [pick_gain(model.parameters, name) for name in names]
     if spare := [name for name, *_ in given.ranges if name not in names]:
         raise UsageError(
@@ -80,13 +74,7 @@ def stability_over(
         )
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
-    if is_tapered(model) or model.root is not None:
-        what = "members that taper" if is_tapered(model) else "roots of s"
-        message = f"stability over a parameter is not available with {what}"
-        raise ModelError(Diagnostic("SF801", message, parameters[0].span, _sweep(names[0])))
-    prepared = with_numbers(model, names, in_kernels=True)
-    (tf,) = derive_all(prepared, [seen_pair(prepared)])
-    function = CharacteristicFunction.of(prepared, tf, names)
+    function = characteristic(model, names)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
@@ -102,6 +90,29 @@ def seen_pair(model: Model) -> tuple[str, str]:
     """Return output and input of the function whose poles are asked for: one without a filter after it."""
     plain = {row.name for row in assemble(model).outputs if row.divisor.is_one}
     return next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
+
+
+def with_values(model: Model, values: Mapping[str, Given] | None) -> Model:
+    """Return a model with other values in place of declared ones."""
+    stated = {name: pick_gain(model.parameters, name) for name in values or {}}
+    exact = dict(read_values(tuple(stated.values()), values or {}))
+    own = tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters)
+    return replace(model, parameters=own)
+
+
+def characteristic(
+    model: Model, names: Sequence[str], pair: tuple[str, str] | None = None
+) -> CharacteristicFunction:
+    """Return a model's characteristic function in some parameters; SF801 where it cannot be followed."""
+    check_causal(model, "stability over a parameter")
+    if is_tapered(model) or model.root is not None:
+        what = "members that taper" if is_tapered(model) else "roots of s"
+        message = f"stability over a parameter is not available with {what}"
+        span = pick_gain(model.parameters, names[0]).span
+        raise ModelError(Diagnostic("SF801", message, span, _sweep(names[0])))
+    prepared = with_numbers(model, names, in_kernels=True)
+    (tf,) = derive_all(prepared, [pair or seen_pair(prepared)])
+    return CharacteristicFunction.of(prepared, tf, names)
 
 
 def _sweep(name: str) -> str:

@@ -1,0 +1,235 @@
+"""Whether a model is stable for every combination of values of its parameters at once.
+
+Input: a model, and the box in which its parameters lie. Output: a :class:`SpreadStability`.
+
+Example: ``m s^2 + b s + k`` with every value off by up to 10 % is stable: next to the resonance the damping
+keeps the imaginary part above 0.9 b omega.
+
+Poles are counted at the middle of the box. If no root meets the axis for any combination, and none comes in
+from infinity, as many lie right of the axis for all of them (boundary crossing theorem; Bhattacharyya,
+Chapellat and Keel 1995, theorem 1.4). Boxes that leave it open are halved along the parameter that
+contributes most. Combinations that may be unstable are those to which the slopes of roots next to the axis
+point; what holds there is proved as for any one point.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from flint import acb
+
+from symflex.balls import precision
+from symflex.budget import spend
+from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
+from symflex.loops.boxes import BITS, CharacteristicFunction, OpenBox
+from symflex.loops.chart import count_at, located_at
+from symflex.loops.over import characteristic, with_values
+from symflex.loops.stability_map import SCHEMA
+from symflex.model import spread_box
+from symflex.options import share_of
+from symflex.print.text import WIDTH, Passage, passages_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.loops.boxes import Box
+    from symflex.loops.chart import Word
+    from symflex.model import Model
+    from symflex.options import StabilityOptions, Stated
+    from symflex.roots.pole_zero_map import StabilityVerdict
+    from symflex.transfer import Given
+
+Point = tuple[Fraction, ...]
+"""A value of every parameter, in SI units."""
+MOST_BOXES = 10_000
+"""Boxes after which it stays undecided: about a minute for lumped loops."""
+FOLLOWED = 4
+"""Modes of a distributed model whose poles are pushed towards the axis."""
+TRIES = frozenset(4**i for i in range(8))
+"""After how many boxes a combination is sought again, from where poles may meet the axis."""
+
+
+@dataclass(frozen=True)
+class SpreadStability:
+    """What is proved of stability for all values that parameters may have at once."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    box: Box
+    word: Word
+    boxes: int = 0  # how many were needed
+    unstable: int = 0  # poles right of the axis for the combination
+    combination: Point | None = None  # for which it is proved not to be stable
+    open_box: Box | None = None  # a part in which it is undecided
+    reason: str = ""
+
+    def __repr__(self) -> str:
+        return f"<SpreadStability of {len(self.names)} parameters: {self.word}>"
+
+    def __str__(self) -> str:
+        word = f"{self.word}: {self.reason}" if self.reason else self.word
+        word += {"stable": " for every combination", "unstable": f" by {self.unstable}"}.get(self.word, "")
+        other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])
+        other = other or [()] * len(self.box)
+        rows: list[tuple[str, ...]] = [("", "from", "to", self.word, "to")[: 3 + len(other[0])]]
+        for name, unit, *ends in zip(self.names, self.units, self.box, other, strict=True):
+            cells = (f"{float(x):.6g}" for values in ends for x in values)
+            rows.append((f"{name} [{unit}]" if unit else name, *cells))
+        status = "certified" if self.certified else "NOT CERTIFIED"
+        return passages_text([Passage([f"{status}: {word}"]), Passage([], rows)], WIDTH)
+
+    @property
+    def certified(self) -> bool:
+        """Whether it is decided, either way."""
+        return self.word != "undecided"
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return it in the schema ``symflex.stability/1``, in SI units."""
+
+        def ends_of(box: Box | None) -> dict[str, list[float]] | None:
+            both = zip(self.names, box or (), strict=box is not None)
+            return {n: [float(x) for x in ends] for n, ends in both} or None
+
+        point = self.combination and dict(zip(self.names, map(float, self.combination), strict=True))
+        return {
+            "schema": SCHEMA,
+            "spread": ends_of(self.box),
+            "units": dict(zip(self.names, self.units, strict=True)),
+            "verdict": self.word,
+            "certified": self.certified,
+            "combination": point,
+            "unstable": self.unstable,
+            "box": ends_of(self.open_box),
+            "boxes": self.boxes,
+            "reasons": [self.reason] if self.reason else [],
+        }
+
+
+def stability_spread(
+    model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
+) -> SpreadStability:
+    """Return whether a model is stable for all values at once, each off by a share or by its own ``spread``.
+
+    Raises UsageError: SF902 beside a gain; SF804 if no parameter has a spread; ModelError: SF801 if no pole
+    depends on one, or poles cannot be followed; SF501, SF502 if the characteristic function is too large.
+    """
+    if given.gain or given.over or given.ranges or given.limits:
+        raise UsageError(Diagnostic("SF902", "--spread takes no --gain, --over or --range"))
+    model = with_values(model, values)
+    function, box = spread_function(model, given.spread or "")
+    units = {p.name: p.unit for p in model.parameters}
+    found = find_spread(function, box)
+    return replace(found, units=tuple(units[n] for n in function.names))
+
+
+def spread_function(
+    model: Model, share: Stated, pair: tuple[str, str] | None = None
+) -> tuple[CharacteristicFunction, Box]:
+    """Return the characteristic function in the parameters that are spread and move poles, and their box."""
+    ends = spread_box(model.parameters, None if share == "" else share_of(share, "--spread"))
+    function = characteristic(model, tuple(ends), pair)
+    names = tuple(n for n in ends if function.depends_on(n))
+    if not names:
+        raise ModelError(Diagnostic("SF801", "no pole of the model depends on a parameter with a spread"))
+    other = tuple((p.name, p.value) for p in model.parameters if p.value and p.name in ends)
+    still = tuple(each for each in other if each[0] not in names)
+    return replace(function, names=names, values=(*function.values, *still)), tuple(ends[n] for n in names)
+
+
+def find_spread(function: CharacteristicFunction, box: Box) -> SpreadStability:
+    """Return what holds for all parameters of a characteristic function in a box."""
+    result = SpreadStability(function.names, ("",) * len(box), box, "undecided")
+    pending, done, reason = deque([function.whole(box)]), 0, ""
+    try:
+        located = located_at(function, middle_of(box), FOLLOWED)
+        if located.verdict.word != "stable":
+            return _at(result, located.verdict, middle_of(box))
+        poles = [complex(root) for root in located.all_poles if not root.im < 0]
+        tried: set[Point] = set()
+        for s in sorted(poles, key=lambda s: (reach(function, s, box)[0] + s).real)[-FOLLOWED:]:
+            if (unstable := _pushed(function, s, box, result, tried)) is not None:
+                return unstable
+        while pending and done < MOST_BOXES:
+            each, done = pending.popleft(), done + 1
+            if each.is_bounded:
+                each = function.narrowed(each)
+                if not any(each.pieces):
+                    continue
+                if done in TRIES:
+                    low, high = next(pieces[-1] for pieces in each.pieces if pieces)
+                    s = complex(0, float(low + high) / 2)
+                    if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
+                        return unstable
+            pending += halves(each, function)
+    except BudgetError as error:
+        reason = error.diagnostics[0].message
+    except SymflexError as error:
+        return replace(result, reason=error.diagnostics[0].message)
+    if not pending:
+        return replace(result, word="stable", boxes=done)
+    ends = (str(each.radius) for each in pending if not each.is_bounded)
+    reason = reason or next(ends, f"poles may meet the axis in {len(pending)} of {done + len(pending)} boxes")
+    return replace(result, boxes=done, open_box=pending[0].box, reason=reason)
+
+
+def _pushed(
+    function: CharacteristicFunction,
+    s: complex,
+    part: Box,
+    result: SpreadStability,
+    tried: set[Point],
+) -> SpreadStability | None:
+    """Return what is proved for the corner to which a root near s moves to the right, if it is unstable."""
+    rates = reach(function, s, part)[1]
+    corner = tuple(ends[rate.real > 0] for rate, ends in zip(rates, result.box, strict=True))
+    if corner in tried:
+        return None
+    tried.add(corner)
+    verdict, _ = count_at(function, corner)
+    return _at(result, verdict, corner) if verdict.word == "unstable" else None
+
+
+def _at(result: SpreadStability, verdict: StabilityVerdict, point: Point) -> SpreadStability:
+    if verdict.word == "unknown":
+        return replace(result, reason=verdict.reason)
+    return replace(result, word=verdict.word, unstable=verdict.right or 0, combination=point)
+
+
+def middle_of(box: Box) -> Point:
+    """Return the middle of a box."""
+    return tuple((low + high) / 2 for low, high in box)
+
+
+def halves(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
+    """Return two parts of a box, parted along the parameter that contributes most to what is open.
+
+    Without an end of the poles that is one of the highest power of s.
+    """
+    spend()
+    sizes = box.weights or [
+        float((high - low) / (abs(low) + abs(high))) * (1 + (name in function.leading))
+        for name, (low, high) in zip(function.names, box.box, strict=True)
+    ]
+    i = max(range(len(sizes)), key=sizes.__getitem__)
+    low, high = box.box[i]
+    middle = (low + high) / 2
+    parts = [(*box.box[:i], ends, *box.box[i + 1 :]) for ends in ((low, middle), (middle, high))]
+    return [replace(box, box=part) if box.is_bounded else function.whole(part) for part in parts]
+
+
+def reach(function: CharacteristicFunction, s: complex, box: Box) -> tuple[complex, list[complex]]:
+    """Return how far a root near s moves within a box to first order, and each parameter's part of it.
+
+    Real and imaginary part of the first are sums of sizes.
+    """
+    with precision(BITS):
+        about, every = function.expanded(tuple((x, x) for x in middle_of(box))), range(len(function.factors))
+        slopes = [complex(slope.mid()) or 1e-300 for _, slope in about.around(acb(s), every)]
+        values = about.at(acb(s), every)
+        i = min(every, key=lambda i: abs(complex(values[i][0].mid()) / slopes[i]))
+        pairs = zip(values[i][1], box, strict=True)
+        parts = [-complex(x.mid()) / slopes[i] * float(high - low) / 2 for x, (low, high) in pairs]
+    return complex(sum(abs(x.real) for x in parts), sum(abs(x.imag) for x in parts)), parts
