@@ -33,7 +33,7 @@ from scipy.linalg import block_diag
 from symflex.budget import spend
 from symflex.data.fitting.observation import FittedLines, score_covariance
 from symflex.data.fitting.problem import FitProblem
-from symflex.data.fitting.resonances import Real, Resonances, Values, Whole
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""
@@ -287,7 +287,7 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
     their own, which need not be right. In a fit with more parameters, for terms (s/w)^4, (s/w)^6, (s/w)^3 and
     (s/w)^5 that are normally distributed about 0 with half the first term as deviation, every parameter would
     have another error, and another value: errors are these, and the way from this value to that one. Below
-    the band powers are negative.
+    the band powers are negative. So are what the end of a step leaves unknown, see :func:`_ends`.
     """
     modes, size = refined.resonances, refined.resonances.size(problem.free)
     normal, gradient = np.zeros((size, size)), np.zeros(size)
@@ -306,12 +306,14 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
             bends += [even * ratio**4, even * ratio**6, odd * ratio**3, odd * ratio**5]
         values, deviation = problem.values(modes, r), _absolute(line)
         bent = NEXT_TERM * np.column_stack(bends) * (values / deviation)[:, np.newaxis]
+        if line.measured.cut_off_s:
+            bent = np.column_stack((bent, _ends(line, modes, values) / deviation[:, np.newaxis]))
         rest = line.rest(values) / deviation
         if line.parts == 1:
             bent = (bent / np.exp(1j * np.angle(values))[:, np.newaxis]).real.astype(np.complex128)
         normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
         gradient[columns] += (np.conj(slopes).T @ rest).real
-        cross = np.zeros((size, len(bends)))
+        cross = np.zeros((size, bent.shape[1]))
         cross[columns] = (np.conj(slopes).T @ bent).real
         crosses.append(cross)
         squares.append((np.conj(bent).T @ bent).real)
@@ -328,6 +330,19 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
     moved, pull = moved @ turned, turned.T @ (np.concatenate(pulls) - moved.T @ gradient)
     way = moved @ (variance * pull / noise)
     return replace(refined, covariance=covariance + moved * variance @ moved.T + np.outer(way, way))
+
+
+def _ends(line: FittedLines, modes: Resonances, values: Complex) -> Complex:
+    """Return what a step that is cut off adds to lines, a column each, with its deviation.
+
+    Noise of its last sample is in all lines, and nothing else in the lowest one. A mode that rings on has the
+    residue ``r (1 - exp(p T))``.
+    """
+    s, w, zeta = 1j * line.omega, modes.omega_p[:, None], modes.zeta_p[:, None]
+    peak = np.interp(w, line.omega, np.abs(values)) * np.sqrt(2) * zeta
+    shape = peak * np.exp(-zeta * w * (line.measured.cut_off_s or 0)) / (1 + 2 * zeta * s / w + (s / w) ** 2)
+    common = np.full(s.size, np.sqrt(2) * _absolute(line)[0], np.complex128)
+    return np.vstack((common, shape, shape * s / w)).T
 
 
 class _Sums:

@@ -99,6 +99,14 @@ class _Channel:
         jump = int(np.argmax(high))
         return (jump, float(u[-1] - u[0])) if np.all(high[jump:]) and np.all(low[:jump]) else None
 
+    @property
+    def acting(self) -> _Channel:
+        """The record without the end of a step in which the input is switched off."""
+        held = int(np.flatnonzero(np.append(True, self.u != self.u[-1]))[-1])  # before the last level
+        shorter = _Channel(self.u[:held], self.y[:held], self.step_s)
+        is_off = self.u.size - held <= STOPPED * self.u.size and (shorter.level or (0, 0.0))[1]
+        return shorter if is_off else self
+
     @cached_property
     def pulse(self) -> int | None:
         """Where a short pulse begins, before and after which the input is zero; ``None`` if it is another."""
@@ -145,6 +153,7 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
     made = []
     for name, values in record.outputs:
         averages: float | None = None
+        cut_off: float | None = None
         window, halves = "", [float(np.std(half)) for half in np.array_split(values, 2)]
         is_driven = record.input is None and halves[1] > DIES_AWAY * halves[0]
         if record.input is None:
@@ -156,8 +165,10 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
             called = name if len(record.outputs) > 1 else record.name
         else:
             source, u = record.input
-            channel = _Channel(u, values, record.step_s)
+            channel = _Channel(u, values, record.step_s).acting
             frequency, response, coherence, averages, window, said = _estimated(channel, how)
+            if channel.level and how.segments is None and not window:
+                cut_off = (channel.y.size - channel.level[0]) * record.step_s
             called = f"{name}/{source}"
         is_finite = np.isfinite(response) & (response != 0) & (frequency > 0)
         if is_finite.sum() < 3:  # noqa: PLR2004 (as every response)
@@ -168,6 +179,7 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
             MeasuredResponse(
                 called, frequency[is_finite], response[is_finite], shares, averages, window,
                 notes=(said,), guesses=(*record.guesses, said), is_record=True, is_magnitude=is_driven,
+                cut_off_s=cut_off,
             )
         )  # fmt: skip
     return tuple(made)
@@ -178,10 +190,6 @@ _Estimated = tuple[npt.NDArray[Any], Complex, Real | None, float | None, str, st
 
 def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
     """Return frequencies, response, coherence, number of averages, window, and what was done."""
-    held = int(np.flatnonzero(np.append(True, channel.u != channel.u[-1]))[-1])  # before the last level
-    shorter = _Channel(channel.u[:held], channel.y[:held], channel.step_s)
-    if channel.u.size - held <= STOPPED * channel.u.size and (shorter.level or (0, 0.0))[1]:
-        channel = shorter
     is_exponential = how.window.startswith("exponential")
     if how.segments is None and channel.level is not None:
         return _of_step(channel, how)

@@ -55,6 +55,8 @@ class MeasuredResponse:
         True when it was estimated from a record in time.
     is_magnitude : bool
         True when no phase was measured: that of the values belongs to a minimum-phase function.
+    cut_off_s : float, optional
+        When the record of a step was cut off, whose last level is that of its last sample.
 
     Notes
     -----
@@ -79,6 +81,7 @@ class MeasuredResponse:
     guesses: tuple[str, ...] = field(default=(), repr=False)
     is_record: bool = field(default=False, repr=False)
     is_magnitude: bool = field(default=False, repr=False)
+    cut_off_s: float | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"
