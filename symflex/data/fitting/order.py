@@ -72,6 +72,9 @@ MOST_RISE = 1.5
 """Zeros moved to the other half plane are a start where the misfit rises by no more than this factor."""
 CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
+HALF_FORGOTTEN = 1.66
+"""What lines behind an exponential window share: sum of ``1/(1 + (pi k/1.5)^2)``, k being whole numbers, which is
+``1.5 coth 1.5``; that of residuals is not seen in few lines."""
 UNLIKELY = 1e-5
 """Share of right fits that may be called poor for what a function without structure describes better."""
 
@@ -627,7 +630,8 @@ def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
 def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Score:
     """Return the criteria, with as many independent values as correlated lines are worth."""
     refined = candidate.refined
-    size = problem.size / max(correlation, 1.0)
+    is_decaying = any(line.measured.decay_rate for line in problem.lines)
+    size = problem.size / max(correlation, HALF_FORGOTTEN if is_decaying else 1.0)
     parameters = refined.parameters
     fit = size * float(np.log(refined.cost / problem.size + NEGLIGIBLE))
     spare = size - parameters - 1
