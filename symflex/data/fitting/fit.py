@@ -412,9 +412,16 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
 def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     modes, errors = fit.resonances, fit.standard_errors()
     low, high = fit.problem.band
-    reasons = []
+    is_rounded = not fit.leaves_rounding and _is_rounded(fit)
+    weak, why = (WEAK_ROUNDED, ", and the data have few digits") if is_rounded else (WEAK, "")
+    lost = []
+    for i in np.flatnonzero(fit.modes).tolist():
+        if not errors.zeta_p[i] <= weak * modes.zeta_p[i]:
+            where = f"{named_pair(fit, i)} at {modes.omega_p[i] / (2 * np.pi):.4g} Hz"
+            lost.append(f"the damping of {where} is lost in its error{why}")
     if fit.leaves_rounding:
-        return ()  # which tells nothing
+        return tuple(lost)  # what is left tells nothing
+    reasons = []
     if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
@@ -423,11 +430,7 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together: the model lacks something")
-    weak, why = (WEAK_ROUNDED, ", and the data have few digits") if _is_rounded(fit) else (WEAK, "")
-    for i in np.flatnonzero(fit.modes).tolist():
-        if not errors.zeta_p[i] <= weak * modes.zeta_p[i]:
-            where = f"{named_pair(fit, i)} at {modes.omega_p[i] / (2 * np.pi):.4g} Hz"
-            reasons.append(f"the damping of {where} is lost in its error{why}")
+    reasons += lost
     if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
         is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
         is_lag = not fit.problem.free.delay and bool(np.any(modes.real_z < 0) or np.any(is_beyond))

@@ -73,8 +73,8 @@ MOST_RISE = 1.5
 CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 HALF_FORGOTTEN = 1.66
-"""What lines behind an exponential window share: sum of ``1/(1 + (pi k/1.5)^2)``, k being whole numbers, which is
-``1.5 coth 1.5``; that of residuals is not seen in few lines."""
+"""What lines behind an exponential window share, which few residuals do not show: the sum over all whole k of
+``1/(1 + (pi k/1.5)^2)``, ``1.5 coth 1.5``."""
 UNLIKELY = 1e-5
 """Share of right fits that may be called poor for what a function without structure describes better."""
 

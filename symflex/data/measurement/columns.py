@@ -957,7 +957,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
     is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
-    if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t\b", columns[axis].name, re.I):
+    if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t(?:\b|_)", columns[axis].name, re.I):
         timed = option_in_time([c.numbers for c in columns[axis:]], axis)
         return f"'{columns[axis].name[:30]}' is no frequency: {timed or HINT}"
     if columns[axis].meaning.kind not in ("", "frequency"):
@@ -971,7 +971,10 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return WITHOUT_TIME.format(signals([c.numbers for c in columns], ",dt=SECONDS"))
     is_open = not columns[axis].meaning.kind and steps.size >= FEWEST_TO_DECIDE
     timed = option_in_time([c.numbers for c in columns[axis:]], axis) if is_open else ""
-    is_held = columns[axis].numbers.real[0] > SINCE_1970
+    # Times begin at zero or one step later, as few frequencies do unless they count lines.
+    times = columns[axis].numbers.real
+    begins = is_open and times[0] <= (1 + HELD) * np.median(np.diff(times)) and not counts(times)
+    is_held = begins or times[0] > SINCE_1970
     is_held |= any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
     open_ones: list[int] = []
     for i, c in enumerate(columns):
@@ -993,9 +996,9 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
 
     readings = _likely(columns, axis, open_ones, UNDECIDED if pair else UNDECIDED / 3)
     if readings:
-        options = [option(*zip(words, pair, strict=True)) for words, pair in readings]
-        options = [o for o in ([timed, *options] if is_held else [*options, timed]) if o]
-        return f"say what the columns are: {', or '.join(options)}"
+        these = ", or ".join(option(*zip(words, pair, strict=True)) for words, pair in readings)
+        both = [timed, f"{these} if column {axis + 1} is a frequency"] if timed else [these]
+        return f"say what the columns are: {', or '.join(both if is_held else both[::-1])}"
     sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
     if not sizes:
         return "a phase alone is no response: save the magnitude too" if open_ones else HINT

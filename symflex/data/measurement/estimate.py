@@ -60,6 +60,8 @@ SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+HELD: Final = 0.5
+"""Share of samples that are those before them from which an input is held between samples."""
 STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
@@ -194,12 +196,30 @@ def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
     if how.segments is None and channel.level is not None:
         return _of_step(channel, how)
     if how.segments is None and (channel.pulse is not None or is_exponential):
-        return _of_whole(channel, how, "a record from rest" if channel.pulse is None else "an impact")
-    if how.segments is None and (period := channel.period) is not None:
-        return _of_periods(channel, period)
-    if how.segments is None and channel.is_transient:
-        return _of_whole(channel, how, "the output begins and ends at rest")
-    return _by_segments(channel, how)
+        made = _of_whole(channel, how, "a record from rest" if channel.pulse is None else "an impact")
+    elif how.segments is None and (period := channel.period) is not None:
+        made = _of_periods(channel, period)
+    elif how.segments is None and channel.is_transient:
+        made = _of_whole(channel, how, "the output begins and ends at rest")
+    else:
+        made = _by_segments(channel, how)
+    is_held = np.mean(np.diff(channel.u) == 0) > HELD and channel.pulse is None
+    return _without_hold(made, channel.step_s) if is_held else made
+
+
+def _without_hold(made: _Estimated, step_s: float) -> _Estimated:
+    """Return the response of an input that is held between samples, which sees ``(1 - exp(-s h))/(s h)``.
+
+    What samples fold back adds to the error: of a plant that falls with the square of frequency, under the
+    hold, a share of ``(f/(1/h - f))^3``.
+    """
+    frequency, response, coherence, averages, window, said = made
+    s, share = 2j * np.pi * frequency * step_s, frequency * step_s
+    with np.errstate(all="ignore"):
+        response = response * s / (1 - np.exp(-s))
+        noise = 0.0 if coherence is None else 1 / coherence - 1
+    coherence = 1 / (1 + noise + (averages or 1.0) * (share / (1 - share)) ** 6)
+    return frequency, response, coherence, averages, window, f"{said}; the input is held between samples"
 
 
 def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
@@ -300,12 +320,11 @@ def _of_periods(channel: _Channel, period: int) -> _Estimated:
         response = above.mean(axis=0) / below
         spread = np.sqrt(np.mean(np.abs(above - above.mean(axis=0)) ** 2, axis=0) / max(n - 1, 1))
         deviation = spread / np.abs(below)
-    deviation = deviation if n > 1 else np.zeros_like(deviation)
     frequency = np.fft.rfftfreq(period, channel.step_s)
     said = f"a periodic input: the mean over {n} periods of {period * channel.step_s:.6g} s"
     said += f", after {skipped} in which the output settles" if skipped else ""
-    smooth = np.sqrt(_smoothed(deviation**2)) if n > 1 else deviation
-    coherence = _coherence(response, smooth)[kept] if n > 1 else None
+    # Lines between those of a square wave show how little of the input they have.
+    coherence = _coherence(response[kept], np.sqrt(_smoothed(deviation[kept] ** 2))) if n > 1 else None
     return frequency[kept], response[kept], coherence, None, "", said
 
 

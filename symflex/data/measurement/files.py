@@ -21,7 +21,13 @@ from symflex.data.measurement.arrays import responses_of as responses_of_arrays
 from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
-from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse, window_of
+from symflex.data.measurement.measured_response import (
+    FEWEST_TO_SCATTER,
+    MAX_BYTES,
+    MOST_AVERAGES,
+    MeasuredResponse,
+    window_of,
+)
 from symflex.data.measurement.record import TimeRecord, read_record
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
@@ -198,8 +204,8 @@ def prepared(
     """Return responses with what is known of them, and the lines in a band [Hz] alone.
 
     ``window`` is ``hann``, ``none`` or ``exponential:`` and a time constant [s]. A record keeps
-    the lines from the first to the last that is no noise. SF902 a band whose ends are not in order, an
-    unknown window, or no number of averages; SF605 when a response has no lines in the band.
+    the lines from the first to the last that is no noise, eight at least. SF902 a band whose ends are not in
+    order, an unknown window, or no number of averages; SF605 when a response has no lines in the band.
 
     Examples
     --------
@@ -226,7 +232,9 @@ def prepared(
             chosen = replace(chosen, window=window_of(window))
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:
             certain = np.flatnonzero(chosen.coherence > CERTAIN)
-            chosen = chosen.taken(np.arange(certain[0], certain[-1] + 1)) if certain.size else chosen
+            if certain.size:
+                end = min(max(certain[-1] + 1, certain[0] + FEWEST_TO_SCATTER), chosen.values.size)
+                chosen = chosen.taken(np.arange(certain[0], end))
         if band is not None:
             chosen = chosen.between(*band)
             if not chosen.values.size:

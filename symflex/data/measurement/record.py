@@ -31,7 +31,7 @@ from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, 
 from symflex.errors import DataError, Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Sequence, Set
 
     from symflex.data.measurement.arrays import Arrays
 
@@ -51,9 +51,11 @@ UNEVEN: Final = 0.5
 """The same, from which a sample is missing."""
 SATURATED: Final = 4
 """Samples one after the other at an end of a channel's range, from which it looks cut off."""
+SAME: Final = 1e-6
+"""Share of its range by which a channel differs from a multiple of another at most."""
 
 _INPUT = re.compile(
-    r"(?:u|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
+    r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
     r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
     r"stimulus|reference|command|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
     re.I,
@@ -140,7 +142,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     guesses = list(table.guesses)
     names, at, unit, start = named_time(table, first)
     if asked:
-        columns, lines = _numbers(table, first, width, guesses)
+        unused = {*range(len(words), width), *(i for i, word in enumerate(words) if word in ("-", ""))}
+        columns, lines = _numbers(table, first, width, guesses, unused)
         # A plain t has the unit of the header.
         columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
         channels = list(zip(_names(table, first, width) or [*words, *["-"] * width], columns, strict=False))
@@ -252,8 +255,10 @@ def _plain(cell: str, index: int) -> str:
     return _IN_BRACKETS.sub("", bare(cell)).strip() or f"channel {index + 1}"
 
 
-def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tuple[list[Real], list[int]]:
-    """Return the columns below the names, and the lines they stand in."""
+def _numbers(
+    table: TextTable, first: int, width: int, guesses: list[str], unused: Set[int] = frozenset()
+) -> tuple[list[Real], list[int]]:
+    """Return the columns below the names, and the lines they stand in; unused ones may hold anything."""
     lines = [
         i
         for i, text in enumerate(table.lines[first:], first)
@@ -274,15 +279,16 @@ def _numbers(table: TextTable, first: int, width: int, guesses: list[str]) -> tu
     read = [[number(c, table.decimal) for c in row[:width]] + [None] * (width - len(row)) for row in rows]
     read = [[x.real if isinstance(x, complex) and not x.imag else x for x in row] for row in read]
     empty = np.array([[not isinstance(x, float) for x in row] for row in read])
-    sparse = np.flatnonzero(2 * empty.sum(axis=0) > len(empty)).tolist()
+    sparse = np.flatnonzero(2 * empty.sum(axis=0) > len(empty) * ~np.isin(range(width), [*unused])).tolist()
     wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
-        hint = "a record in time has a number in every column"
+        hint = "a record in time has a number in every column; --columns t,-,u,y leaves columns out"
         raise DataError(Diagnostic("SF603", "a line holds something else than numbers", place, hint))
-    if sparse:
-        many = ", ".join(str(i + 1) for i in sparse[:12])
+    if left := [i for i in sparse if i not in unused]:
+        many = ", ".join(str(i + 1) for i in left[:12])
         guesses.append(f"columns in which most cells hold no number are left out: {many}")
+    if sparse:
         read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
     if wrong.any():
         listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
@@ -443,8 +449,22 @@ def _sorted(
         said = f"'{source[:30]}', the first channel, is taken as the input"
         guesses.append(f"{said}; --columns {option} says otherwise")
     excitation = next((c, x) for c, x in channels if c == source)
+    others = [c for c in named[1:] if len(channels) > len(named) and c[0].lower() == source[0].lower()]
+    mates = {c[1:].lower() for c in others if not c[-1].isdigit()}  # yVal belongs to uVal, and y2 to u1 too
+    others += [c for c, _ in channels if c[1:].lower() in mates and c not in others]
+    again = [c for c, x in channels if c not in (source, *others) and _is_multiple(x, excitation[1])]
+    for left, why in ((others, "another input, or its output,"), (again, f"a multiple of '{source[:30]}'")):
+        if left and len(channels) > len(left) + 1:
+            guesses.append(f"'{left[0][:30]}' is {why} and is left out")
+            channels = [(c, x) for c, x in channels if c not in left]
     outputs = tuple((c, x) for c, x in channels if c != source)
     return TimeRecord(stem, step, outputs or (excitation,), excitation if outputs else None, tuple(guesses))
+
+
+def _is_multiple(values: Real, other: Real) -> bool:
+    """Tell whether a channel is another one in another unit, which says nothing of a system."""
+    slope, offset = np.polyfit(other, values, 1)
+    return bool(np.ptp(values - slope * other - offset) < SAME * np.ptp(values))
 
 
 def _cut_off(values: Real) -> float | None:
