@@ -61,7 +61,7 @@ SAME_PERIOD: Final = 0.99
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
 HELD: Final = 0.5
-"""Share of samples that are those before them from which an input is held between samples."""
+"""Share of samples equal to those before them from which an input is held between samples."""
 STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
@@ -210,15 +210,15 @@ def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
 def _without_hold(made: _Estimated, step_s: float) -> _Estimated:
     """Return the response of an input that is held between samples, which sees ``(1 - exp(-s h))/(s h)``.
 
-    What samples fold back adds to the error: of a plant that falls with the square of frequency, under the
-    hold, a share of ``(f/(1/h - f))^3``.
+    What samples fold back adds to the error: of a plant that falls with frequency, as the hold does, a share
+    of ``(f/(1/h - f))^2``.
     """
     frequency, response, coherence, averages, window, said = made
     s, share = 2j * np.pi * frequency * step_s, frequency * step_s
     with np.errstate(all="ignore"):
         response = response * s / (1 - np.exp(-s))
         noise = 0.0 if coherence is None else 1 / coherence - 1
-    coherence = 1 / (1 + noise + (averages or 1.0) * (share / (1 - share)) ** 6)
+    coherence = 1 / (1 + noise + (averages or 1.0) * (share / (1 - share)) ** 4)
     return frequency, response, coherence, averages, window, f"{said}; the input is held between samples"
 
 

@@ -21,13 +21,7 @@ from symflex.data.measurement.arrays import responses_of as responses_of_arrays
 from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
-from symflex.data.measurement.measured_response import (
-    FEWEST_TO_SCATTER,
-    MAX_BYTES,
-    MOST_AVERAGES,
-    MeasuredResponse,
-    window_of,
-)
+from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse, window_of
 from symflex.data.measurement.record import TimeRecord, read_record
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
@@ -54,6 +48,8 @@ READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, .
 Each takes what messages call the file, its bytes, a name, and what ``--columns`` says. Files with other
 endings are read as text in columns where they are text.
 """
+FEWEST_CERTAIN: Final = 8
+"""Lines of a record that are kept at least: as many as a fit needs."""
 CERTAIN: Final = 0.95
 """Coherence of one average that noise alone has on one line in 200 million: ``exp(-0.95/0.05)``."""
 SAVE_AS: Final = {
@@ -233,7 +229,7 @@ def prepared(
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:
             certain = np.flatnonzero(chosen.coherence > CERTAIN)
             if certain.size:
-                end = min(max(certain[-1] + 1, certain[0] + FEWEST_TO_SCATTER), chosen.values.size)
+                end = min(max(certain[-1] + 1, certain[0] + FEWEST_CERTAIN), chosen.values.size)
                 chosen = chosen.taken(np.arange(certain[0], end))
         if band is not None:
             chosen = chosen.between(*band)

@@ -12,10 +12,9 @@ from tests.unit.data.kinds import KINDS, complex_noise, of_lines, study, table
 @pytest.mark.parametrize("kind", KINDS)
 def test_errors_are_those_that_a_fit_says_and_resonances_are_there(kind):
     off, wrong, phantoms = study(kind, 24, seed=3)
-    # The rms of 96 errors, all as they are said, is between these limits in 99 of 100 studies. Errors of
-    # steps are larger than said, and one of the hammers has a resonance too many: see docs/fit.md.
-    assert kind == "step" or 0.8 < np.sqrt(np.mean(off**2)) < 1.25
-    assert len(wrong) <= 1 and (kind == "hammer" or not phantoms)
+    # The rms of 96 errors, all as they are said, is between these limits in 99 of 100 studies.
+    assert 0.8 < np.sqrt(np.mean(off**2)) < 1.25
+    assert len(wrong) <= 1 and not phantoms
 
 
 def fitted(folder, text, columns=None, **options):

@@ -346,3 +346,34 @@ def test_odd_columns_of_loggers_are_read():
     assert record.step_s == 4 and [name for name, _ in record.outputs] == ["y"]
     timed = columns(np.arange(64), *noise.T, begin="Time (ms),a,b\n")
     assert read_record("a.csv", timed, "a", "t,y,u").step_s == pytest.approx(1e-3)
+
+
+def test_channels_that_are_no_outputs_are_left_out_and_said():
+    noise = np.random.default_rng(1).normal(size=(64, 4))
+    t = np.arange(64) / 100
+    a, b, c, d = noise.T
+    cases = {  # names, columns, the input, the outputs, what is said
+        "t,pwm,volts,speed": ((a, 3 * a + 1, c), ["speed"], "'volts' is a multiple of 'pwm'"),
+        "t,uEst,uVal,yEst,yVal": ((a, b, c, d), ["yEst"], "'uVal' is another input"),
+        "t,u1,u2,y1,y2": ((a, b, c, d), ["y1", "y2"], "'u2' is another input"),
+        "t,u,v": ((a, 2 * a), ["v"], ""),
+    }
+    for head, (series, outputs, said) in cases.items():
+        record = read_record("a.csv", columns(t, *series, begin=head + "\n"), "a")
+        assert [name for name, _ in record.outputs] == outputs and np.allclose(record.input[1], a), head
+        assert said in " ".join(record.guesses), head
+    rows = "\n".join(f"{x},{1 if i % 4 else ''},{y}" for i, (x, y) in enumerate(zip(t, c, strict=True)))
+    with pytest.raises(DataError, match="something else than numbers"):
+        read_record("a.csv", f"t,a,b\n{rows}".encode(), "a")
+    assert read_record("a.csv", f"t,a,b\n{rows}".encode(), "a", "t,-,y").outputs[0][0] == "b"
+
+
+def test_square_waves_that_are_held_between_samples_show_the_response_at_their_harmonics(tmp_path):
+    u = np.tile(np.repeat([1.0, -1.0], 50), 40)  # no power in even harmonics
+    pole = np.exp(-2 * np.pi * 20 * STEP / 10)
+    y = signal.lfilter([0, 1 - pole], [1, -pole], u) + 1e-3 * np.random.default_rng(2).normal(size=u.size)
+    (found,) = read_measurement(written(tmp_path, u, y, times=np.arange(u.size) * STEP / 10))
+    assert "periodic" in found.guesses[-1] and "held between samples" in found.guesses[-1]
+    off = np.abs(found.values * (1 + 1j * found.frequency_hz / 20) - 1)
+    assert found.frequency_hz[:9] == pytest.approx(50 * np.arange(1, 18, 2))
+    assert np.all(off < 5 * found.relative_deviation()) and np.all(off[:3] < 0.012)
