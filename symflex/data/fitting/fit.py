@@ -32,16 +32,7 @@ from symflex.data.fitting.order import (
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase, not_judged
 from symflex.data.fitting.problem import FitProblem, fit_problem
-from symflex.data.fitting.resonances import (
-    LOGARITHMIC,
-    UNITS,
-    Complex,
-    Free,
-    Mask,
-    Resonances,
-    Values,
-    Whole,
-)
+from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest

@@ -335,8 +335,7 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
 def _ends(line: FittedLines, modes: Resonances, values: Complex) -> Complex:
     """Return what a step that is cut off adds to lines, a column each, with its deviation.
 
-    Noise of its last sample is in all lines, and nothing else in the lowest one. A mode that rings on has the
-    residue ``r (1 - exp(p T))``.
+    Noise of its last sample is all of the lowest line. A mode that rings on has ``r (1 - exp(p T))`` for r.
     """
     s, w, zeta = 1j * line.omega, modes.omega_p[:, None], modes.zeta_p[:, None]
     peak = np.interp(w, line.omega, np.abs(values)) * np.sqrt(2) * zeta

@@ -60,6 +60,8 @@ LOWER = 0.5
 """How far the BIC has to fall for another start to count as better."""
 NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
+WELL_BELOW = 0.1
+"""The same of records, in units of the noise that they show where they are quietest."""
 MOST_NUMERATORS, MOST_STARTS = 3, 4
 """The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
 MOST_SHAPES = 12
@@ -73,8 +75,7 @@ MOST_RISE = 1.5
 CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 HALF_FORGOTTEN = 1.66
-"""What lines behind an exponential window share, which few residuals do not show: the sum over all whole k of
-``1/(1 + (pi k/1.5)^2)``, ``1.5 coth 1.5``."""
+"""What lines behind an exponential window share, 1.5 coth 1.5: the sum of ``1/(1 + (pi k/1.5)^2)`` over k."""
 UNLIKELY = 1e-5
 """Share of right fits that may be called poor for what a function without structure describes better."""
 
@@ -412,10 +413,16 @@ def _nothing(problem: FitProblem) -> Candidate:
     return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
+def _negligible(problem: FitProblem) -> float:
+    """Return the mean square below which residuals tell nothing: the noise of a record is known roughly."""
+    is_rough = any(line.coherence is not None and line.measured.is_record for line in problem.lines)
+    return WELL_BELOW if is_rough and not problem.is_noise_known else NEGLIGIBLE
+
+
 def _merit(problem: FitProblem, refined: Refined, correlation: float = 1.0) -> float:
     """Return the BIC of a minimum, for fits of the same lines with other zeros; strange ones cost."""
     size = problem.size / max(correlation, 1.0)
-    fit = size * np.log(refined.cost / problem.size + NEGLIGIBLE)
+    fit = size * np.log(refined.cost / problem.size + _negligible(problem))
     merit = float(fit + refined.parameters * np.log(size))
     modes = refined.resonances
     improper = 0 if problem.has_base else int(modes.is_improper.sum())
@@ -633,7 +640,7 @@ def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Sco
     is_decaying = any(line.measured.decay_rate for line in problem.lines)
     size = problem.size / max(correlation, HALF_FORGOTTEN if is_decaying else 1.0)
     parameters = refined.parameters
-    fit = size * float(np.log(refined.cost / problem.size + NEGLIGIBLE))
+    fit = size * float(np.log(refined.cost / problem.size + _negligible(problem)))
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
     bic = fit + parameters * float(np.log(size))

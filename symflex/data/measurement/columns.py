@@ -971,8 +971,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return WITHOUT_TIME.format(signals([c.numbers for c in columns], ",dt=SECONDS"))
     is_open = not columns[axis].meaning.kind and steps.size >= FEWEST_TO_DECIDE
     timed = option_in_time([c.numbers for c in columns[axis:]], axis) if is_open else ""
-    # Times begin at zero or one step later, as few frequencies do unless they count lines.
-    times = columns[axis].numbers.real
+    times = columns[axis].numbers.real  # they begin at zero or one step later, as few frequencies do
     begins = is_open and times[0] <= (1 + HELD) * np.median(np.diff(times)) and not counts(times)
     is_held = begins or times[0] > SINCE_1970
     is_held |= any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
@@ -982,6 +981,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
             c.meaning.kind in ("coherence", "frequency")
             or _NO_WORD.search(c.name)
             or (pair and c not in pair)
+            or (i < axis and counts(c.numbers))
         ):
             continue
         is_again = any(_is_same(c.numbers.real, columns[k].numbers.real) for k in open_ones)

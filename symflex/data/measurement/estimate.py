@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-ESTIMATORS: Final = ("h1", "h2")
 SEGMENTS: Final = 8
 """Segments into which a record is cut by default, without overlap; with half an overlap there are 15."""
 LONGEST_SEGMENT: Final = 16_384
@@ -56,10 +55,15 @@ AT_REST: Final = 0.02
 """Share of the largest amplitude below which the end of a record is at rest, noise aside."""
 EXCITED: Final = 1e-3
 """Share of the largest amplitude of the input's spectrum below which a line is not excited."""
+EXCITED_AGAIN: Final = 0.03
+"""The same of a periodic input, where harmonics of a sine are below, and of what a window fades out."""
 SAME_PERIOD: Final = 0.99
 """Correlation of an input with itself from which it repeats."""
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
+SWEPT: Final = 0.4
+"""Share of a line's power in one of :data:`SEGMENTS` from which the input is a sweep; noise has a fifth."""
+OF_STEP: Final = "a step"
 HELD: Final = 0.5
 """Share of samples equal to those before them from which an input is held between samples."""
 STOPPED: Final = 0.01
@@ -101,14 +105,6 @@ class _Channel:
         jump = int(np.argmax(high))
         return (jump, float(u[-1] - u[0])) if np.all(high[jump:]) and np.all(low[:jump]) else None
 
-    @property
-    def acting(self) -> _Channel:
-        """The record without the end of a step in which the input is switched off."""
-        held = int(np.flatnonzero(np.append(True, self.u != self.u[-1]))[-1])  # before the last level
-        shorter = _Channel(self.u[:held], self.y[:held], self.step_s)
-        is_off = self.u.size - held <= STOPPED * self.u.size and (shorter.level or (0, 0.0))[1]
-        return shorter if is_off else self
-
     @cached_property
     def pulse(self) -> int | None:
         """Where a short pulse begins, before and after which the input is zero; ``None`` if it is another."""
@@ -125,6 +121,16 @@ class _Channel:
         noise = _noise_of(self.y)
         limit = AT_REST * float(np.max(np.abs(self.y - begin[0]))) + 4 * noise
         return float(abs(begin[0] - np.median(end))) <= limit and float(np.ptp(end)) <= 2 * limit
+
+    @property
+    def is_sweep_from_rest(self) -> bool:
+        """Tell whether input and output begin at zero, and every frequency of the input has its time."""
+        from scipy import signal  # as below
+
+        if any(abs(x[0]) > AT_REST * np.max(np.abs(x)) for x in (self.u, self.y)):
+            return False
+        *_, power = signal.spectrogram(self.u, nperseg=max(self.u.size // SEGMENTS, 16))
+        return bool(power.max(axis=1).sum() > SWEPT * power.sum())
 
     @cached_property
     def period(self) -> int | None:
@@ -155,7 +161,6 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
     made = []
     for name, values in record.outputs:
         averages: float | None = None
-        cut_off: float | None = None
         window, halves = "", [float(np.std(half)) for half in np.array_split(values, 2)]
         is_driven = record.input is None and halves[1] > DIES_AWAY * halves[0]
         if record.input is None:
@@ -167,21 +172,19 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
             called = name if len(record.outputs) > 1 else record.name
         else:
             source, u = record.input
-            channel = _Channel(u, values, record.step_s).acting
+            channel = _Channel(u, values, record.step_s)
             frequency, response, coherence, averages, window, said = _estimated(channel, how)
-            if channel.level and how.segments is None and not window:
-                cut_off = (channel.y.size - channel.level[0]) * record.step_s
             called = f"{name}/{source}"
         is_finite = np.isfinite(response) & (response != 0) & (frequency > 0)
         if is_finite.sum() < 3:  # noqa: PLR2004 (as every response)
-            message = f"the record of '{name[:40]}' makes no response: its input is nearly zero"
-            raise DataError(Diagnostic("SF605", message))
+            message = f"the record of '{name[:40]}' makes no response: it holds too few frequencies"
+            raise DataError(Diagnostic("SF605", message, None, "a sweep, a step or noise has them all"))
         shares = None if coherence is None else np.clip(np.asarray(coherence)[is_finite], 1e-6, 1.0)
         made.append(
             MeasuredResponse(
                 called, frequency[is_finite], response[is_finite], shares, averages, window,
                 notes=(said,), guesses=(*record.guesses, said), is_record=True, is_magnitude=is_driven,
-                cut_off_s=cut_off,
+                cut_off_s=1 / frequency[1] if said.startswith(OF_STEP) and not window else None,
             )
         )  # fmt: skip
     return tuple(made)
@@ -192,6 +195,10 @@ _Estimated = tuple[npt.NDArray[Any], Complex, Real | None, float | None, str, st
 
 def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
     """Return frequencies, response, coherence, number of averages, window, and what was done."""
+    held = int(np.flatnonzero(np.append(True, channel.u != channel.u[-1]))[-1])  # before the last level
+    shorter = _Channel(channel.u[:held], channel.y[:held], channel.step_s)
+    if channel.u.size - held <= STOPPED * channel.u.size and (shorter.level or (0, 0.0))[1]:
+        channel = shorter
     is_exponential = how.window.startswith("exponential")
     if how.segments is None and channel.level is not None:
         return _of_step(channel, how)
@@ -201,6 +208,8 @@ def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
         made = _of_periods(channel, period)
     elif how.segments is None and channel.is_transient:
         made = _of_whole(channel, how, "the output begins and ends at rest")
+    elif how.segments is None and channel.is_sweep_from_rest:
+        made = _of_whole(channel, replace(how, window="exponential"), "a record from rest")
     else:
         made = _by_segments(channel, how)
     is_held = np.mean(np.diff(channel.u) == 0) > HELD and channel.pulse is None
@@ -208,11 +217,8 @@ def _estimated(channel: _Channel, how: Estimate) -> _Estimated:
 
 
 def _without_hold(made: _Estimated, step_s: float) -> _Estimated:
-    """Return the response of an input that is held between samples, which sees ``(1 - exp(-s h))/(s h)``.
-
-    What samples fold back adds to the error: of a plant that falls with frequency, as the hold does, a share
-    of ``(f/(1/h - f))^2``.
-    """
+    """Return the response of an input that is held between samples, which sees ``(1 - exp(-s h))/(s h)``."""
+    # What is folded back is an error: the hold falls with frequency, and so does a plant at least.
     frequency, response, coherence, averages, window, said = made
     s, share = 2j * np.pi * frequency * step_s, frequency * step_s
     with np.errstate(all="ignore"):
@@ -245,7 +251,7 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     variance += weights[-1] ** 2
     deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
     coherence = _coherence(response, deviation)
-    said = f"a step: spectrum of the output's increments over the jump{said}"
+    said = f"{OF_STEP}: spectrum of the output's increments over the jump{said}"
     return frequency[kept], response[kept], coherence[kept], None, window, said
 
 
@@ -254,14 +260,14 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
     offset = float(first[0]) if np.ptp(first) <= LEVELS * np.ptp(channel.u) else 0.0
     before = max(channel.pulse or 0, 4)
     noise, y = _noise_of(channel.y), channel.y - channel.y[:before].mean()
-    is_plain = channel.pulse is None and how.window == "hann"  # it would weigh little what acts late
-    weights, window, said = _weights(
-        y, noise, channel.step_s, replace(how, window="none") if is_plain else how
-    )
+    if channel.pulse is None and how.window == "hann":  # it would weigh little what acts late
+        how = replace(how, window="none")
+    weights, window, said = _weights(y, noise, channel.step_s, how)
     above, below = np.fft.rfft(y * weights), np.fft.rfft((channel.u - offset) * weights)
     frequency, size = np.fft.rfftfreq(y.size, channel.step_s), np.abs(below)
-    kept = _apart(weights) & (size > EXCITED * size.max())
-    if channel.pulse is not None:
+    least = EXCITED_AGAIN if window and channel.pulse is None else EXCITED
+    kept = _apart(weights) & (size > least * size.max())
+    if channel.pulse is not None or window:
         kept &= frequency <= BELOW_NYQUIST["impact"] / channel.step_s
     with np.errstate(all="ignore"):
         response = above / below
@@ -314,7 +320,7 @@ def _of_periods(channel: _Channel, period: int) -> _Estimated:
     skipped = int(np.argmax(apart <= 2 * apart[-2])) if count > 2 else 0  # noqa: PLR2004
     u, y = u[skipped:], y[skipped:]
     above, below = np.fft.rfft(y, axis=1), np.fft.rfft(u, axis=1).mean(axis=0)
-    kept = np.abs(below) > EXCITED * np.abs(below).max()
+    kept = np.abs(below) > EXCITED_AGAIN * np.abs(below).max()
     n = y.shape[0]
     with np.errstate(all="ignore"):
         response = above.mean(axis=0) / below
@@ -339,13 +345,9 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     n = channel.u.size
     wanted = how.segments or max(SEGMENTS, -(-n // LONGEST_SEGMENT))
     length = max(n // wanted, 16)
-    given: dict[str, Any] = {
-        "fs": 1 / channel.step_s,
-        "window": "hann" if how.window == "hann" else "boxcar",
-        "nperseg": length,
-        "noverlap": length // 2 if how.window == "hann" else 0,
-        "detrend": "constant",
-    }
+    given: dict[str, Any] = {"fs": 1 / channel.step_s, "nperseg": length, "detrend": "constant"}
+    is_hann = how.window == "hann"
+    given |= {"window": "hann", "noverlap": length // 2} if is_hann else {"window": "boxcar", "noverlap": 0}
     frequency, cross = signal.csd(channel.u, channel.y, **given)
     _, of_input = signal.welch(channel.u, **given)
     _, of_output = signal.welch(channel.y, **given)
@@ -355,8 +357,8 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     kept = (of_input > EXCITED**2 * of_input.max()) & (frequency > 0) & (frequency < 0.45 / channel.step_s)
     count = 1 + (n - length) // (length - given["noverlap"])
     # Segments of a Hann window that overlap by half are as good as so many independent ones (Welch 1967).
-    averages = count / (1 + (count > 1) * 2 * (count - 1) / count / 36) if how.window == "hann" else count
-    name = "Hann window, half an overlap" if how.window == "hann" else "no window"
+    averages = count / (1 + (count > 1) * 2 * (count - 1) / count / 36) if is_hann else count
+    name = "Hann window, half an overlap" if is_hann else "no window"
     long = f"{length * channel.step_s:.6g} s"
     said = f"Welch's method, {how.estimator.upper()}: {count} segments of {long}, {name}"
     if channel.u is channel.y:
@@ -366,7 +368,7 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
             "no input, and the output does not die away: taken as driven by white noise, its magnitude by "
             f"{said}; poles are those of the system, gain and zeros those of this output alone"
         )
-    window = "hann" if how.window == "hann" else ""
+    window = "hann" if is_hann else ""
     shares = None if coherence is None else coherence[kept]
     return frequency[kept], response[kept], shares, float(averages), window, said
 

@@ -48,8 +48,6 @@ READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, .
 Each takes what messages call the file, its bytes, a name, and what ``--columns`` says. Files with other
 endings are read as text in columns where they are text.
 """
-FEWEST_CERTAIN: Final = 8
-"""Lines of a record that are kept at least: as many as a fit needs."""
 CERTAIN: Final = 0.95
 """Coherence of one average that noise alone has on one line in 200 million: ``exp(-0.95/0.05)``."""
 SAVE_AS: Final = {
@@ -229,8 +227,8 @@ def prepared(
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:
             certain = np.flatnonzero(chosen.coherence > CERTAIN)
             if certain.size:
-                end = min(max(certain[-1] + 1, certain[0] + FEWEST_CERTAIN), chosen.values.size)
-                chosen = chosen.taken(np.arange(certain[0], end))
+                lines = slice(certain[0], max(certain[-1] + 1, certain[0] + 8))  # so many a fit needs
+                chosen = chosen.taken(np.arange(chosen.values.size)[lines])
         if band is not None:
             chosen = chosen.between(*band)
             if not chosen.values.size:

@@ -51,8 +51,10 @@ UNEVEN: Final = 0.5
 """The same, from which a sample is missing."""
 SATURATED: Final = 4
 """Samples one after the other at an end of a channel's range, from which it looks cut off."""
-SAME: Final = 1e-6
-"""Share of its range by which a channel differs from a multiple of another at most."""
+LEVELS: Final = 10
+"""Different values of a step or of a square wave, and of nothing else."""
+SAME: Final = 1 - 1e-12
+"""Correlation from which a channel is a multiple of another."""
 
 _INPUT = re.compile(
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
@@ -67,6 +69,7 @@ _CLOCK = re.compile(
     rb"(?:Z|[-+]\d\d:?\d\d)?"
 )
 """A time of day, perhaps behind a date: 2024-01-05T10:00:00.010Z, 05.01.2024 10:00:00,010, 10:00:00.010."""
+_CLOCK_NAME = re.compile(r"time|stamp|clock|epoch", re.I)
 DAY: Final = 86_400
 _EPOCHS: Final = {1e-3: (1e11, 1e13), 1e-6: (1e14, 1e16), 1e-9: (1e17, 1e19)}
 """Where times since 1970 are if they are not in seconds, of this century."""
@@ -330,8 +333,10 @@ def _even(
 
 
 def _resampled(times: Real, values: Real, step: float) -> Real:
-    """Return samples at even times, on the lines between those there are."""
+    """Return samples at even times, on the lines between those there are; few levels are held."""
     even = np.arange(times[0], times[-1] + step / 2, step)
+    if np.unique(values).size < LEVELS:
+        return values[np.searchsorted(times, even, "right") - 1]
     return np.asarray(np.interp(even, times, values), np.float64)
 
 
@@ -415,6 +420,10 @@ def _sorted(
     channels: list[tuple[str, Real]], step: float, stem: str, name: str, guesses: list[str], option: str
 ) -> TimeRecord:
     channels = [(c, x) for c, x in channels if 2 * np.isnan(x).sum() <= x.size and np.any(np.diff(x) != 1)]
+    channels = [(c, x) for c, x in channels if not (_CLOCK_NAME.search(c) and np.all(np.diff(x) >= 0))]
+    channels = [
+        c for i, c in enumerate(channels) if not any(np.array_equal(c[1], x) for _, x in channels[:i])
+    ]
     for channel, values in channels:
         if not np.isfinite(values).all():
             place = int(np.argmin(np.isfinite(values))) + 1
@@ -452,7 +461,7 @@ def _sorted(
     others = [c for c in named[1:] if len(channels) > len(named) and c[0].lower() == source[0].lower()]
     mates = {c[1:].lower() for c in others if not c[-1].isdigit()}  # yVal belongs to uVal, and y2 to u1 too
     others += [c for c, _ in channels if c[1:].lower() in mates and c not in others]
-    again = [c for c, x in channels if c not in (source, *others) and _is_multiple(x, excitation[1])]
+    again = [c for c, x in channels if abs(np.corrcoef(x, excitation[1])[0, 1]) > SAME and c != source]
     for left, why in ((others, "another input, or its output,"), (again, f"a multiple of '{source[:30]}'")):
         if left and len(channels) > len(left) + 1:
             guesses.append(f"'{left[0][:30]}' is {why} and is left out")
@@ -461,15 +470,9 @@ def _sorted(
     return TimeRecord(stem, step, outputs or (excitation,), excitation if outputs else None, tuple(guesses))
 
 
-def _is_multiple(values: Real, other: Real) -> bool:
-    """Tell whether a channel is another one in another unit, which says nothing of a system."""
-    slope, offset = np.polyfit(other, values, 1)
-    return bool(np.ptp(values - slope * other - offset) < SAME * np.ptp(values))
-
-
 def _cut_off(values: Real) -> float | None:
     """Return the end of its range at which a channel that varies stays several times, None if it does not."""
-    if np.unique(values[:2000]).size < 10:  # noqa: PLR2004 (levels of a step or of a square wave)
+    if np.unique(values[:2000]).size < LEVELS:
         return None
     for end in (values.max(), values.min()):
         at_end = np.flatnonzero(values == end)

@@ -357,10 +357,12 @@ def test_channels_that_are_no_outputs_are_left_out_and_said():
         "t,uEst,uVal,yEst,yVal": ((a, b, c, d), ["yEst"], "'uVal' is another input"),
         "t,u1,u2,y1,y2": ((a, b, c, d), ["y1", "y2"], "'u2' is another input"),
         "t,u,v": ((a, 2 * a), ["v"], ""),
+        "t,stamp,u,y,z": ((t + 1e9, a, b, b), ["y"], ""),
     }
     for head, (series, outputs, said) in cases.items():
         record = read_record("a.csv", columns(t, *series, begin=head + "\n"), "a")
-        assert [name for name, _ in record.outputs] == outputs and np.allclose(record.input[1], a), head
+        assert [name for name, _ in record.outputs] == outputs, head
+        assert np.allclose(record.input[1], a), head
         assert said in " ".join(record.guesses), head
     rows = "\n".join(f"{x},{1 if i % 4 else ''},{y}" for i, (x, y) in enumerate(zip(t, c, strict=True)))
     with pytest.raises(DataError, match="something else than numbers"):
@@ -377,3 +379,16 @@ def test_square_waves_that_are_held_between_samples_show_the_response_at_their_h
     off = np.abs(found.values * (1 + 1j * found.frequency_hz / 20) - 1)
     assert found.frequency_hz[:9] == pytest.approx(50 * np.arange(1, 18, 2))
     assert np.all(off < 5 * found.relative_deviation()) and np.all(off[:3] < 0.012)
+
+
+def test_sweeps_that_are_cut_off_and_steps_at_uneven_times_are_seen(tmp_path):
+    u, y = simulated(signal.chirp(np.arange(12_000) * STEP / 4, 2, 6, 60, phi=-90))
+    (found,) = read_measurement(written(tmp_path, u, y))
+    assert "a record from rest" in found.guesses[-1]
+    near = (found.frequency_hz > 5) & (found.frequency_hz < 20)
+    h = true(found.omega_seen / 2 / np.pi)
+    assert near.sum() > 10 and np.all(np.abs(found.values - h)[near] < 0.03 * np.abs(h)[near])
+    u, y = simulated(inputs("step"))
+    t = STEP * (np.arange(u.size) + 0.05 * np.random.default_rng(1).uniform(size=u.size))
+    (found,) = read_measurement(written(tmp_path, u, y, times=t))
+    assert "a step" in found.guesses[-1]
