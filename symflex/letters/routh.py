@@ -143,14 +143,13 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
             if degree_in(factor, 0):
                 every[str(factor)] = factor, n * times + every.get(str(factor), (factor, 0))[1]
     needed: list[fmpz_mpoly] = []
-    on_axis, moving = [], []
+    on_axis, moving, is_kept_left = [], [], of == POLES and is_passive(tf.model)
     for factor, times in every.values():
         is_even = not any(m[0] % 2 for m in factor.monoms())
         if is_even or len(factor) == 1:
             on_axis.append((format_expression(arranger.collected(factor)), times))
         # Energy keeps poles from the right of the axis: then poles that are their own mirror images lie on
         # it, and others meet it only where the last determinant vanishes.
-        is_kept_left = of == POLES and is_passive(tf.model)
         if len(factor) > 1 and not (is_even and is_kept_left):
             moving.append((factor, 1 + is_even))
             needed += _hurwitz(signs, factor, is_even=is_even)[: 3 if is_kept_left else None]
