@@ -49,7 +49,7 @@ ORDERS = (0, 2, 4, 8, 16, 32)
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
     """Return a distributed function as a rational one, in letters, up to a power of s.
 
-    Raises UsageError: SF902 for a function without kernels, or whose waves do not come to rest at s = 0.
+    Raises UsageError: SF902 for a function whose waves do not come to rest at s = 0.
 
     Examples
     --------
@@ -64,7 +64,8 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     '1/2*(s^2*T^2 - 2*s*T + 2)'
     """
     if tf.is_rational:
-        raise _refused(tf, "it is a rational function of s already")
+        whole = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
+        return tf, replace(print_form(tf), approximation=whole)
     weights = _weights(tf)
     num, den = (_expanded(tf, part, order + 1, weights) for part in (tf.num, tf.den))
     plain = Ring(tuple(n for n in num.ring.names if n not in tf.kernels.generators))

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra import Factored, evaluated
+from symflex.algebra import Factored
 from symflex.algebra.ring import irreducible_factors
 from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import ball, precision
@@ -33,7 +33,6 @@ from symflex.model import spread_box
 from symflex.model.model import IMAGINARY
 from symflex.options import share_of
 from symflex.print.forms import print_form
-from symflex.print.forms.arrange import Arranged, length
 from symflex.print.forms.printed import Approximation, terms_of
 from symflex.transfer import TransferFunction, bind
 from symflex.transfer.bind import values_for
@@ -84,9 +83,6 @@ class _Letters:
                     values[constant.generator] = enclose(constant.expression, each)
                 except (ModelError, KeyError):
                     continue  # of parameters without value, or wider than the function is defined
-            for name, value in tf.definitions:
-                if value.ring.used_in(f for f, _ in value.factors) <= values.keys():
-                    values[name] = evaluated(value, values.__getitem__, arb(1))
         index, ends = tf.ratio.ring.index, {}
         for name in index.keys() & known.keys():
             scale = wide.get(name, arb("nan")) / known[name]
@@ -261,35 +257,29 @@ def shortened(
     values_for(tf.model, tf.parameters, {})
     has_box = share is not None or any(p.spread is not None for p in tf.parameters)
     box = spread_box(tf.parameters, share) if has_box else {}
-    own, closed = bind(tf), Arranged().definitions.of(tf) if tf.definitions else None
+    own = bind(tf)
     first, _ = roots_of(own, own)
-    end, found = band_of(own, first)[1], []
-    for source in (tf, closed):
-        if source is None or source.is_rational != tf.is_rational:
-            continue
-        # What kernels of other waves divide by vanishes with them only as a whole.
-        is_plain = all(law.kind in ("exponential", "wave", "bending") for law in source.kernels.dispersions)
-        opaque = frozenset() if is_plain else frozenset(source.kernels.generators)
+    end = band_of(own, first)[1]
+    # What kernels of other waves divide by vanishes with them only as a whole.
+    is_plain = all(law.kind in ("exponential", "wave", "bending") for law in tf.kernels.dispersions)
+    opaque = frozenset() if is_plain else frozenset(tf.kernels.generators)
+    with precision(BITS):
+        letters = _Letters.of(tf, box)
+        factors = [(f, e) for f, e in tf.ratio.factors if len(f) > 1]
+        sums = [_Pruned(f, e, letters) for f, e in factors if not tf.ratio.ring.used_in([f]) & opaque]
+    kept, at_rest = -1, _at_rest(tf)
+    while True:
+        kept += 1
         with precision(BITS):
-            letters = _Letters.of(source, box)
-            factors = [(f, e) for f, e in source.ratio.factors if len(f) > 1]
-            sums = [_Pruned(f, e, letters) for f, e in factors if not source.ratio.ring.used_in([f]) & opaque]
-        kept, at_rest = -1, _at_rest(source)
-        while True:
-            kept += 1
-            with precision(BITS):
-                short, changes, dropped = _shorter(source, sums, letters, float(most))
-            if not dropped or _at_rest(short) == at_rest:
-                after = bind(short)
-                second = roots_of(own, after, first)[1]
-                if not dropped or (after.symbolic is None and _counts(first, end) == _counts(second, end)):
-                    break
-            _, owner, key = max(dropped, key=lambda each: each[0])
-            owner.whole.add(key)
-        printed = print_form(short, form)
-        size = length(printed.num, printed.den, *(e for _, e in printed.where))
-        found.append((size, printed, short, changes, kept, after, second))
-    _, printed, short, changes, kept, after, second = min(found, key=lambda each: each[0])
+            short, changes, dropped = _shorter(tf, sums, letters, float(most))
+        if not dropped or _at_rest(short) == at_rest:
+            after = bind(short)
+            _, second = roots_of(own, after, first)
+            if not dropped or (after.symbolic is None and _counts(first, end) == _counts(second, end)):
+                break
+        _, owner, key = max(dropped, key=lambda each: each[0])
+        owner.whole.add(key)
+    printed = print_form(short, form)
     static = None
     if own.is_rational:
         quotient = replace(own, ratio=after.ratio / own.ratio).enclosed(BITS)
@@ -319,6 +309,8 @@ def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[Transf
         raise UsageError(
             Diagnostic("SF902", "--short and --order exclude each other; --spread is for --short")
         )
+    if tf.is_zero:
+        return tf, print_form(tf)
     if given.order is not None:
         return truncated(tf, given.order)
     spread = None if given.spread is None else share_of(given.spread, "--spread")

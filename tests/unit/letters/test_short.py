@@ -130,7 +130,7 @@ def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
     [
         ({"short": "2"}, "--short takes a share"),
         ({"short": "1 %", "order": 2}, "exclude each other"),
-        ({"order": 2}, "it is a rational function of s already"),
+        ({"short": "1 %", "spread": "-1 %"}, "--spread takes a share"),
     ],
 )
 def test_what_cannot_be_short_is_refused(given, said):
