@@ -278,19 +278,10 @@ class TransferFunction(_Derived):
         return dimensionless_of(self.exact)
 
     def short(self, bound: Stated, spread: Stated | None = None) -> Form:
-        r"""Return a shorter formula, and by how much coefficients, roots and magnitude are proved to change.
+        r"""Return a shorter formula, with the changes of coefficients, roots and magnitude that are proved.
 
-        Parameters
-        ----------
-        bound : number or str
-            Largest relative change of a coefficient of s, ``0.01`` or ``"1 %"``.
-        spread : number or str, optional
-            Spread of all parameters, in place of their own.
-
-        Raises
-        ------
-        ModelError
-            SF229 when a parameter has no value.
+        No coefficient of s changes by more than ``bound``, ``0.01`` or ``"1 %"``, at the values or over the
+        spread of each parameter, or ``spread`` of all. Raises ModelError: SF229 when one has no value.
 
         Examples
         --------
@@ -307,12 +298,8 @@ class TransferFunction(_Derived):
     def order(self, power: int) -> Form:
         """Return a function of beams, rods and delays as a rational one, exact up to a power of s, 0 to 12.
 
-        At the driven point of a compliance it is the dynamic stiffness that is expanded.
-
-        Raises
-        ------
-        UsageError
-            SF902 for a rational function, or one whose waves do not come to rest at s = 0.
+        At the driven point of a compliance it is the dynamic stiffness that is expanded. Raises UsageError:
+        SF902 where waves do not come to rest at s = 0.
         """
         from symflex.letters.short import approximation
 

@@ -179,7 +179,7 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
     notes = []
     for end in ENDS:
         try:
-            found[end] = _Finder(tf, end).limit()
+            found[end] = LimitFinder(tf, end).limit()
         except NotInLettersError as error:
             notes.append(f"s -> {end}: no term in letters, {error}")
         except SymflexError as error:
@@ -200,7 +200,7 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
 
 
 @dataclass(frozen=True)
-class _Finder:
+class LimitFinder:
     """Finds the leading term at one end."""
 
     tf: Any  # a transfer function
@@ -212,7 +212,7 @@ class _Finder:
         return ring
 
     @cached_property
-    def _laws(self) -> dict[str, tuple[Factored, int]]:
+    def laws(self) -> dict[str, tuple[Factored, int]]:
         """What powers of wavenumbers are, and which powers."""
         laws = self.tf.kernels.dispersions
         if any(law.kind in ("pair", "general", "varying") for law in laws):
@@ -223,7 +223,7 @@ class _Finder:
     @cached_property
     def _waves(self) -> dict[str, Fraction]:
         """To which powers of s wavenumbers are proportional at this end."""
-        rates = {name: self._end(x)[1] / n for name, (x, n) in self._laws.items()}
+        rates = {name: self._end(x)[1] / n for name, (x, n) in self.laws.items()}
         delays = [self._end(k.dispersion.shift)[1] for k in self.tf.kernels.kernels if not k.wavenumber]
         if any(rate <= 0 for rate in (*rates.values(), *delays)):
             where = "vanish at s = 0, as on a foundation" if self.end == ENDS[0] else "grow with s"
@@ -285,7 +285,11 @@ class _Finder:
 
     def _at_zero(self, factor: fmpz_mpoly) -> Lead:
         """Return the first term of a factor's power series."""
-        ring, laws, waves = self._ring, self._laws, self._waves
+        return *self._end(self.expanded(factor), self._waves), {}
+
+    def expanded(self, factor: fmpz_mpoly, count: int = 1) -> Factored:
+        """Return a function with the same first terms of its power series in s, so many, as a factor."""
+        ring, laws, waves = self._ring, self.laws, self._waves
         kernels = [k for k in self.tf.kernels.kernels if int(factor.degrees()[ring.index[k.generator]])]
         slowest = min((waves.get(k.wavenumber, Fraction(1)) for k in kernels), default=inf)
         for most in ORDERS:
@@ -293,13 +297,15 @@ class _Finder:
             whole, total = composed(Factored.polynomial(ring, factor), series), Factored.number(ring, 0)
             parts = coefficients_of(ring, whole.numerator().expand(), [ring.index[name] for name in laws])
             for powers, part in parts.items():
+                if sum(n * waves[name] for n, name in zip(powers, laws, strict=True)) > slowest * most:
+                    continue  # further terms of the series would be added
                 term = Factored.polynomial(ring, part)
                 for n, (name, (square, order)) in zip(powers, laws.items(), strict=True):
                     term = term * square ** (n // order) * Factored.generator(ring, name) ** (n % order)
                 total = total + term
-            value, power = self._end(total / whole.denominator(), waves)
-            if not total.is_zero and power < slowest * (most + 1):
-                return value, power, {}
+            power = self._end(total, waves)[1]
+            if not total.is_zero and power + count - 1 < slowest * (most + 1):
+                return total / whole.denominator()
         raise NotInLettersError("its power series at s = 0 is too long")
 
     def _series(self, kernel: Kernel, most: int) -> Factored:
@@ -348,7 +354,7 @@ class _Finder:
     def _front(self, value: Factored) -> Powers:
         """Return a value, wavenumbers without their powers of s, as powers."""
         parts = []
-        for name, (square, order) in self._laws.items():
+        for name, (square, order) in self.laws.items():
             n = value.exponent_of(self._ring.generator(name))
             value = value / Factored.generator(self._ring, name) ** n
             parts.append((self._powers(self._end(square)[0]), Fraction(n, order)))
@@ -361,7 +367,7 @@ class _Finder:
         """Return the sum of arguments of kernels, each so many times, as a function of s."""
         terms, s = [], self._ring.generator(LAPLACE)
         for k, n in growth.items():
-            square, order = self._laws[k.wavenumber] if k.wavenumber else (k.dispersion.shift, 1)
+            square, order = self.laws[k.wavenumber] if k.wavenumber else (k.dispersion.shift, 1)
             of_s = square.exponent_of(s)
             wave = self._powers(square.filter(lambda f: f != s) * square.unit) | {
                 S: Fraction(of_s, self._order)

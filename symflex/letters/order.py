@@ -6,25 +6,22 @@ of its reciprocal, the dynamic stiffness.
 
     cantilever with a mass at its tip, up to s^2:    1/(3*E*I/l^3 + (33*rho*A*l/140 + m)*s^2)    (Rayleigh)
 
-Wavenumbers that vanish at s = 0 have a weight, the power of s that they begin with, and so has s. Kernels
-become Taylor series up to a weight. What remains is even in every wavenumber, or a function of its fourth
-power, so the dispersion relation makes it rational in s.
+Kernels are Taylor series, as in :mod:`symflex.letters.limits`. What remains is a function of the squares or
+the fourth powers of wavenumbers, which the dispersion relations make rational in s.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import factorial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import NO_KERNELS, Factored, Ring
-from symflex.algebra.factored import composed
 from symflex.algebra.ring import by_powers, terms_of
-from symflex.budget import spend
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Name, power, product_of, sum_of
 from symflex.letters.distance import distance, roots_of
+from symflex.letters.limits import LimitFinder, NotInLettersError
 from symflex.print.forms import PrintedForm, print_form
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.printed import Approximation, S
@@ -34,16 +31,9 @@ from symflex.transfer import TransferFunction, bind
 from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from flint import fmpz_mpoly
-
-    from symflex.algebra import Kernel
-
-QUARTERS = 4
-"""Weights count in quarters of a power of s: a bending wave begins with its square root."""
-ORDERS = (0, 2, 4, 8, 16, 32)
-"""Powers of s with which a numerator may begin, besides what it is divided by."""
 
 
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
@@ -66,8 +56,7 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     if tf.is_rational:
         whole = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
         return tf, replace(print_form(tf), approximation=whole)
-    weights = _weights(tf)
-    num, den = (_expanded(tf, part, order + 1, weights) for part in (tf.num, tf.den))
+    num, den = _expanded(tf, order + 1)
     plain = Ring(tuple(n for n in num.ring.names if n not in tf.kernels.generators))
     places = [n.node if not n.component else f"{n.node}.{n.component}" for n in tf.input.nodes]
     is_driven = tf.quantity == "receptance" and [tf.output.expression] == [Name(p) for p in places]
@@ -101,75 +90,23 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     return own, replace(form, approximation=Approximation((*said, *apart.said), facts | apart.facts))
 
 
-def _refused(tf: TransferFunction, reason: str) -> UsageError:
-    return UsageError(Diagnostic("SF902", f"{tf.name} is not expanded in s: {reason}"))
-
-
-def _weights(tf: TransferFunction) -> dict[int, int]:
-    """Return the positions of s and the wavenumbers, and the quarters of a power of s they begin with."""
-    weights = {0: QUARTERS}
-    for law in tf.kernels.dispersions:
-        if law.kind not in ("exponential", "wave", "bending"):
-            raise _refused(tf, f"the waves of '{law.name}' are of more than one kind")
-        own = QUARTERS * _begins(law.characteristic[0]) // law.order if law.wavenumbers else 1
-        if own <= 0:
-            raise _refused(tf, f"the waves of '{law.name}' do not come to rest at s = 0")
-        weights |= {tf.ratio.ring.index[name]: own for name in law.wavenumbers}
-    return weights
-
-
-def _expanded(tf: TransferFunction, part: Factored, count: int, weights: Mapping[int, int]) -> Factored:
-    """Return a rational function whose first coefficients of s, so many, are those of a part."""
-    ring, table = part.ring, tf.kernels
-    laws = [(law, law.wavenumbers[0]) for law in table.dispersions if law.wavenumbers]
-    # gamma^2 and mu^4
-    images = {w: law.characteristic[0] * (-1 if law.kind == "wave" else Fraction(1, 4)) for law, w in laws}
-    front = part.filter(lambda f: not ring.used_in([f]) & {*table.generators}) * part.unit
-    inner = part / front
-    for law, wave in laws:
-        below = -min(inner.exponent_of(ring.generator(wave)), 0)
-        times = -(-below // law.order)
-        inner = inner * Factored.generator(ring, wave) ** (times * law.order)
-        front = front / images[wave] ** times
-    if inner.denominator().factors:
-        raise _refused(tf, "it is divided by kernels")
-    for start in ORDERS:
-        spend()
-        most, value = QUARTERS * (start + count), inner
-        for kernel in (k for k in table.kernels if inner.depends_on(k.generator)):
-            series = _taylor(tf, kernel, weights, most)
-            value = _cut(composed(value, {kernel.generator: series}), weights, most)
-        for law, wave in laws:
-            total = Factored.number(ring, 0)
-            for exponent, rest in by_powers(ring, value.filter(bool).expand(), ring.index[wave]).items():
-                if exponent % law.order:
-                    raise _refused(tf, "it is no function of s alone")
-                total = total + Factored.polynomial(ring, rest) * images[wave] ** (exponent // law.order)
-            value = total * value.unit
-        if not value.is_zero and _begins(value) <= start:
-            return front * value
-    raise _refused(tf, "it begins with a higher power of s than is looked for")
-
-
-def _cut(value: Factored, weights: Mapping[int, int], most: int) -> Factored:
-    """Return the terms of a polynomial up to a weight."""
-    polynomial, steps = value.filter(bool).expand(), weights.items()
-    terms = {m: c for m, c in polynomial.to_dict().items() if sum(w * int(m[i]) for i, w in steps) <= most}
-    return Factored.polynomial(value.ring, polynomial.context().from_dict(terms)) * value.unit
-
-
-def _taylor(tf: TransferFunction, kernel: Kernel, weights: Mapping[int, int], most: int) -> Factored:
-    """Return a kernel's Taylor series."""
-    rate = Factored.generator(kernel.length.ring, kernel.wavenumber or "s")
-    argument = kernel.length * (rate if kernel.wavenumber else -kernel.dispersion.shift)
-    if argument.denominator().factors or (_cut(argument, weights, 0).factors):
-        raise _refused(tf, "a length or a delay is a quotient, or does not come to rest at s = 0")
-    is_circular, total = kernel.function in ("cos", "sin"), argument * 0
-    parity = {"exp": (0, 1), "cosh": (0, 2), "cos": (0, 2), "sinh": (1, 2), "sin": (1, 2)}[kernel.function]
-    for k in range(parity[0], most + 1, parity[1]):
-        sign = -1 if is_circular and k % 4 > 1 else 1
-        total = total + _cut(argument**k, weights, most) * Fraction(sign, factorial(k))
-    return total
+def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:
+    """Return numerator and denominator whose first coefficients of s, so many, are those of a function."""
+    ring, finder = tf.ratio.ring, LimitFinder(tf, "0")
+    sides = tf.ratio.numerator(), tf.ratio.denominator()
+    try:
+        # Kernels of one side together are functions of s, and one by one they need not be.
+        num, den = (finder.expanded((side / side.unit).expand(), count) * side.unit for side in sides)
+        for name, (square, order) in finder.laws.items():
+            wave = Factored.generator(ring, name)
+            above, below = (side.exponent_of(ring.generator(name)) for side in (num, den))
+            num, den = num / wave**above, den / wave**below
+            if (above - below) % order or num.depends_on(name) or den.depends_on(name):
+                raise NotInLettersError("it is no function of s alone")
+            num = num * square ** ((above - below) // order)
+    except NotInLettersError as error:
+        raise UsageError(Diagnostic("SF902", f"{tf.name} is not expanded in s: {error}")) from None
+    return num, den
 
 
 def _begins(value: Factored) -> int:

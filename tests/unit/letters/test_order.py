@@ -2,9 +2,11 @@
 
 import mpmath
 import pytest
+import sympy
 
 from symflex import pipeline
 from symflex.errors import UsageError
+from symflex.expressions import format_expression
 from symflex.letters.order import truncated
 from symflex.print.text import form_text
 
@@ -83,5 +85,19 @@ def test_the_stated_error_is_not_exceeded_and_the_pole_lies_where_it_is_said():
 
 @pytest.mark.parametrize("law", [', theory = "timoshenko", G = "G", kappa = "5/6"', ', N = "100 N"'])
 def test_waves_of_two_kinds_are_refused(law):
-    with pytest.raises(UsageError, match="of more than one kind"):
+    with pytest.raises(UsageError, match="its waves are no roots of one term"):
         truncated(function(CLAMP + MASS + member(BEAM + law)), 2)
+
+
+def test_a_sliding_beam_becomes_a_mass_and_a_mode():
+    # w(l) = -(1 + 3/40 b^4 + ...)/b^4 for a unit shear, E I = l = 1, b^4 = -rho A s^2, by SymPy
+    beam = PINS.replace("pin", "slider").splitlines()[0] + "\n" + member(BEAM)
+    tf = function(beam + 'inputs.F = { force = "a" }\noutputs.X = "b"\n')
+    (_, form) = truncated(tf, 4)
+    ones = dict.fromkeys(("E", "I", "rho", "A", "l"), 1)
+    num, den = (
+        sympy.sympify(format_expression(side), {"E": sympy.Symbol("E"), "I": sympy.Symbol("I")}).subs(ones)
+        for side in (form.num, form.den)
+    )
+    s = sympy.Symbol("s")
+    assert sympy.series(s**2 * num / den, s, 0, 4).removeO() == 1 - sympy.Rational(3, 40) * s**2
