@@ -828,6 +828,10 @@ class Model:
         """Return an ES module without dependencies, for browsers and Node."""
         return self._export("js")
 
+    def export_modelica(self) -> str:
+        """Return a Modelica model: state equations in letters."""
+        return self._export("modelica")
+
     def export_latex(self) -> str:
         """Return a standalone LaTeX document of the model."""
         return self._export("latex")

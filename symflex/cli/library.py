@@ -14,7 +14,6 @@ import click
 from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
 from symflex.errors import Diagnostic, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.model.spec.read import NETLISTS, read
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +54,8 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
     A template begins with comments that say what it is and what to try next.
     """
     if netlist is not None:
+        from symflex.model.spec.read import NETLISTS, read  # imports the rooms of models
+
         if not netlist.lower().endswith(NETLISTS):
             hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
             raise UsageError(Diagnostic("SF902", f"'{netlist}' is no netlist by its name", None, hint))

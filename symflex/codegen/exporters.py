@@ -11,6 +11,7 @@ from symflex.codegen.javascript import JAVASCRIPT
 from symflex.codegen.julia import JULIA
 from symflex.codegen.latex import LatexExporter
 from symflex.codegen.matlab import MATLAB
+from symflex.codegen.modelica import ModelicaExporter
 from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.python.sampled import SAMPLED_PYTHON
 from symflex.codegen.state_space import StateSpaceExporter
@@ -30,6 +31,7 @@ EXPORTERS: dict[str, Exporter] = {
     "julia": JULIA,
     "js": JAVASCRIPT,
     "state-space": StateSpaceExporter(),
+    "modelica": ModelicaExporter(),
     "latex": LatexExporter(),
 }
 """``symflex export``."""

@@ -145,7 +145,8 @@ def _statements(source: Source) -> tuple[str, list[Card], list[str]]:
                 raise SpecError(Diagnostic("SF105", message, Span(source, start, start + len(text)), hint))
             continue
         if number > MOST_LINES:
-            raise SpecError(Diagnostic("SF103", f"a netlist has at most {MOST_LINES} lines", None))
+            hint = "leave out what is not needed, or split the circuit"
+            raise SpecError(Diagnostic("SF103", f"a netlist has at most {MOST_LINES} lines", None, hint))
         if re.match(r"\.control\b", text, re.I):
             in_control = True
         if text.startswith("*") or not text or in_control:
