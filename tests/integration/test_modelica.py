@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.needs_module("rumoca")]
 
 MODELS = {
     "classics/quarter_car": "Z_body/z_road",
-    "eppinger1988/base_flexure": "X_tip/F",
+    "eppinger1988/base_flexure": "V_tip/F",
     "eppinger1988/six_mass": "V_tip/F",
     "eppinger1988/two_mass": "X_act/F",
     "eppinger1988/rigid_body": "V_tip/V_cmd",
