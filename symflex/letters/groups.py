@@ -163,9 +163,8 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
     head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
     named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
-    found = InLetters(
-        tf, (head, *named, _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit), *rows)
-    )
+    sized = _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit)
+    found = InLetters(tf, (head, *named, sized, *rows))
     _check(found)
     return found
 
@@ -181,7 +180,9 @@ def _unit(parameter: ModelParameter) -> str:
 
 def _choice(tf: TransferFunction, parameter: ModelParameter) -> tuple[bool, int, int]:
     """Return a key that is larger, the better a parameter serves as one of the base."""
-    waves = {name for x in tf.kernels.values for name in tf.ring.used_in(f for f, _ in x.factors)}
+    data = [x for law in tf.kernels.dispersions if law.wavenumbers for x in law.coefficients]
+    data += [k.length for k in tf.kernels.kernels if k.wavenumber]
+    waves = tf.ring.used_in(f for x in data for f, _ in x.factors)
     members = (use for use in tf.model.elements if isinstance(use.element, LineElement))
     waves |= {n.name for use in members for _, x in use.values for n in e.names(opened(tf, x))}
     unit = _unit(parameter)

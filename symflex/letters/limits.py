@@ -236,9 +236,8 @@ class LimitFinder:
         total, power = Factored.number(ring, value.unit), Fraction(0)
         for factor, exponent in value.factors:
             leads: dict[Fraction, fmpz_mpoly] = {}
-            for (n, *powers), part in coefficients_of(
-                ring, factor, [0, *(ring.index[w] for w in waves)]
-            ).items():
+            parts = coefficients_of(ring, factor, [0, *(ring.index[w] for w in waves)])
+            for (n, *powers), part in parts.items():
                 own = n + sum((n * rate for n, rate in zip(powers, waves.values(), strict=True)), Fraction(0))
                 whole = prod((ring.generator(w) ** n for w, n in zip(waves, powers, strict=True)), start=part)
                 leads[own] = leads[own] + whole if own in leads else whole
@@ -261,7 +260,10 @@ class LimitFinder:
             others |= {key: others.get(key, 0) + n * exponent for key, n in lead[2].items()}
         growth = {key: n for key, n in others.items() if n and isinstance(key, Kernel)}
         turns = {key: Fraction(n) for key, n in others.items() if n and isinstance(key, Expression)}
-        front, root, power = self._front(value), tf.model.root, power / self._order
+        front, root = self._front(value), tf.model.root
+        power /= 1 if root is None else root.order
+        if root is not None and (growth or turns):
+            raise NotInLettersError("waves of a root of s are left in it")
         leading = written_powers(front | turns | {S: power})
         if growth:
             leading = product_of([leading, e.Call("exp", self._phase(growth))])
@@ -277,11 +279,6 @@ class LimitFinder:
         left = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
         relation = ":".ljust(len(ENDS[1]) - len(self.end) + 2)
         return Row(name, relation, left, leading, words, amount, unit, own), front
-
-    @property
-    def _order(self) -> int:
-        """Of the root that stands in place of s."""
-        return self.tf.model.root.order if self.tf.model.root else 1
 
     def _at_zero(self, factor: fmpz_mpoly) -> Lead:
         """Return the first term of a factor's power series."""
@@ -326,9 +323,8 @@ class LimitFinder:
         growing = [*(even for even, _ in pairs), *(k for k in kernels if k.function == "exp")]
         parts = coefficients_of(ring, own, [ring.index[k.generator] for k in growing])
         # A delay decays where a wave grows.
-        top = [
-            max(n) if k.wavenumber else min(n) for k, n in zip(growing, zip(*parts, strict=True), strict=True)
-        ]
+        columns = zip(growing, zip(*parts, strict=True), strict=True)
+        top = [max(n) if k.wavenumber else min(n) for k, n in columns]
         if tuple(top) not in parts:
             raise NotInLettersError("which of its exponentials is the largest depends on its parameters")
         halves = sum(n for k, n in zip(growing, top, strict=True) if k.wavenumber)
@@ -343,10 +339,8 @@ class LimitFinder:
             for powers, part in parts.items():
                 if not (ratio := Factored.polynomial(ring, part) / value).is_constant:
                     raise NotInLettersError("several oscillations lead together")
-                turns = (
-                    e.power(e.Call(k.function, self._phase({k: 1})), n)
-                    for k, n in zip(turning, powers, strict=True)
-                )
+                calls = [e.Call(k.function, self._phase({k: 1})) for k in turning]
+                turns = (e.power(call, n) for call, n in zip(calls, powers, strict=True))
                 terms.append(product_of([number(ratio.unit), *turns]))
             value, others = value / below, others | {e.sum_of(terms): 1}
         return value, power, others
@@ -368,10 +362,8 @@ class LimitFinder:
         terms, s = [], self._ring.generator(LAPLACE)
         for k, n in growth.items():
             square, order = self.laws[k.wavenumber] if k.wavenumber else (k.dispersion.shift, 1)
-            of_s = square.exponent_of(s)
-            wave = self._powers(square.filter(lambda f: f != s) * square.unit) | {
-                S: Fraction(of_s, self._order)
-            }
+            of_s = {S: Fraction(square.exponent_of(s))}
+            wave = self._powers(square.filter(lambda f: f != s) * square.unit) | of_s
             length = self._powers(k.length * abs(n))
             size = written_powers(times((length, Fraction(1)), (wave, Fraction(1, order))))
             terms.append(size if n > 0 and k.wavenumber else e.negative(size))
@@ -386,9 +378,8 @@ class LimitFinder:
         plain = replace(self.tf, reduced=reduced, closed=None, hidden=(), kernels=NO_KERNELS, parts=None)
         form = print_form(plain)
         front, powers = powers_of(e.quotient(form.num, form.den))
-        found = {base: Fraction(n) for base, n in powers.items()} | (
-            {MINUS: Fraction(1)} if front < 0 else {}
-        )
+        found = {base: Fraction(n) for base, n in powers.items()}
+        found |= {MINUS: Fraction(1)} if front < 0 else {}
         for side, sign in ((front.numerator, 1), (front.denominator, -1)):
             found |= {number(int(p)): Fraction(sign * int(n)) for p, n in fmpz.factor(fmpz(abs(side)))}
         return found
