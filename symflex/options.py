@@ -431,6 +431,7 @@ class StabilityOptions:
     resolve: Stated = option(
         "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
+    peaks: bool = option(False, "--peaks", help="With beams or delays too: peaks of S and T, disk margin.")
     letters: bool = option(
         False, "--letters", help="Conditions in letters; with two of --over, their boundary as a curve."
     )
@@ -440,6 +441,16 @@ class StabilityOptions:
     tf: str | None = option(None, "--tf", **ONE_TF)
     format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PeakOptions:
+    """Options of ``symflex peak``. Python gives Hz."""
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    band: Ends | None = option(None, "--band", **TWO, help="Only frequencies in a band.  [default: all]")
+    digits: int = option(12, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
     as_json: bool = option(False, "--json", **JSON)
 
 

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.rational import RationalApproximation
+    from symflex.loops.peak import Peak
+    from symflex.options import Ends
 
 POINTS = 201
 """Number of points of a response in time if no times are given."""
@@ -50,6 +52,12 @@ class Analyses(Plotted):
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
         return face_of(FrequencyResponse, response_room.respond(self.bound, omega))
+
+    def peak(self, digits: int = 12, band: Ends | None = None) -> Peak:
+        """Return the largest magnitude over all frequencies, or in a band [Hz]; see :meth:`Model.peak`."""
+        from symflex.loops.peak import find_peak
+
+        return find_peak(self.bound, checked_digits(digits), band)
 
     def step_response(
         self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.balls import to_mpmath
-from symflex.loops import degrees, hertz
+from symflex.roots.root import degrees, hertz
 
 if TYPE_CHECKING:
     from flint import arb

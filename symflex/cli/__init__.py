@@ -28,6 +28,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "shape": ("respond", "Print an input shaper: impulses that leave no vibration."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
     "stability": ("analyses", "Print the gains for which a feedback loop is stable."),
+    "peak": ("respond", "Print the largest magnitude over all frequencies."),
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
     "draw": ("plot", "Draw the model as a textbook would."),
     "plot": ("plot", "Draw a Bode plot, a pole-zero plot, mode shapes, a root locus or a Nyquist plot."),
@@ -49,6 +50,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 MEANT = {
     **dict.fromkeys(("pole", "poles", "zeros", "eigenvalues", "frequencies"), "roots SPEC"),
     **dict.fromkeys(("simulate", "ramp", "response", "time"), "respond SPEC"),
+    **dict.fromkeys(("norm", "hinf", "hinfnorm", "h2"), "peak SPEC"),
     **dict.fromkeys(("margin", "margins", "stable", "gain"), "stability SPEC --gain K"),
     **dict.fromkeys(("tf", "formula", "print", "show", "explain"), "derive SPEC"),
     **dict.fromkeys(("latex", "tex", "numpy", "c", "matlab", "python"), "export SPEC --to TARGET"),

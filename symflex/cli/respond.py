@@ -1,4 +1,4 @@
-"""What a model does in time: ``respond``, and ``shape``, commands after which it does not ring."""
+"""What a model answers: ``respond`` and ``shape`` in time, ``peak`` over all frequencies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.model import read_settings
-from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
+from symflex.options import PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -202,6 +202,23 @@ def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None
     font = checked_font(given.font, path)
     frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
     save(draw_in_time(response, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
+
+
+@command_of("peak", PeakOptions)
+def peak(spec: Specification, given: PeakOptions) -> int:
+    """Print the largest magnitude of one transfer function of SPEC over all frequencies, and where it is.
+
+    No frequency has a larger one, which is proved; it is infinite if a pole lies on the imaginary axis.
+    Stable lumped functions have their H2 norm, too. Exit code 4: from some frequency on no bound is known.
+    """
+    from symflex import pipeline
+    from symflex.loops.peak import find_peak
+
+    model = spec.load()
+    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    found = find_peak(bound, given.digits, given.band)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4
 
 
 @command_of("shape", ShapeOptions)

@@ -19,6 +19,7 @@ from symflex.algebra import Factored
 from symflex.balls import ball, bits_for_digits, narrowed, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.model.model import IMAGINARY
 from symflex.roots.counting.local_series import SERIES_POINTS, LocalSeries, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
@@ -161,6 +162,7 @@ class LoopAtOrigin:
     series: tuple[LocalSeries, ...]  # of the parts, A and B
     ratio: Fraction | None  # A/B at 0 where that is known to be a number, neither zero nor infinite
     turn: acb  # the direction of the axis, another if functions are of a root of s
+    is_real: bool = True  # the functions are real for a real s: all but those with loss factors
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""
@@ -209,6 +211,10 @@ class LoopAtOrigin:
         """
         if self.ratio is None or self.ratio**2 != gain**2:
             return False
+        return bool(self.excess(ball(gain), radius)[1] != 0)
+
+    def excess(self, gain: arb, radius: arb) -> tuple[arb, arb]:
+        """Return ``abs(A)^2 - K^2 abs(B)^2`` at 0, and what is times omega^2 within a radius."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
             # abs(a + s one)^2 is a^2 + omega^2 (abs(one)^2 - 2 a Re(two)), as one is real but for s two.
@@ -216,17 +222,36 @@ class LoopAtOrigin:
                 abs(self._beyond(i, omega, 1)) ** 2 - 2 * self._lowest(i) * self._beyond(i, omega, 2).real
                 for i in (0, 1)
             )
-            return bool(first - ball(gain**2) * second != 0)
+            return self._lowest(0) ** 2 - (gain * self._lowest(1)) ** 2, first - gain**2 * second
+
+    def side(self, level: arb, radius: arb) -> int:
+        """Return 1 if ``abs(A/B)`` stays above a level within a radius, -1 if below, and 0 if not known."""
+        a, b = self.sizes(radius)
+        rest, curvature = self.excess(level, radius)
+        with precision(ORIGIN_BITS):
+            power = self.orders[0] - self.orders[1]
+            share = level * radius**-power
+            if power >= 0 and a.abs_upper() < share * b.abs_lower():
+                return -1
+            if power <= 0 and a.abs_lower() > share * b.abs_upper():
+                return 1
+            excess = rest + arb(0).union(radius**2 * curvature)
+            is_even = not power and self.is_real and self.turn.real == 0
+            return bool(excess > 0) - bool(excess < 0) if is_even else 0
 
     def _lowest(self, which: int) -> arb:
         return self.series[which].coefficients[self.orders[which]].real
+
+    def _number(self, which: int, power: int) -> acb:
+        number = self.series[which].coefficients[power]
+        return acb(number.real) if self.is_real else number
 
     def _beyond(self, which: int, omega: arb, beyond: int = 0) -> acb:
         """Return A or B over its lowest power on a piece of the axis, without its first ``beyond`` terms."""
         series, order, place = self.series[which], self.orders[which] + beyond, omega * self.turn
         share, total = place.abs_upper() / series.reach, acb(0)
-        for coefficient in reversed(series.coefficients[order:]):
-            total = total * place + coefficient.real
+        for power in reversed(range(order, len(series.coefficients))):
+            total = total * place + self._number(which, power)
         rest = series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
         return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
 
@@ -273,7 +298,8 @@ def loop_at_origin(
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in each.coefficients)
             series.append(replace(each, coefficients=scaled, bound=each.bound * abs(scale)))
-        return LoopAtOrigin(tuple(orders), tuple(series), _ratio_at_zero(bound, *polynomials[:2]), turn)
+        ratio = _ratio_at_zero(bound, *polynomials[:2])
+        return LoopAtOrigin(tuple(orders), tuple(series), ratio, turn, IMAGINARY not in ring.index)
 
 
 def _ratio_at_zero(bound: BoundTransferFunction, a: fmpz_mpoly, b: fmpz_mpoly) -> Fraction | None:

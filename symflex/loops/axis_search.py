@@ -16,7 +16,8 @@ from flint import arb
 from symflex.balls import ball, precision
 from symflex.loops.axis import find_on_axis
 from symflex.loops.loop_function import LoopValue
-from symflex.loops.stability_map import Crossing, hertz
+from symflex.loops.stability_map import Crossing
+from symflex.roots.root import hertz
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -140,21 +141,12 @@ class AxisSearch(ABC):
         return float(radius.lower()), origin
 
     def _proved_within(self, origin: LoopAtOrigin) -> arb | None:
-        radius = origin.series[0].reach / 4
+        radius, most = origin.series[0].reach / 4, ball(max(abs(x) for x in self.limits))
         for _ in range(SHRINKINGS):
-            if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
+            if origin.turns_away(radius) or origin.side(most, radius) > 0:
                 return radius
             radius = radius / 2
         return None
-
-    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
-        first, second = origin.orders
-        if first > second:
-            return False
-        a, b = origin.sizes(radius)
-        most = max(abs(x) for x in self.limits)
-        bound = ball(most) * b.abs_upper() * radius ** (second - first)
-        return bool(a.abs_lower() > bound)
 
     def _is_far(self, value: LoopValue) -> bool:
         """Tell whether the gain of a pole at these values is out of the range."""

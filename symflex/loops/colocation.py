@@ -20,8 +20,8 @@ from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.axis import pieces
-from symflex.loops.stability_map import hertz, real_json
 from symflex.roots import figure
+from symflex.roots.root import hertz, real_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable

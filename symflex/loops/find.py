@@ -528,14 +528,8 @@ def distributed_crossovers(
     if origin is not None:
         start = first
         for _ in range(SHRINKINGS):
-            a, b = origin.sizes(arb(first))
-            orders = origin.orders
-            share = abs(gain) * arb(first) ** (orders[1] - orders[0])
-            if a.abs_lower() > share * b.abs_upper() and orders[1] >= orders[0]:
-                break
-            if a.abs_upper() < share * b.abs_lower() and orders[1] <= orders[0]:
-                break
-            if along.gain and origin.leaves_one(nominal, arb(first)):
+            is_one_at_rest = bool(along.gain) and origin.leaves_one(nominal, arb(first))
+            if is_one_at_rest or origin.side(abs(gain), arb(first)):
                 break
             first /= 2
         else:

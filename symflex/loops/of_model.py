@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -11,8 +12,10 @@ from symflex.errors import BudgetError, UncertifiedError
 from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
-from symflex.loops.loop import pick_gain
+from symflex.loops.locus import is_straight
+from symflex.loops.loop import Loop, pick_gain
 from symflex.loops.networks import network_loop
+from symflex.loops.peak import loop_peaks
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
@@ -130,11 +133,14 @@ def stability(
         network = _of_network(model, _gain_of(model, given.gain), dict(values or {}))
         with suppress(UncertifiedError):
             quick = None if network is None else find_stable_gains(network, limits, digits, radians)
-    if quick is not None and quick.certified:
+    if quick is not None and quick.certified and not given.peaks:
         return quick
     try:
         loop = characteristic_loop(model, given.gain, values, what)
         written = find_stable_gains(loop, limits, digits, radians)
+        if isinstance(loop, Loop) and (given.peaks or not loop.bound.kernels) and model.data_end is None:
+            if written.is_stable and loop.nominal and is_straight(loop):
+                written = replace(written, peaks=loop_peaks(loop, loop.nominal))
     except BudgetError:
         if quick is None:
             raise

@@ -14,9 +14,12 @@ from symflex.loops.apart import PolesApart
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots import decimals, figure
 from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
+from symflex.roots.root import degrees, hertz, real_json, short_hertz
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from symflex.loops.peak import LoopPeaks
 
 SCHEMA = "symflex.stability/1"
 BITS = 128
@@ -121,6 +124,7 @@ class StabilityMap:
     # Poles of the nominal gain right of the axis beyond that, without kernels: their abs(s) [rad/s].
     beyond: tuple[float, ...] = ()
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
+    peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
 
     @property
     def is_gain(self) -> bool:
@@ -262,6 +266,7 @@ class StabilityMap:
                 }
                 for m in self.phase_margins
             ],
+            "peaks": self.peaks and self.peaks.to_json_dict(),
             "margin_beyond": None
             if self.margin_beyond is None or self.radius is None
             else {
@@ -290,31 +295,6 @@ class StabilityMap:
     def change(self, index: int) -> int:
         """Return by how many poles the number right of the axis grows at a boundary, as the gain grows."""
         return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
-
-
-def real_json(value: arb | None, digits: int) -> dict[str, str] | None:
-    """Return the certified decimals of a real number, and a bound of their error."""
-    if value is None:
-        return None
-    printed = decimals(value, arb(0), digits)
-    return {"value": printed.re, "radius": printed.radius}
-
-
-def hertz(omega: arb) -> arb:
-    """Return a frequency in Hz from one in rad/s."""
-    with precision(max(BITS, omega.bits())):
-        return omega / (2 * arb.pi())
-
-
-def short_hertz(omega: arb) -> str:
-    """Return a frequency in rad/s as text in Hz."""
-    return figure(hertz(omega), SHORT_DIGITS, trimmed=True)
-
-
-def degrees(angle: arb) -> arb:
-    """Return an angle in degrees from one in rad."""
-    with precision(max(BITS, angle.bits())):
-        return angle * 180 / arb.pi()
 
 
 def decibels(factor: arb) -> arb:
@@ -416,6 +396,9 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     yield Passage([f"{INDENT}poles that are not in the left half plane"], counted)
     if stability.gain_margins or stability.phase_margins:
         yield _margins(stability)
+    if stability.peaks is not None:
+        lines = [f"{INDENT}peaks of {stability.gain} = {_number(stability.nominal)}"]
+        yield Passage(lines, tuple(stability.peaks.rows), has_head=False)
     if stability.data_end is not None:
         yield Passage(
             [f"{INDENT}beyond {_hertz(stability.data_end)} nothing was measured", *_beyond(stability)]

@@ -194,6 +194,31 @@ def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
     return RootDecimals(shown_re, shown_im, _round_up(re_error, im_error))
 
 
+def real_json(value: arb | None, digits: int) -> dict[str, str] | None:
+    """Return the certified decimals of a real number, and a bound of their error; None if it is infinite."""
+    if value is None or not value.is_finite():
+        return None
+    printed = decimals(value, arb(0), digits)
+    return {"value": printed.re, "radius": printed.radius}
+
+
+def hertz(omega: arb) -> arb:
+    """Return a frequency in Hz from one in rad/s."""
+    with precision(max(FLOAT_BITS, omega.bits())):
+        return omega / (2 * arb.pi())
+
+
+def short_hertz(omega: arb) -> str:
+    """Return a frequency in rad/s as text in Hz."""
+    return figure(hertz(omega), 6, trimmed=True)
+
+
+def degrees(angle: arb) -> arb:
+    """Return an angle in degrees from one in rad."""
+    with precision(max(FLOAT_BITS, angle.bits())):
+        return angle * 180 / arb.pi()
+
+
 def figure(value: arb, digits: int, *, trimmed: bool = False) -> str:
     """Print a real number that stands alone with at most ``digits`` digits, all of them right.
 

@@ -25,12 +25,12 @@ from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import StabilityMap, characteristic_loop, find_stable_gains, pick_gain
-from symflex.loops.stability_map import degrees, hertz
 from symflex.model import ExactValue
 from symflex.roots import Everything, Modes, PoleZeroMap, Region, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
+from symflex.roots.root import degrees, hertz
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any

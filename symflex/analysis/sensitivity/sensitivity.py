@@ -43,12 +43,11 @@ from symflex.balls import (
 from symflex.budget import spend
 from symflex.expressions import Call, Expression
 from symflex.loops import pick_gain
-from symflex.loops.stability_map import real_json
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
-from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
+from symflex.roots.root import GUARD_BITS, decimals, exact_fraction, real_json
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.equations_at import EquationsAt

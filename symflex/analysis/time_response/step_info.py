@@ -34,13 +34,12 @@ from symflex.analysis.time_response.sample_times import SampleTimes, default_unt
 from symflex.analysis.time_response.settling import late_response, pieces_of
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
-from symflex.loops.stability_map import real_json
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
-from symflex.roots.root import figure
+from symflex.roots.root import figure, real_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,7 +10,7 @@ from flint import arb
 
 from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
-from symflex.loops import DynamicColocation, StabilityMap, degrees
+from symflex.loops import DynamicColocation, StabilityMap
 from symflex.loops.stability_map import bandwidth_text
 from symflex.model.loss_factors import has_loss_factors
 from symflex.print.latex import root_table
@@ -37,7 +37,7 @@ from symflex.report.sections.formulas import ratio
 from symflex.report.study import Study, attempt, said
 from symflex.roots import PoleZeroMap
 from symflex.roots.pole_zero_map import StabilityVerdict
-from symflex.roots.root import figure
+from symflex.roots.root import degrees, figure
 
 DIGITS: Final = 10
 LONGEST: Final = 80

@@ -1,4 +1,4 @@
-"""``symflex stability``, ``symflex colocation`` and figures of loops on the command line."""
+"""``stability``, ``peak``, ``colocation`` and figures of loops on the command line."""
 
 import json
 
@@ -62,6 +62,17 @@ def test_what_is_not_certified_has_exit_code_4(files):
     done = files("stability", "lossless.toml", "--gain", "K", "--up-to", "1 Hz")
     assert done.code == 4
     assert "NOT CERTIFIED" in done.out
+
+
+def test_a_peak_is_printed_and_is_in_the_json(files):
+    done = files("peak", "loop.toml", "--tf", "E/r")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines()[0] == "E/r [1]   certified"
+    document = files("peak", "loop.toml", "--tf", "E/r", "--json").json
+    assert document["schema"] == "symflex.peak/1" and document["certified"]
+    assert done.out.splitlines()[1].startswith(f"  largest magnitude {document['magnitude']}, radius")
+    assert files("peak", "loop.toml", "--band", "2", "1").code == 2
+    assert files("hinf", "loop.toml").err.strip().endswith("Write: symflex peak SPEC")
 
 
 def test_a_gain_that_follows_from_parameters_is_said_to_be_a_definition(files, tmp_path):

@@ -1,0 +1,336 @@
+"""The largest magnitude of a transfer function over all real frequencies, and where it is.
+
+Input: a bound transfer function, or a loop ``A + K B``. Output: a :class:`Peak`, an enclosure of the
+L-infinity norm. Example: ``1/(s^2 + 2 z s + 1)`` has ``1/(2 z sqrt(1 - z^2))`` at ``omega^2 = 1 - 2 z^2``.
+
+A rational function is largest at 0, at infinity or where its derivative vanishes, all of which is enclosed.
+With waves and delays the axis is cut until the mean value theorem proves ``abs(A)^2 < M^2 abs(B)^2`` on each
+piece, M just above the largest value met (Moore 1966). The H2 norm: Astrom, Jury and Agniel (1970).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from math import inf, pi
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_poly, arb
+
+from symflex.algebra import NO_KERNELS, Factored, degree_in
+from symflex.balls import UndecidedError, ball, bits_for_digits, precision, settled
+from symflex.budget import spend
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
+from symflex.loops.axis import FIRST_RATIO, joined, pieces
+from symflex.loops.loop_function import LoopFunction
+from symflex.options import band_ends
+from symflex.roots import Band, Everything, Position, figure, find_polynomial_roots
+from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
+from symflex.roots.distributed.right_half_plane import WAVES
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.locate import locate
+from symflex.roots.problem import is_complex, polynomial_in_s, problem_of
+from symflex.roots.root import degrees, exact_fraction, hertz, real_json, short_hertz
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from symflex.loops.loop import Loop
+    from symflex.loops.loop_function import LoopValue
+    from symflex.options import Ends
+    from symflex.roots import PolynomialInS, Root
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
+
+    Piece = tuple[arb, LoopValue, LoopValue]  # a place [rad/s], and the values around and in its middle
+
+BITS, SPARE_DIGITS = 160, 20
+"""Of pieces, which are halved some eighty times at most; of frequencies, beyond those of magnitudes."""
+SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-24, 60_000
+"""Relative widths at which a pole is looked for, and a search given up, as with so many pieces."""
+BELOW, SAME, FURTHER = 1e9, 1e-7, 60
+"""The highest frequency over the first if 0 stays open; distance of places shown as one; steps far out."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest magnitude on the imaginary axis, or the least bound of all."""
+
+    tf: str
+    unit: str
+    digits: int
+    band: Band | None  # searched; None for all frequencies
+    magnitude: arb  # enclosure; infinite if a pole lies on the axis or the function grows without end
+    # Enclosures [rad/s], one of which has it, as far as it is known; none if it is approached as omega grows.
+    places: tuple[arb, ...]
+    reasons: tuple[str, ...] = ()  # what is not proved
+    h2: arb | None = None  # the H2 norm of a stable rational function
+
+    @property
+    def certified(self) -> bool:
+        """Whether the enclosure is proved for all frequencies asked for."""
+        return not self.reasons
+
+    @property
+    def frequency_hz(self) -> float:
+        """Frequency of the peak [Hz]; infinite if it is approached as the frequency grows."""
+        return float(hertz(self.places[0]).mid()) if self.places else inf
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        more = f", or at {len(self.places) - 1} more" if self.places[1:] else ""
+        return f"at {short_hertz(self.places[0])} Hz{more}" if self.places else "as the frequency grows"
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the peak in the schema ``symflex.peak/1``, ready for :func:`json.dumps`."""
+        size = real_json(self.magnitude, self.digits)
+        return {
+            "schema": "symflex.peak/1",
+            "tf": self.tf,
+            "unit": self.unit,
+            "magnitude": size and size["value"],
+            "radius": size and size["radius"],
+            "infinite": size is None,
+            "frequency_hz": self.frequency_hz if self.places else None,
+            "omega": [real_json(omega, self.digits) for omega in self.places],
+            "band_hz": self.band and [float(self.band.low), float(self.band.high)],
+            "certified": self.certified,
+            "reasons": list(self.reasons),
+            "h2": real_json(self.h2, self.digits),
+        }
+
+    def __str__(self) -> str:
+        where = f" from {float(self.band.low):g} Hz to {float(self.band.high):g} Hz" if self.band else ""
+        status = "certified" if self.certified else "NOT CERTIFIED"
+        lines = [f"{self.tf}{self.unit and f' [{self.unit}]'}   {status}{where}"]
+        lines += [f"  not proved: {reason}" for reason in self.reasons]
+        lines.append(f"  largest magnitude {self._shown(self.magnitude)}, {self.place}")
+        return "\n".join(lines if self.h2 is None else [*lines, f"  H2 norm {self._shown(self.h2)}"])
+
+    def _shown(self, value: arb) -> str:
+        decimals = real_json(value, self.digits)
+        return "{value}, radius {radius}".format(**decimals) if decimals else "infinite"
+
+
+@dataclass(frozen=True)
+class LoopPeaks:
+    """The peaks of ``S = 1/(1 + L)``, ``T = L/(1 + L)`` and ``S - T`` of a stable loop with loop gain L."""
+
+    sensitivity: Peak
+    complementary_sensitivity: Peak
+    balanced: Peak
+
+    @property
+    def disk(self) -> dict[str, arb]:
+        """The disk margin alpha, and the least and largest factor of L and the phase that it allows.
+
+        L may be multiplied by every ``(2 + d)/(2 - d)`` with ``abs(d) < alpha``: balanced, sigma = 0 of
+        Seiler, Packard and Gahinet (2020, IEEE Control Systems 40, no. 5, 78).
+        """
+        with precision(BITS):
+            alpha = 2 / self.balanced.magnitude
+            below, above, phase = 2 - alpha, 2 + alpha, degrees(2 * (alpha / 2).atan())
+            most = above / below if below > 0 else arb("inf")
+            return {"alpha": alpha, "least_factor": below / above, "largest_factor": most, "degrees": phase}
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the peaks as a part of ``symflex.stability/1``."""
+        margin = {name: real_json(value, self.balanced.digits) for name, value in self.disk.items()}
+        return {f.name: getattr(self, f.name).to_json_dict() for f in fields(self)} | {"disk_margin": margin}
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """The rows of a table."""
+        alpha, least, most, phase = (figure(x, 6) if x.is_finite() else "any" for x in self.disk.values())
+        peaks = (self.sensitivity, self.complementary_sensitivity)
+        rows = [(f"largest |{x.tf}|", figure(x.magnitude, 6), x.place) for x in peaks]
+        allowed = ("  allows", f"x {least} to {most}", f"or {phase} deg")
+        return [*rows, ("disk margin", alpha, self.balanced.place), allowed]
+
+
+def loop_peaks(loop: Loop, gain: Fraction) -> LoopPeaks:
+    """Return the peaks of a loop that is closed once, and stable for a gain."""
+    (a, b), peaks = loop.with_gain[0].coefficients, []
+    b = b * gain
+    for name, num in (("S", a), ("T", b), ("S - T", a - b)):
+        whole = replace(loop.bound, ratio=num / (a + b), parts=(num, a + b), is_of_model=False)
+        peaks.append(replace(find_peak(whole), tf=name, unit=""))
+    return LoopPeaks(*peaks)
+
+
+def find_peak(bound: AnyBoundFunction, digits: int = 12, band: Ends | None = None) -> Peak:
+    """Return the largest magnitude over all frequencies, or over a band [Hz], enclosed.
+
+    SF802 for a network that is not written out, ValueError for a band that is none; SF505, SF506.
+    """
+    if not bound.is_reduced or (bound.root is not None and bound.root.shift != 0):
+        message = "no peak is proved of networks that are not written out, nor beside a branch point but 0"
+        raise UncertifiedError(Diagnostic("SF802", message))
+    ends, s = None if band is None else Band(*band_ends(band)), bound.ratio.ring.context.gen(0)
+    asked = Peak(bound.name, bound.source.unit, digits, ends, arb(0), (arb(0),))
+    if bound.is_zero:
+        return asked
+    delays = []  # of all of it, which change no magnitude
+    for kernel in bound.kernels.kernels:
+        shift = kernel.dispersion.shift.factors
+        if kernel.function == "exp" and all(e == 1 if f == s else not degree_in(f, 0) for f, e in shift):
+            delays.append(bound.ratio.ring.generator(kernel.generator))
+    value = bound.ratio.filter(lambda f: f not in delays) * bound.ratio.unit
+    has_kernels = any(value.depends_on(name) for name in bound.kernels.generators)
+    if has_kernels or bound.sheets > 1 or is_complex(value):
+        with precision(BITS):
+            return _Pieces(bound, LoopFunction.of(bound, bound.num, bound.den), asked).peak()
+    return _of_polynomials(replace(bound, ratio=value, kernels=NO_KERNELS, parts=None), asked)
+
+
+def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
+    """Return the peak of a rational function, from the roots of the derivative of its squared magnitude."""
+    context, band = bound.ratio.ring.context, asked.band
+    mirrored, s = [-context.gen(0), *context.gens()[1:]], str(context.gen(0))
+    parts = [part.expand() for part in (bound.num, bound.den)]
+    n, d = (f * f.compose(*mirrored, ctx=context) for f in parts)
+    slope = n.derivative(s) * d - n * d.derivative(s)
+    above, below = (polynomial_in_s(bound, f) for f in parts)
+
+    def on_axis(roots: Sequence[Root]) -> list[arb]:
+        chosen = zip(roots, (band or Everything()).classify(roots), strict=True)
+        inside = [root for root, position in chosen if position is not Position.OUTSIDE]
+        return [root.im for root in inside if root.on_imaginary_axis and not root.im < 0]
+
+    poles = find_polynomial_roots(problem_of(bound, bound.den.factors), asked.digits)
+    degree = above.degree - below.degree
+    if (infinite := on_axis(poles)) or (degree > 0 and band is None):
+        return replace(asked, magnitude=arb("inf"), places=tuple(infinite[:1]))
+    level = [] if slope.is_zero() else [(slope, 1)]
+    flat = on_axis(find_polynomial_roots(problem_of(bound, level), asked.digits + SPARE_DIGITS))
+    with precision(max([bits_for_digits(asked.digits), *(2 * omega.bits() for omega in flat)]) + BITS):
+        ends = [arb(0)] if band is None else [2 * arb.pi() * ball(end) for end in (band.low, band.high)]
+        num, den = (acb_poly(f.enclosure()) for f in (above, below))
+        where = (*ends, *(x for x in flat if x > 0))
+        sizes = [(abs(num(acb(0, x)) / den(acb(0, x))), [x]) for x in where]
+        if band is None and not degree:
+            sizes.append((abs(num[above.degree] / den[below.degree]), []))
+        least = max((size.lower() for size, _ in sizes), key=float)
+        top = [each for each in sizes if not each[0] < least]
+        magnitude = least.union(max((size.upper() for size, _ in top), key=float))
+    reasons, h2 = () if magnitude.is_finite() else ("a pole may lie on the imaginary axis",), None
+    if all(pole.re < 0 for pole in poles):
+        h2 = arb("inf") if degree >= 0 else settled(partial(_h2_norm, above, below, asked.digits), BITS)
+    places = tuple(x for _, own in top for x in own)
+    return replace(asked, magnitude=magnitude, places=places, reasons=reasons, h2=h2)
+
+
+def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
+    """Return the H2 norm of a stable function that falls off, at the current precision."""
+    a, b = (f.enclosure().coeffs()[::-1] for f in (below, above))
+    b, total = [arb(0)] * (len(a) - 1 - len(b)) + b, arb(0)
+    while b:
+        alpha, beta = a[0] / a[1], b[0] / a[1]
+        total += beta**2 / (2 * alpha)
+        odd = [c if i % 2 and i > 1 else arb(0) for i, c in enumerate([*a, arb(0)])]
+        b = [c - beta * odd[i + 2] for i, c in enumerate(b[1:])]
+        a = [c - alpha * odd[i + 2] for i, c in enumerate(a[1:])]
+    if not total.sqrt().rel_accuracy_bits() > bits_for_digits(digits):
+        raise UndecidedError
+    return total.sqrt()
+
+
+class _Pieces:
+    """The search for the peak of a quotient A/B with kernels."""
+
+    def __init__(self, bound: BoundTransferFunction, function: LoopFunction, asked: Peak) -> None:
+        self.bound, self.function, self.asked, self.count = bound, function, asked, 0
+        self.best, self.most = arb(0), arb(0)  # a magnitude that is reached; what bounds those far out
+        self.near: list[Piece] = []  # all that may hold the peak
+
+    def peak(self) -> Peak:
+        """Return the peak."""
+        bound, band, reasons, rest = self.bound, self.asked.band, list[str](), arb(0)
+        b = Factored.polynomial(bound.ratio.ring, self.function.b)
+        low, high = 0.0, KernelFunction(bound, b).frequency_of(WAVES)
+        if band is not None:
+            low, high = (bound.in_root(2 * pi * float(end)) for end in (band.low, band.high))
+        origin = None if low else self.function.at_origin()
+        if origin is not None:
+            low = min(float((origin.series[0].reach / 4).lower()), high)
+            if origin.orders[0] < origin.orders[1]:
+                return replace(self.asked, magnitude=arb("inf"))
+            if origin.orders[0] == origin.orders[1]:
+                above, below = origin.sizes(arb(0))
+                rest = abs(above / below)
+                self.best = rest.lower()
+        elif not low:
+            low = high / BELOW
+            reasons.append("magnitudes next to 0 Hz")
+        pole = self._search(low, high)
+        if band is None and pole is None:
+            pole = self._search(high, self._tail(high, reasons))
+        while pole is None and origin is not None and origin.side(self._level(), arb(low)) >= 0:
+            low /= 2
+            pole = self._search(low, 2 * low)
+        if pole is not None:
+            return replace(self.asked, magnitude=arb("inf"), places=(pole,))
+        near = [piece[0] * arb(1, SAME) for piece in self.near if not self._is_below(piece, self.best)]
+        places = list(joined(sorted(near, key=lambda place: float(place.mid()))))
+        if origin is not None and origin.side(self.best, arb(low)) >= 0:
+            falls = origin.is_real and origin.excess(rest, arb(low))[1] < 0
+            places.insert(0, arb(0) if falls else arb(0).union(arb(low)))
+        found = replace(self.asked, magnitude=self.best.union(self._level()), reasons=tuple(reasons))
+        return replace(found, places=tuple(bound.frequency(place) for place in places))
+
+    def _tail(self, end: float, reasons: list[str]) -> float:
+        """Return a place beyond which magnitudes are below the level, which is raised if that is nowhere."""
+        known = list[tuple[float, arb]]()
+        far = FunctionFarOut.of(self.bound, -(-SECTORS // self.bound.sheets))
+        for radius in (end * FIRST_RATIO**i for i in range(FURTHER)):
+            size = None if far is None else far.size(radius)
+            if size is not None and size.power <= 0:
+                known.append((radius, (size.most * arb(radius) ** ball(size.power)).upper()))
+                if known[-1][1] < self._level():
+                    return radius
+        if not known:
+            place = short_hertz(self.bound.frequency(arb(end)))
+            reasons.append(f"above {place} Hz no bound on the magnitude is known")
+            return end
+        start, self.most = known[0]
+        return start
+
+    def _level(self) -> arb:
+        """Return a magnitude above the best by as little as the digits asked for leave open."""
+        return self.most.max((self.best * (1 + arb(10) ** -(self.asked.digits + 1))).upper())
+
+    def _search(self, low: float, high: float) -> arb | None:
+        """Halve pieces until none may hold a larger magnitude; return a pole on the axis if one is met."""
+        first = pieces(low, high, FIRST_RATIO) if low < high else []
+        pending = [self._piece(arb(start).union(arb(end))) for start, end in first]
+        pending.sort(key=lambda piece: float((abs(piece[2].a) / abs(piece[2].b)).mid()))
+        while pending:
+            spend()
+            piece, self.count = pending.pop(), self.count + 1
+            place, around, _ = piece
+            if self._is_below(piece, self._level()):
+                self.near += [] if self._is_below(piece, self.best) else [piece]
+                continue
+            width, halves = place.rad() / place.mid(), (place.lower(), place.upper())
+            if width < SUSPECT and around.b.contains(0) and self.bound.is_of_model:
+                ends = (exact_fraction(hertz(self.bound.frequency(x))) for x in halves)
+                for pole in locate(self.bound, Band(*ends), with_zeros=False).poles:
+                    if pole.on_imaginary_axis and pole.im > 0:
+                        return pole.im
+            if self.count > MOST_PIECES or width < NARROWEST:
+                message = f"the magnitude near {short_hertz(place)} Hz is not decided"
+                raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))
+            pending += [self._piece(place.mid().union(end)) for end in halves]
+        return None
+
+    def _piece(self, place: arb) -> Piece:
+        around, centre = self.function.on(place, BITS)
+        size = abs(centre.a) / abs(centre.b)
+        self.best = size.lower() if size.is_finite() and size > self.best else self.best
+        return place, around, centre
+
+    def _is_below(self, piece: Piece, level: arb) -> bool:
+        place, around, centre = piece
+        value, slope = around.excess(level)
+        return bool(value < 0) or bool(centre.excess(level)[0] + slope * (place - place.mid()) < 0)
