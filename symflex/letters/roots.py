@@ -148,14 +148,14 @@ class LetterReader:
         if not degree or not self.tf.ring.used_in([factor]) - {LAPLACE} or len(factor) == 1:
             return None
         printed = self.printer.arranger.collected(factor)
-        why = f"a factor of degree {degree} in s has no short formula in letters"
+        silent = FactorInLetters(kind, None, note=f"a factor of degree {degree} in s has no short formula")
         if len(factor) > MOST_TERMS:
-            return FactorInLetters(kind, printed, note=why)
+            return silent
         own = [r for r in roots if self.value(printed, s=r.enclosure()).contains(0)]
         if not own or len(own) > degree or (degree <= PAIR and sum(r.multiplicity for r in own) < degree):
             return None
         formulas, kinds = tuple(self._formulas(c, own)), tuple(self._kinds(kind, c))
-        return FactorInLetters(kind, printed, formulas, kinds, note="" if formulas or kinds else why)
+        return FactorInLetters(kind, printed, formulas, kinds) if formulas or kinds else silent
 
     def _formulas(self, c: Sequence[fmpz_mpoly], own: Sequence[Root]) -> Iterator[RootFormula]:
         """Yield the formulas of a factor whose values are those of its roots."""

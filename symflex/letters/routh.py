@@ -222,9 +222,9 @@ class Signs:
         loose = {p.name for p in tf.model.parameters if p.assume == "nonnegative"}
         return cls(tf.ratio.ring, signed - loose, signed)
 
-    def of_polynomial(self, polynomial: fmpz_mpoly) -> int:
+    def of_polynomial(self, polynomial: fmpz_mpoly, depth: int = SQUARES) -> int:
         """Return 1 where it is proved to be positive, -1 negative, and 0 where its sign is not known."""
-        return int(self.is_positive(polynomial)) - int(self.is_positive(-polynomial))
+        return int(self.is_positive(polynomial, depth)) - int(self.is_positive(-polynomial, depth))
 
     def is_positive(self, polynomial: fmpz_mpoly, depth: int = SQUARES) -> bool:
         """Tell whether a polynomial is proved to be positive for all values.
@@ -236,15 +236,16 @@ class Signs:
         is_sum = all(c > 0 and all(n in self.nonnegative or e % 2 == 0 for n, e in m) for m, c in terms)
         if is_sum and any(all(n in self.positive for n, _ in m) for m, _ in terms):
             return True
-        if depth == 0 or len(terms) > LONGEST or all(c < 0 for _, c in terms):
+        # Where one letter exceeds all later ones by far, the sign is that of the first term, or the last.
+        if depth == 0 or len(terms) > LONGEST or not terms or terms[0][1] < 0 or terms[-1][1] < 0:
             return False
         number, factors = irreducible_factors(polynomial)
         if len(factors) > 1 or (factors and factors[0][1] > 1):
-            known = [self.of_polynomial(f) for f, _ in factors]
+            known = [self.of_polynomial(f, depth) for f, _ in factors]
             return all(known) and number * prod(s**e for s, (_, e) in zip(known, factors, strict=True)) > 0
         for i, name in enumerate(names):
-            parts = by_powers(self.ring, polynomial, i)
-            if len(parts) == 1 or 0 not in parts:
+            parts = by_powers(self.ring, polynomial, i) if degree_in(polynomial, i) else {}
+            if len(parts) < 2 or 0 not in parts:  # noqa: PLR2004 (it is in one power only)
                 continue
             if name in self.nonnegative and all(self.is_positive(c, depth - 1) for c in parts.values()):
                 return True

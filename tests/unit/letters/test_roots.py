@@ -162,7 +162,7 @@ def test_the_tip_of_the_bending_beam_has_real_zeros_for_a_long_overhang() -> Non
 
 def test_what_has_no_short_letters_says_so() -> None:
     found, _ = said_of("a b c d", SIGNAL.format("u/(a*s^3 + b*s^2 + c*s + d)"))
-    assert [each.note for each in found] == ["a factor of degree 3 in s has no short formula in letters"]
+    assert [each.note for each in found] == ["a factor of degree 3 in s has no short formula"]
     found, _ = said_of("", SIGNAL.format("u/(s + 1)"))
     assert [each.note for each in found] == ["no factor has letters"]
 
