@@ -235,9 +235,10 @@ class LoopAtOrigin:
                 return -1
             if power <= 0 and a.abs_lower() > share * b.abs_upper():
                 return 1
-            excess = rest + arb(0).union(radius**2 * curvature)
-            is_even = not power and self.is_real and self.turn.real == 0
-            return bool(excess > 0) - bool(excess < 0) if is_even else 0
+            gain, is_even = radius**2 * curvature, not power and self.is_real and self.turn.real == 0
+            # A hull with 0 would reach beyond it by more than the excess at rest.
+            least, most = rest + gain.min(arb(0)), rest + gain.max(arb(0))
+            return bool(least > 0) - bool(most < 0) if is_even else 0
 
     def _lowest(self, which: int) -> arb:
         return self.series[which].coefficients[self.orders[which]].real

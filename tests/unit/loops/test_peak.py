@@ -129,11 +129,11 @@ def test_delayed_functions_peak_where_a_grid_does(text, value):
 E, I, RHO, A, L, M, B = 2e11, 4e-9, 7850, 4.8e-4, 1, 1.5, 4  # noqa: E741 (second moment of area)
 
 
-def beam(loss):
+def beam(loss, dashpot=B):
     bar = {"type": "beam", "between": ["tip", "ground"], "E": E, "I": I, "rho": RHO, "A": A, "l": L, **loss}
     end = {
         "m": {"type": "mass", "at": "tip", "m": M},
-        "b": {"type": "damper", "between": ["tip", "ground"], "b": B},
+        "b": {"type": "damper", "between": ["tip", "ground"], "b": dashpot},
     }
     return symflex.Model(elements={"bar": bar, **end}, inputs={"F": {"force": "tip"}}, outputs={"X": "tip"})
 
@@ -161,6 +161,13 @@ def test_beams_with_losses_peak_where_a_grid_does(loss, modulus):
     peak = beam(loss).peak("X", "F")
     assert peak.certified
     checked(peak, receptance(modulus), np.geomspace(3, 3000, 400))
+
+
+@pytest.mark.slow
+def test_a_beam_that_does_not_resonate_is_softest_at_rest():
+    peak = beam({"eta": "2e-5 s"}, dashpot=1e4).peak("X", "F")
+    assert peak.certified and peak.frequency_hz == 0
+    assert holds(peak.magnitude, L**3 / (3 * E * I))
 
 
 def test_a_beam_without_losses_has_an_infinite_peak_at_a_pole():
