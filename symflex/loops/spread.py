@@ -33,12 +33,12 @@ from symflex.options import share_of
 from symflex.print.text import WIDTH, Passage, passages_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.loops.boxes import Box
     from symflex.loops.chart import Word
     from symflex.model import Model
-    from symflex.options import StabilityOptions, Stated
+    from symflex.options import StabilityOptions
     from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import Given
 
@@ -89,20 +89,21 @@ class SpreadStability:
     def to_json_dict(self) -> dict[str, object]:
         """Return it in the schema ``symflex.stability/1``, in SI units."""
 
-        def ends_of(box: Box | None) -> dict[str, list[float]] | None:
-            both = zip(self.names, box or (), strict=box is not None)
-            return {n: [float(x) for x in ends] for n, ends in both} or None
+        def named(values: Iterable[object] | None) -> dict[str, object] | None:
+            return None if values is None else dict(zip(self.names, values, strict=True))
 
-        point = self.combination and dict(zip(self.names, map(float, self.combination), strict=True))
+        whole, part = (
+            box and [[float(x) for x in ends] for ends in box] for box in (self.box, self.open_box)
+        )
         return {
             "schema": SCHEMA,
-            "spread": ends_of(self.box),
-            "units": dict(zip(self.names, self.units, strict=True)),
+            "spread": named(whole),
+            "units": named(self.units),
             "verdict": self.word,
             "certified": self.certified,
-            "combination": point,
+            "combination": named(self.combination and map(float, self.combination)),
             "unstable": self.unstable,
-            "box": ends_of(self.open_box),
+            "box": named(part),
             "boxes": self.boxes,
             "reasons": [self.reason] if self.reason else [],
         }
@@ -118,30 +119,21 @@ def stability_spread(
     """
     if given.gain or given.over or given.ranges or given.limits:
         raise UsageError(Diagnostic("SF902", "--spread takes no --gain, --over or --range"))
-    model = with_values(model, values)
-    function, box = spread_function(model, given.spread or "")
-    units = {p.name: p.unit for p in model.parameters}
-    found = find_spread(function, box)
-    return replace(found, units=tuple(units[n] for n in function.names))
-
-
-def spread_function(
-    model: Model, share: Stated, pair: tuple[str, str] | None = None
-) -> tuple[CharacteristicFunction, Box]:
-    """Return the characteristic function in the parameters that are spread and move poles, and their box."""
+    model, share = with_values(model, values), "" if given.spread is None else given.spread
     ends = spread_box(model.parameters, None if share == "" else share_of(share, "--spread"))
-    function = characteristic(model, tuple(ends), pair)
-    names = tuple(n for n in ends if function.depends_on(n))
-    if not names:
+    function = characteristic(model, tuple(ends))
+    moving = [p for p in model.parameters if p.name in ends and function.depends_on(p.name)]
+    if not moving:
         raise ModelError(Diagnostic("SF801", "no pole of the model depends on a parameter with a spread"))
-    other = tuple((p.name, p.value) for p in model.parameters if p.value and p.name in ends)
-    still = tuple(each for each in other if each[0] not in names)
-    return replace(function, names=names, values=(*function.values, *still)), tuple(ends[n] for n in names)
+    names = tuple(p.name for p in moving)
+    still = tuple((p.name, p.value) for p in model.parameters if p.value and p not in moving)
+    function = replace(function, names=names, values=still)
+    return find_spread(function, tuple(ends[n] for n in names), tuple(p.unit for p in moving))
 
 
-def find_spread(function: CharacteristicFunction, box: Box) -> SpreadStability:
+def find_spread(function: CharacteristicFunction, box: Box, units: tuple[str, ...]) -> SpreadStability:
     """Return what holds for all parameters of a characteristic function in a box."""
-    result = SpreadStability(function.names, ("",) * len(box), box, "undecided")
+    result = SpreadStability(function.names, units, box, "undecided")
     pending, done, reason = deque([function.whole(box)]), 0, ""
     try:
         located = located_at(function, middle_of(box), FOLLOWED)

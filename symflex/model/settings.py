@@ -136,11 +136,9 @@ def spread_box(
         if p.value is None or spread is None or p.value.is_imaginary:
             continue
         value = p.value.nearly
-        own = (
-            spread
-            if isinstance(spread, ExactValue)
-            else replace(p.value, rational=abs(p.value.rational) * spread)
-        )
+        own = spread
+        if isinstance(own, Fraction):
+            own = replace(p.value, rational=abs(p.value.rational) * own)
         half = own.nearly
         if p.assume != "real" and (value < half or (value == half and p.assume == "positive")):
             message = f"the spread of '{p.name}' reaches values that it is assumed not to have"
