@@ -113,7 +113,7 @@ class DeriveOptions:
         "delays also hyperbolic, krylov, vaughan; nested selects that representation.  [default: the "
         "shortest symbolic form]",
     )
-    format: str = option("text", "--format", choices=("text", "latex", "json"), **SHOWN)
+    format: str = option("text", "--format", choices=("text", "latex", "json", "typst", "omml"), **SHOWN)
     width: str | None = option(
         None,
         "--width",

@@ -182,6 +182,11 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
         verdicts = ("".join(f"% {line}\n" for line in printed.remarks) for printed in forms)
         equations = (transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
         say("\n\n".join(map(str.__add__, verdicts, equations)))
+    elif given.format in ("typst", "omml"):
+        from symflex.print import documents
+
+        spell = documents.typst if given.format == "typst" else documents.omml
+        say("\n\n".join(spell(tf, printed) for tf, printed in entries))
     else:
         from symflex.print.text import derive_text
 
@@ -271,7 +276,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     representation = chosen_representation(given.representation, form)
     pairs = pipeline.pick_pairs(model, given.tfs)
     derived, reason = pipeline.derive_as(
-        model, pairs, representation, solves=exporter.solves, is_read=given.target == "latex"
+        model, pairs, representation, solves=exporter.solves, is_read=given.target in ("latex", "typst")
     )
     if reason:
         is_solved = not (model.is_distributed and isinstance(exporter, Language)) or exporter.is_open

@@ -15,6 +15,7 @@ from symflex.codegen.modelica import ModelicaExporter
 from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.python.sampled import SAMPLED_PYTHON
 from symflex.codegen.state_space import StateSpaceExporter
+from symflex.codegen.typst import TypstExporter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,6 +34,7 @@ EXPORTERS: dict[str, Exporter] = {
     "state-space": StateSpaceExporter(),
     "modelica": ModelicaExporter(),
     "latex": LatexExporter(),
+    "typst": TypstExporter(),
 }
 """``symflex export``."""
 
