@@ -83,6 +83,8 @@ def distance(
         said += [f"{kind} up to {high:.4g} Hz: {', '.join(parts)}"] if parts else []
         facts[kind] = {"displacement": worst, "compared": compared, "lost": lost}
         places[kind] = tuple({r.frequency_hz(): None for r in modes_of(one)})
+    facts["certified"] = is_certified = first.certificate.certified and second.certificate.certified
+    said += [] if is_certified else ["NOT CERTIFIED: roots may be missing"]
     quotient = _quotient(before, after)
     for error in errors:
         pieces = _proved(quotient, band, lambda q: abs(q - 1), error)

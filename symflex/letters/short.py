@@ -208,13 +208,12 @@ def _shorter(
             images.append((each.polynomial, image))
             dropped += [(upper(_most([x for x, _ in terms])), each, key) for key, terms in own.items()]
 
-    def shorter(value: Factored) -> Factored:
-        return value.map_factors(
-            ring, lambda f: next((new for old, new in images if old == f), Factored.polynomial(ring, f))
-        )
+    def shorter(factor: fmpz_mpoly) -> Factored:
+        return next((new for old, new in images if old == factor), Factored.polynomial(ring, factor))
 
-    parts = (shorter(tf.num), shorter(tf.den)) if tf.parts else None
-    short = replace(tf, reduced=shorter(tf.ratio), closed=None, hidden=(), parts=parts, solve=None)
+    parts = (tf.num.map_factors(ring, shorter), tf.den.map_factors(ring, shorter)) if tf.parts else None
+    ratio = tf.ratio.map_factors(ring, shorter)
+    short = replace(tf, reduced=ratio, closed=None, hidden=(), parts=parts, solve=None)
     return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped
 
 
@@ -292,9 +291,9 @@ def shortened(
     said += [whole] if kept else []
     coefficients = {"nominal": changes[0], "spread": changes[1] if box else None}
     facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
-    apart = distance(own, after, (first, second))
+    apart = distance(own, after, (first, second)) if dropped else Approximation((), {})
     facts |= {"static": static, "kept_whole": kept} | apart.facts
-    return short, replace(printed, approximation=Approximation((*said, *apart.said), facts, not changes[0]))
+    return short, replace(printed, approximation=Approximation((*said, *apart.said), facts, not dropped))
 
 
 def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:
@@ -306,9 +305,8 @@ def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[Transf
         message = f"{tf.name} was derived in nested form, which has no coefficients"
         raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
     if (given.short is None) == (given.order is None) or (given.spread is not None and given.short is None):
-        raise UsageError(
-            Diagnostic("SF902", "--short and --order exclude each other; --spread is for --short")
-        )
+        message = "--short and --order exclude each other; --spread is for --short"
+        raise UsageError(Diagnostic("SF902", message))
     if tf.is_zero:
         return tf, print_form(tf)
     if given.order is not None:
