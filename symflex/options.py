@@ -844,13 +844,10 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
 def share_of(given: Stated, flag: str) -> Fraction:
     """Return a share of one, given in percent or as a number; a double counts as its shortest decimal.
 
+    Raises UsageError: SF902 for what is no number between 0 and 1.
+
     >>> share_of("1 %", "--short"), share_of(0.1, "--spread")
     (Fraction(1, 100), Fraction(1, 10))
-
-    Raises
-    ------
-    UsageError
-        SF902 for what is no number between 0 and 1.
     """
     value = plain_number(given, ("%",))
     is_percent = isinstance(given, str) and "%" in given

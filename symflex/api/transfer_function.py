@@ -278,18 +278,10 @@ class TransferFunction(_Derived):
         return dimensionless_of(self.exact)
 
     def short(self, bound: Stated, spread: Stated | None = None) -> Form:
-        r"""Return a shorter formula, with the changes of coefficients, roots and magnitude that are proved.
+        """Return a shorter formula, with the changes of coefficients, roots and magnitude that are proved.
 
         No coefficient of s changes by more than ``bound``, ``0.01`` or ``"1 %"``, at the values or over the
         spread of each parameter, or ``spread`` of all. Raises ModelError: SF229 when one has no value.
-
-        Examples
-        --------
-        >>> from symflex import loads
-        >>> text = 'symflex = 1\nparameters = { m = "1 kg", c = "1 g" }\ninputs.F = {}\n'
-        >>> G = loads(text + 'outputs.a = "F/(m + c)"').transfer_function("a", "F")
-        >>> G.short("1 %").expr, G.short("1 %").statement[0]
-        (1/m, '1 of 2 terms; coefficients change by at most 0.1 %')
         """
         from symflex.letters.short import approximation  # imports the search of roots
 

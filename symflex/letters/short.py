@@ -297,10 +297,7 @@ def shortened(
 
 
 def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:
-    """Return a function as ``--short`` or ``--order`` asks for it, and its form with what is proved.
-
-    Raises UsageError: SF902 where there is no such form.
-    """
+    """Return a function as ``--short`` or ``--order`` asks for it; UsageError: SF902 where there is none."""
     if not tf.is_reduced:
         message = f"{tf.name} was derived in nested form, which has no coefficients"
         raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
