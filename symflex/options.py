@@ -484,8 +484,16 @@ class PlotOptions:
     ylim: Ends | None = option(None, "--ylim", **TWO, help="Ends of the vertical axis; dB in a Bode plot.")
     phase: Ends | None = option(None, "--phase", **TWO, help="Ends of the phase axis of a Bode plot [deg].")
     limits: tuple[Stated | None, Stated | None] | None = option(
-        None, "--range", **TWO, help="First and last gain of a locus."
+        None, "--range", **TWO, help="First and last gain of a locus, or of the parameter --over."
     )
+    over: Sequence[str] = option(
+        (), "--over", multiple=True, metavar="P", help="Parameter of a figure of stability; twice: a chart."
+    )
+    ranges: Sequence[tuple[str, Stated, Stated]] = option(
+        (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
+    )
+    resolve: Stated = option("1 %", "--resolve", metavar="SHARE", **SHOWN, help="As for symflex stability.")
+    box: bool = option(False, "--box", help="Draw the largest box about the values that is stable.")
     modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
     output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png.")
     width: float | str | None = option(None, "--width", **WIDTH)

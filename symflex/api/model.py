@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn, overload
 from symflex import pipeline
 from symflex.api.analyses import budget_of
 from symflex.api.face import face_of
-from symflex.api.plots import plot_loop
+from symflex.api.plots import plot_loop, plot_over
 from symflex.api.response import MeasuredResponse
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
@@ -500,6 +500,45 @@ class Model:
 
         with budget_of(None).entered():
             return boundary(self.resolved, over) if over else conditions(self.resolved, of, tf)
+
+    def stability_plot(
+        self,
+        over: str | tuple[str, str],
+        *,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        resolve: float = 0.01,
+        box: bool = False,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+        **values: Number,
+    ) -> Figure:
+        """Return for which values of one parameter or two the model is stable, as ``symflex plot`` draws it.
+
+        Parameters
+        ----------
+        over, ranges, resolve, **values : optional
+            As for :meth:`stability`.
+        box : bool
+            Draw the largest box about the declared values in which all is as there.
+        width, font, ax : optional
+            As for :meth:`BoundTransferFunction.bode`; one axes.
+
+        Examples
+        --------
+        >>> delayed = {"y": "K/s*exp(-s*T)*(r - y)"}
+        >>> given = {"K": 1, "T": 0.1}
+        >>> model = Model(parameters=given, signals=delayed, inputs={"r": {}}, outputs={"Y": "y"})
+        >>> figure = model.stability_plot(("K", "T"), ranges={"K": (0, 4), "T": (0, 2)}, resolve=0.1)
+        >>> [text.get_text() for text in figure.axes[0].texts]
+        ['stable', '2 unstable']
+        """
+        names = (over,) if isinstance(over, str) else tuple(over)
+        each = tuple((name, *ends) for name, ends in (ranges or {}).items())
+        given = PlotOptions(
+            "stability", over=names, ranges=each, resolve=resolve, box=box, width=width, font=font
+        )
+        return plot_over(given, self.resolved, values, ax)
 
     def locus(
         self,

@@ -113,7 +113,7 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     answer(given.as_json, lambda: rational_json(approximation), lambda: rational_text(approximation))
 
 
-class _Ranged(click.Command):
+class Ranged(click.Command):
     """A command whose ``--range LO HI`` may begin with the name of a parameter."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -123,7 +123,7 @@ class _Ranged(click.Command):
         return super().parse_args(ctx, plain)
 
 
-@command_of("stability", StabilityOptions, _Ranged)
+@command_of("stability", StabilityOptions, Ranged)
 def stability(spec: Specification, given: StabilityOptions) -> int:
     """Print the values of a gain, or of any parameter, for which all poles of SPEC are stable.
 

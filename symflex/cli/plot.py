@@ -6,18 +6,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note
 from symflex.cli.respond import show_response
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
+from symflex.options import DrawOptions, PlotOptions, RespondOptions, StabilityOptions, duration, gain_ends
 
 if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.model.model import Figure
 
 SWEEP = "sweep"
+STABILITY = "stability"
 IN_TIME = ("step", "impulse")
 FRAME = ("xlim", "ylim", "width", "font")
 
@@ -46,16 +48,19 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     return 0
 
 
-@command_of("plot", PlotOptions)
+@command_of("plot", PlotOptions, Ranged)
 def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND, or a figure that SPEC defines in [figures].
 
-    Kinds are bode, impulse, locus, modes, nyquist, poles_zeros and step.
+    Kinds are bode, impulse, locus, modes, nyquist, poles_zeros, stability and step.
 
     modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
     --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; for a
     distributed system, those of the lowest modes. nyquist draws a transfer function, or with --gain K the
     loop gain.
+
+    stability --over T draws the number of unstable poles over a parameter; with two, as --over K --over T, a
+    chart with regions, boundaries and the values of SPEC. Ranges are as for 'symflex stability'.
 
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
@@ -78,8 +83,10 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
 
-    if given.record or SWEEP in (spec.path, given.kind):
-        return (_plot_record if given.record else _plot_sweep)(spec, given)
+    if (is_over := bool(given.over) or given.kind == STABILITY) or (
+        given.record or SWEEP in (spec.path, given.kind)
+    ):
+        return (_plot_over if is_over else _plot_record if given.record else _plot_sweep)(spec, given)
     if given.kind.endswith(".toml") and not Path(spec.path).exists():
         raise _exchanged(spec, given)
     path = check_place(given.output, PICTURES) if given.output else None
@@ -137,6 +144,31 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     return 0
 
 
+def _plot_over(spec: Specification, given: PlotOptions) -> int:
+    """Draw for which values of one parameter, or of two, SPEC is stable."""
+    others = (given.tfs, given.gain, given.band, given.phase, given.modes, given.until, given.record)
+    if given.kind != STABILITY or not given.over or any(others):
+        hint = (
+            f"as in: symflex plot {spec.path} stability --over K --over T, with --range, --resolve or --box"
+        )
+        raise UsageError(
+            Diagnostic("SF902", "--over is for stability, which takes no --tf or band", None, hint)
+        )
+    from symflex.figures import checked_font, draw_over, part_shown, save
+    from symflex.loops.over import stability_over
+    from symflex.print.latex import width_of
+
+    path = check_place(given.output or f"{Path(spec.path).stem}_{STABILITY}.pdf", PICTURES)
+    font, width_mm = checked_font(given.font, path), width_of(given.width)
+    _, frame = part_shown(STABILITY, given)
+    asked = StabilityOptions(limits=given.limits, over=given.over, ranges=given.ranges, resolve=given.resolve)
+    stability = stability_over(spec.load(), asked)
+    drawn = draw_over(stability, with_box=given.box, frame=frame, width_mm=width_mm, font=font)
+    save(drawn, path, font=font)
+    note(f"wrote {path}")
+    return 0
+
+
 def _exchanged(spec: Specification, given: PlotOptions) -> UsageError:
     hint = f"the file comes first: symflex plot {given.kind} {spec.path}"
     return UsageError(Diagnostic("SF902", f"there is no file '{spec.path}'", None, hint))
@@ -183,7 +215,7 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
 
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *LOOP_FIGURES):
-        names = [*FIGURES, "locus", *(f.name for f in model.figures)]
+        names = [*FIGURES, "locus", STABILITY, *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     return figure, figure.kind if figure else kind

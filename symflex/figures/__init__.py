@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         LOOP_FIGURES,
         draw,
         draw_loop,
+        draw_over,
         draw_shape,
         part_shown,
         picture_of_shape,
@@ -32,7 +33,7 @@ _HOME: Final = {
     "files": "FORMATS render save",
     "fitted": "draw_fit draw_measured draw_orders",
     "in_time": "draw_in_time draw_residual",
-    "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_shape part_shown picture_of_shape",
+    "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_over draw_shape part_shown picture_of_shape",
     "style": "DEFAULT_FONT FONTS checked_font",
     "sweep": "draw_sweep",
 }

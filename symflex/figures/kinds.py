@@ -18,6 +18,7 @@ from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
 from symflex.figures.modes import draw_modes, draw_shapes
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.runs import panels_of
+from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
 from symflex.loops import require_arrival, trace_locus
 from symflex.options import PlotOptions, axis_ends, band_ends
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from symflex.figures.axes import AxesGiven, Drawing
     from symflex.figures.figure import Raster
     from symflex.loops import AnyLoop
+    from symflex.loops.chart import StabilityChart
+    from symflex.loops.stability_map import StabilityMap
     from symflex.model import Model
     from symflex.transfer import AnyBoundFunction
 
@@ -216,3 +219,21 @@ def draw_loop(
         return draw_locus(locus, canvas)
 
     return _styled(font, canvas, drawing)
+
+
+def draw_over(
+    stability: StabilityChart | StabilityMap,
+    *,
+    with_box: bool = False,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width_mm: float | None = None,
+    font: str = DEFAULT_FONT,
+    ax: AxesGiven | None = None,
+) -> Figure:
+    """Draw for which values of one parameter, or of two, a model is stable; the rest is as for :func:`draw`.
+
+    ``with_box`` draws the largest box about the declared values in which all is as there.
+    """
+    canvas = _canvas(None, frame, title, width_mm, ax)
+    return _styled(font, canvas, lambda: draw_stability(stability, canvas, with_box=with_box))

@@ -31,7 +31,7 @@ from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.of_model import derive_nameless
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -46,14 +46,16 @@ LOWEST = 1e-6
 OCTAVES = 24
 """Pieces of the axis at first, each half as high as the next; the lowest begins at 0."""
 
-NEARLY = 16
-"""Times that what a box leaves open exceeds what a piece does, from which on it is not halved."""
+NEARLY = 1 / 8
+"""Part of what a box changes to which a value is as good as 0."""
 
 Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]
 """The ends of every parameter, in SI units."""
 Piece = tuple[Fraction, Fraction]
 """A part of the imaginary axis, from a frequency to another [rad/s]; or of another path."""
+Line = tuple[arb, ...]
+"""A value in the middle of a box, and what each parameter adds between there and its upper end."""
 Path = tuple[complex, complex]
 """Where a straight path is at 0, and how far it goes for every 1."""
 AXIS: Path = (0j, 1j)
@@ -67,6 +69,8 @@ class OpenBox:
     radius: float | str  # beyond which no root lies right of the axis [rad/s], or why none is known
     pieces: tuple[tuple[Piece, ...], ...] = ()  # factor by factor
     weights: tuple[float, ...] = ()  # how much each parameter contributes to what is left
+    # One of each piece, if there is one of all: where none of them vanishes no root is on the axis.
+    lines: tuple[Line, ...] = ()
 
     @property
     def is_bounded(self) -> bool:
@@ -111,6 +115,11 @@ class CharacteristicFunction:
             ring.names[i] for f, top in tops for m in f.monoms() if m[0] == top for i, e in enumerate(m) if e
         )
 
+    @property
+    def at_rest(self) -> tuple[TransferFunction, tuple[fmpz_mpoly, ...]]:
+        """What has values at s = 0 too, and its factors."""
+        return (self.tf, self.factors) if self.nameless is None else (self.nameless, self._entire)
+
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
         tf = self.tf
@@ -143,8 +152,10 @@ class CharacteristicFunction:
             nameless = self.nameless
             entire = None if nameless is None else FirstOrder(self, nameless, self._entire, box.box)
             left = [self._left(slopes, entire, i, pieces, path) for i, pieces in enumerate(box.pieces)]
-        weights = [sum(w) for w in zip(*(w for each in left for w in each.values()), strict=True)]
-        return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights))
+        every = [parts for each in left for parts in each.values()]
+        weights = [sum(w) for w in zip(*(weights for weights, _ in every), strict=True)]
+        lines = tuple(line for _, line in every) if all(line for _, line in every) else ()
+        return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights), lines=lines)
 
     def expanded(self, box: Box) -> FirstOrder:
         """Return the factors about the middle of a box."""
@@ -152,40 +163,62 @@ class CharacteristicFunction:
 
     def _left(
         self, slopes: FirstOrder, entire: FirstOrder | None, factor: int, pieces: Sequence[Piece], path: Path
-    ) -> dict[Piece, list[float]]:
+    ) -> dict[Piece, tuple[list[float], Line]]:
         """Return the pieces, and parts of these, on which a factor may vanish, ascending.
 
-        With each stands what every parameter contributes to that.
+        With each stands what every parameter contributes to that, and a line. Where ``c + b (p - p_0) +
+        a (w - w_0)`` is 0 for real w and p, ``(c + b (p - p_0))/a`` is real: its imaginary part is the
+        line, and ``w_0`` less its real part is w (interval Newton method; Moore 1966).
         """
-        left, pending = dict[Piece, list[float]](), list(pieces[::-1])
+        left = dict[Piece, tuple[list[float], Line]]()
+        # Next to 0 one piece says of a small box what many said of a large one.
+        last = next((i for i, (one, two) in enumerate(pairwise(pieces)) if one[1] < two[0]), len(pieces) - 1)
+        if pieces and not pieces[0][0]:
+            pieces = [(pieces[0][0], pieces[last][1]), *pieces[last + 1 :]]
+        pending = list(pieces[::-1])
         start, way = map(acb, path)
         while pending:
             spend()
             low, high = pending.pop()
-            middle = (low + high) / 2
-            point = middle if low else low
+            point = (low + high) / 2
             s = start + way * ball(low).union(ball(high))
             # Next to 0 kernels of waves say nothing; all factors are tried there at once.
             own, ones = slopes, [factor]
             if entire is not None and s.contains(0):
                 own, ones = entire, list(range(len(entire.polynomials)))
-            around = own.around(s, ones)
+            near = own.generators(s)
+            around = own.around(s, ones, near)
             if not any(value.contains(0) for value, _ in around):
                 continue
-            steps = [slope * way * ball(high - point) for _, slope in around]
-            at_point = own.at(start + way * ball(point), ones)
+            turns = [slope * way for _, slope in around]
+            at_point = own.at(start + way * ball(point), ones, near)
             values = [(c, [x * half for x, half in zip(xs, own.halves, strict=True)]) for c, xs in at_point]
+            steps = [turn * ball(high - point) for turn in turns]
             shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
             if all(share < 1 for share, _ in shares):
                 continue
-            # Where the box alone leaves it open, or nearly so, shorter pieces do not help.
-            is_open = any(share_taken(*value)[0] >= 1 for value in values)
-            weights = max(shares, key=lambda each: each[0])[1]
-            is_spent = NEARLY * weights.pop() < sum(weights)
-            if is_open or is_spent or (high - low) * 2 ** current_bits() < high:
-                left[low, high] = weights
+            # Where the box alone leaves it open, or nearly so, and as much as the piece, this is not halved.
+            is_open = any(_nearly_vanishes(*value) for value in values)
+            wide = sum((term.abs_upper() for _, terms in values for term in terms), arb(0))
+            is_spent = not sum((step.abs_upper() for step in steps), arb(0)) > wide
+            *weights, _ = max(shares, key=lambda each: each[0])[1]
+            line: Line = ()
+            begin, end = low, high
+            if len(ones) == 1:
+                ((centre, terms),), (turn,) = values, turns
+                step = sum((term * arb(0, 1) for term in terms), centre) / turn
+                if step.is_finite():
+                    line = tuple((each / turn).imag for each in (centre, *terms))
+                    rest = ball(point) - step.real
+                    begin, end = max(low, _fraction(rest.lower())), min(high, _fraction(rest.upper()))
+            if begin > end:
+                continue
+            if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < end:
+                left[begin, end] = weights, line
+            elif 2 * (end - begin) < high - low:
+                pending.append((begin, end))
             else:
-                pending += [(middle, high), (low, middle)]
+                pending += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
         return left
 
     def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
@@ -247,23 +280,39 @@ class FirstOrder:
             for part, along in zip(parts, ("", *self.function.names), strict=True)
         ]
 
-    def around(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, acb]]:
+    def generators(self, s: acb) -> Mapping[str, Value]:
+        """Return all generators to first order in s, for all s in a ball and for all parameters."""
+        return self._wide.at(acb_series([s, 1], 2))
+
+    def around(
+        self, s: acb, ones: Sequence[int], near: Mapping[str, Value] | None = None
+    ) -> list[tuple[acb, acb]]:
         """Return values and slopes in s of some factors, for all s in a ball and for all parameters."""
-        at = self._wide.at(acb_series([s, 1], 2))
+        at = near or self.generators(s)
         values = [self._wide.polynomial(self.polynomials[i], at) for i in ones]
         return [(at_centre(value), _slope(value)) for value in values]
 
-    def at(self, s: acb, ones: Sequence[int]) -> list[tuple[acb, list[acb]]]:
-        """Return values of some factors at the middle of the box, and their slopes in every parameter."""
-        middle, *along = self._known
-        known, points = middle.at(s), [(kernels, kernels.at(s)) for kernels in along]
-        return [
-            (
-                at_centre(middle.polynomial(f, known)),
-                [_slope(kernels.polynomial(f, at)) for kernels, at in points],
-            )
-            for f in (self.polynomials[i] for i in ones)
-        ]
+    def at(
+        self, s: acb, ones: Sequence[int], near: Mapping[str, Value] | None = None
+    ) -> list[tuple[acb, list[acb]]]:
+        """Return values of some factors at the middle of the box, and their slopes in every parameter.
+
+        Wavenumbers are of one branch: that of ``near``, generators about s.
+        """
+        near = near or self.generators(s)
+        points = [(kernels, kernels.at(acb_series([s, 0], 2), near)) for kernels in self._known]
+        found = []
+        for f in (self.polynomials[i] for i in ones):
+            value, *slopes = (kernels.polynomial(f, at) for kernels, at in points)
+            found.append((at_centre(value), [_slope(each) for each in slopes]))
+        return found
+
+
+def _nearly_vanishes(centre: acb, terms: Sequence[acb]) -> bool:
+    """Tell whether sums of terms, each times -1 to 1, take a value to 0, or almost."""
+    spread = sum((term * arb(0, 1) for term in terms), acb(0))
+    room = arb(0, NEARLY) * spread.abs_upper()
+    return (centre + spread + acb(room, room)).contains(0)
 
 
 def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
@@ -280,6 +329,11 @@ def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
         if size > 0 and isfinite(total := sum(parts) * (1 + 1e-12)) and total < best[0]:
             best = total, parts
     return best
+
+
+def _fraction(x: arb) -> Fraction:
+    mantissa, exponent = x.man_exp()
+    return int(mantissa) * Fraction(2) ** int(exponent)
 
 
 def _slope(value: Value) -> acb:

@@ -6,23 +6,23 @@ Example: a mass on a spring whose force is fed back with gain K after a dead tim
 0 < T < 50 ms 99 % are decided by 2,000 boxes: stable below a curve with cusps, two or four poles above.
 
 A box on which no pole meets the axis holds as many poles right of it everywhere, and so do boxes that touch.
-Poles are counted at one point of each connected region, as ``symflex roots`` counts them. Boxes about a
-boundary are halved until they take up less than a share of the area.
+Poles are counted at one point of each connected region, as ``symflex roots`` counts them. A box about a
+boundary is decided but for a strip about a straight line, and halved until strips are as narrow as its cells.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
-from math import prod
+from itertools import pairwise, product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, SymflexError
+from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots.locate import locate
@@ -41,8 +41,16 @@ SHOWN = 12
 """Regions in print; the others are in the JSON."""
 SEARCH = 0.7
 """Share of the time for boxes; the rest is for counts of poles."""
-MOST_HALVINGS = 12
-"""Halvings of each range: 4,096 parts of it."""
+PARTS = 8
+"""Parts of a box in either direction, its cells, that are decided by straight lines."""
+MOST_HALVINGS = 9
+"""Halvings of each range: 4,096 cells along it."""
+SMALLEST = 5e-4
+"""Share of the smallest region in which poles are counted; smaller ones are left undecided."""
+ROUNDING = 1e-12
+"""Far more than doubles round of a few numbers of the size of one."""
+MIXED = -2
+"""Mark of boxes whose cells differ."""
 COUNT_DIGITS = 10
 """Digits of poles of which only the number is asked for."""
 Word = Literal["stable", "marginal", "unstable", "undecided"]
@@ -50,17 +58,15 @@ Word = Literal["stable", "marginal", "unstable", "undecided"]
 
 @dataclass(frozen=True, slots=True)
 class ChartBox:
-    """A box of parameters in which the number of poles right of the axis does not change."""
+    """A box of parameters that lies in one region, or is undecided: region -1."""
 
     box: Box
-    level: int  # how often each range was halved
-    place: tuple[int, ...]  # which part of each range it is, from 0 on
-    region: int = -1  # which connected region it belongs to
+    region: int
 
 
 @dataclass(frozen=True, slots=True)
 class ChartRegion:
-    """Boxes that touch, and what holds in all of them."""
+    """Cells that touch, and what holds in all of them."""
 
     verdict: StabilityVerdict
     point: tuple[Fraction, ...]  # where poles were counted
@@ -75,10 +81,11 @@ class StabilityChart:
     units: tuple[str, ...]
     ranges: Box
     nominal: tuple[Fraction | None, ...]  # declared values
-    boxes: tuple[ChartBox, ...]
+    cells: npt.NDArray[np.int16] = field(repr=False)  # of equal parts of the ranges, -1 or the region of each
     regions: tuple[ChartRegion, ...]  # the largest one first
-    undecided: tuple[OpenBox, ...]  # boxes in which a pole may meet the axis
-    reasons: tuple[str, ...] = ()  # what is not proved
+    reasons: tuple[str, ...]  # what is not proved
+    open: tuple[OpenBox, ...] = field(repr=False)  # boxes about boundaries
+    function: CharacteristicFunction = field(repr=False)
 
     def __repr__(self) -> str:
         return f"<StabilityChart over {', '.join(self.names)}: {100 * self.decided:.1f} % decided>"
@@ -91,18 +98,53 @@ class StabilityChart:
         """All counts are proved, for all poles; what is undecided is said beside it."""
         return not self.reasons
 
-    @cached_property
+    @property
     def decided(self) -> float:
         """Share of the ranges that is decided."""
-        return 1.0 - sum(_share(b.box, self.ranges) for b in self.undecided)
+        return float((self.cells >= 0).mean())
+
+    @cached_property
+    def boundaries(self) -> list[list[Point]]:
+        """Curves on which a pole is on the axis: points of both parameters and a frequency [rad/s].
+
+        A pole is proved at each point, with one parameter within 1e-9 of its range; between points lines are
+        drawn.
+        """
+        return boundary_curves(self.function, self.ranges, self.open)
+
+    @cached_property
+    def boxes(self) -> tuple[ChartBox, ...]:
+        """The largest boxes of halved ranges whose cells are alike, the undecided ones too."""
+        sizes = [self.cells]
+        while len(sizes[-1]) > 1:
+            half = len(sizes[-1]) // 2
+            quarters = sizes[-1].reshape(half, 2, half, 2)
+            first = quarters[:, 0, :, 0]
+            is_alike = (quarters == first[:, None, :, None]).all(axis=(1, 3))
+            sizes.append(np.where(is_alike, first, MIXED).astype(np.int16))
+        found = []
+        for each, above in pairwise([*sizes, np.full((1, 1), MIXED)]):
+            taken = (each != MIXED) & (above.repeat(2, 0).repeat(2, 1)[: len(each), : len(each)] == MIXED)
+            for place in np.argwhere(taken).tolist():
+                found.append(ChartBox(self._box(place, len(each)), int(each[tuple(place)])))
+        return tuple(found[::-1])
+
+    def _box(self, place: Sequence[int], parts: int) -> Box:
+        ends = zip(place, self.ranges, strict=True)
+        return tuple(
+            (low + (high - low) * i / parts, low + (high - low) * (i + 1) / parts) for i, (low, high) in ends
+        )
 
     def region_at(self, *values: Fraction | float | str) -> ChartRegion | None:
         """Return the region in which a point lies; None if it is undecided, or lies outside of the ranges."""
-        point = tuple(Fraction(x) for x in values)
-        for each in self.boxes:
-            if all(low <= x <= high for x, (low, high) in zip(point, each.box, strict=True)):
-                return self.regions[each.region]
-        return None
+        parts, place = len(self.cells), []
+        for value, (low, high) in zip(values, self.ranges, strict=True):
+            x = Fraction(value)
+            if not low <= x <= high:
+                return None
+            place.append(min(int((x - low) / (high - low) * parts), parts - 1))
+        region = int(self.cells[tuple(place)])
+        return None if region < 0 else self.regions[region]
 
     def at(self, *values: Fraction | float | str) -> str:
         """Return ``"stable"``, ``"marginal"``, ``"unstable by 2"`` or ``"undecided"``, always proved."""
@@ -131,18 +173,12 @@ class StabilityChart:
                 for region in self.regions
             ],
             "boxes": [
-                {
-                    "low": [float(low) for low, _ in each.box],
-                    "high": [float(high) for _, high in each.box],
-                    "unstable": self.regions[each.region].verdict.right,
-                    "region": each.region,
-                }
+                _ends(each.box) | {"unstable": self.regions[each.region].verdict.right, "region": each.region}
                 for each in self.boxes
+                if each.region >= 0
             ],
-            "undecided_boxes": [
-                {"low": [float(low) for low, _ in each.box], "high": [float(high) for _, high in each.box]}
-                for each in self.undecided
-            ],
+            "boundaries": [list(map(list, curve)) for curve in self.boundaries],
+            "undecided_boxes": [_ends(each.box) for each in self.boxes if each.region < 0],
         }
 
     def largest_box(self) -> Box | None:
@@ -155,13 +191,18 @@ class StabilityChart:
         region = self.region_at(*point) if len(point) == len(self.names) else None
         if region is None:
             return None
-        others = [each.box for each in self.boxes if self.regions[each.region] is not region]
-        others += [each.box for each in self.undecided]
-        shapes = [(x, high - low) for x, (low, high) in zip(point, self.ranges, strict=True)]
-        share = min((_reach(box, shapes) for box in others), default=Fraction(1))
-        ends = ((x - share * size, x + share * size) for x, size in shapes)
+        others = self.cells != self.regions.index(region)
+        parts, share, away = len(self.cells), Fraction(1), []
+        for x, (low, high) in zip(point, self.ranges, strict=True):
+            at, ends = float((x - low) / (high - low)), np.arange(parts + 1) / parts
+            away.append(np.maximum(ends[:-1] - at, at - ends[1:]).clip(min=0.0))
+        if others.any():
+            nearest = np.maximum(away[0][:, None], away[1][None, :])[others].min()
+            share = Fraction(max(float(nearest) - ROUNDING, 0.0))
+        half = ((x, share * (high - low)) for x, (low, high) in zip(point, self.ranges, strict=True))
         return tuple(
-            (max(low, a), min(high, b)) for (a, b), (low, high) in zip(ends, self.ranges, strict=True)
+            (max(low, x - size), min(high, x + size))
+            for (x, size), (low, high) in zip(half, self.ranges, strict=True)
         )
 
     @property
@@ -202,14 +243,8 @@ def word_of(verdict: StabilityVerdict) -> str:
     return f"unstable by {verdict.right}" if verdict.right else verdict.word
 
 
-def _reach(box: Box, shapes: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
-    """Return up to which share of its size to either side a shape about a point does not reach into a box."""
-    ends = zip(shapes, box, strict=True)
-    return max(max(low - x, x - high, Fraction(0)) / size for (x, size), (low, high) in ends)
-
-
-def _share(box: Box, ranges: Box) -> float:
-    return prod(float((b - a) / (high - low)) for (a, b), (low, high) in zip(box, ranges, strict=True))
+def _ends(box: Box) -> dict[str, object]:
+    return {"low": [float(low) for low, _ in box], "high": [float(high) for _, high in box]}
 
 
 def find_chart(
@@ -225,45 +260,68 @@ def find_chart(
     as far as it is proved. The parameters' ``ranges`` are finite.
     """
     reasons: list[str] = []
-    decided: list[ChartBox] = []
-    pending = [(function.whole(ranges), 0, (0,) * len(ranges))]
+    free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)
+    pending = [(function.whole(ranges), (0, 0))]
     try:
         with entered_budget().share(SEARCH).entered():
-            for level in range(1, MOST_HALVINGS + 1):
-                pending = [child for each in pending for child in _parts(*each, function)]
-                left = []
-                for place_of in pending:
-                    box, _, place = place_of
-                    if box.is_bounded:
-                        box = function.narrowed(box)
-                        if not any(box.pieces):
-                            decided.append(ChartBox(box.box, level, place))
-                            continue
-                    left.append((box, level, place))
+            for _ in range(MOST_HALVINGS):
+                free = free.repeat(2, 0).repeat(2, 1)
+                still_open = free.size - int(free.sum())
+                left: list[tuple[OpenBox, tuple[int, int]]] = []
+                for box, place in (child for each in pending for child in _parts(*each, function)):
+                    cells = free[tuple(slice(PARTS * i, PARTS * (i + 1)) for i in place)]
+                    if still_open > resolve * free.size and not cells.all():
+                        narrowed = function.narrowed(box) if box.is_bounded else box
+                        before = int(cells.sum())
+                        cells |= cells_without(narrowed)
+                        still_open -= int(cells.sum()) - before
+                        if any(narrowed.pieces) or not narrowed.is_bounded:
+                            left.append((narrowed, place))
+                    elif not cells.all():
+                        left.append((box, place))
                 pending = left
-                if sum(_share(box.box, ranges) for box, _, _ in pending) <= resolve:
+                if still_open <= resolve * free.size:
                     break
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
-        done = {(each.level, each.place) for each in decided}
-        pending = [each for each in pending if each[1:] not in done]
-    boxes, regions = _regions(function, decided, ranges, reasons)
-    ends = {each.radius for each in (box for box, _, _ in pending) if isinstance(each.radius, str)}
+    # The ends do not belong to the ranges: there the order may be lower.
+    rims = [{*ends} for ends in ranges]
+    inner = (
+        box for box, _ in pending if not any(rim & {*ends} for rim, ends in zip(rims, box.box, strict=True))
+    )
+    ends = {box.radius for box in inner if isinstance(box.radius, str)}
+    regions_of, regions = _regions(function, free, ranges, reasons)
     return StabilityChart(
-        function.names, tuple(units), ranges, tuple(nominal), boxes, regions,
-        tuple(box for box, _, _ in pending), tuple(dict.fromkeys((*reasons, *ends))),
+        function.names, tuple(units), ranges, tuple(nominal), regions_of, regions,
+        tuple(dict.fromkeys((*reasons, *ends))), tuple(box for box, _ in pending), function
     )  # fmt: skip
 
 
+def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
+    """Return which cells of a box hold no parameters for which a root is on the axis."""
+    shape = (PARTS,) * len(box.box)
+    if not box.is_bounded or (any(box.pieces) and not box.lines):
+        return np.zeros(shape, dtype=bool)
+    free = np.ones(shape, dtype=bool)
+    # Middles of cells, half a box away from its middle at most.
+    across = (2 * np.arange(PARTS) + 1) / PARTS - 1
+    for line in box.lines:
+        value, *slopes = ((float(x.mid()), float(x.rad()) + ROUNDING * abs(float(x.mid()))) for x in line)
+        middle, reach = np.full(shape, value[0]), value[1]
+        for axis, (slope, spread) in enumerate(slopes):
+            middle += slope * across.reshape([-1 if k == axis else 1 for k in range(len(shape))])
+            reach += spread + abs(slope) * (1 / PARTS + ROUNDING)
+        free &= abs(middle) > reach
+    return free
+
+
 def _parts(
-    box: OpenBox, level: int, place: tuple[int, ...], function: CharacteristicFunction
-) -> list[tuple[OpenBox, int, tuple[int, ...]]]:
-    """Return the parts of a box, with what each is in the tree of halvings."""
-    corners = product((0, 1), repeat=len(place))
-    return [
-        (part, level + 1, tuple(2 * i + side for i, side in zip(place, corner, strict=True)))
-        for part, corner in zip(halved(box, function), corners, strict=True)
-    ]
+    box: OpenBox, place: tuple[int, int], function: CharacteristicFunction
+) -> list[tuple[OpenBox, tuple[int, int]]]:
+    """Return the parts of a box, with their places among boxes of their size."""
+    x, y = place
+    corners = product((2 * x, 2 * x + 1), (2 * y, 2 * y + 1))
+    return list(zip(halved(box, function), corners, strict=True))
 
 
 def halved(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
@@ -276,46 +334,30 @@ def halved(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
 
 
 def _regions(
-    function: CharacteristicFunction, boxes: Sequence[ChartBox], ranges: Box, reasons: list[str]
-) -> tuple[tuple[ChartBox, ...], tuple[ChartRegion, ...]]:
-    """Return the boxes with their regions, and these with the poles that are counted in each."""
-    labels = connected(boxes)
-    shares: dict[int, float] = {}
-    largest: dict[int, ChartBox] = {}
-    for box, label in zip(boxes, labels, strict=True):
-        shares[label] = shares.get(label, 0.0) + _share(box.box, ranges)
-        if label not in largest or box.level < largest[label].level:
-            largest[label] = box
-    order = sorted(shares, key=lambda label: -shares[label])
+    function: CharacteristicFunction, free: npt.NDArray[np.bool_], ranges: Box, reasons: list[str]
+) -> tuple[npt.NDArray[np.int16], tuple[ChartRegion, ...]]:
+    """Return the region of each cell, -1 if it is undecided, and these with the poles counted in each."""
+    from scipy import ndimage  # only charts ask
+
+    labels, _ = ndimage.label(free)
+    sizes = np.bincount(labels.ravel())
+    order = [k for k in np.argsort(-sizes[1:], kind="stable") + 1 if sizes[k] >= SMALLEST * free.size]
+    number = np.full(len(sizes), -1, dtype=np.int16)
+    number[order] = np.arange(len(order))
+    cells = number[labels]
+    depth = ndimage.distance_transform_cdt(np.pad(free, 1))[1:-1, 1:-1]
+    deepest = ndimage.maximum_position(depth, labels, order) if order else []
     regions = []
-    for label in order:
-        point = tuple((low + high) / 2 for low, high in largest[label].box)
+    for label, place in zip(order, deepest, strict=True):
+        point = tuple(
+            low + (high - low) * Fraction(2 * int(i) + 1, 2 * len(free))
+            for i, (low, high) in zip(place, ranges, strict=True)
+        )
         verdict, _ = count_at(function, point)
         if verdict.word == "unknown" and verdict.reason not in reasons:
             reasons.append(verdict.reason)
-        regions.append(ChartRegion(verdict, point, shares[label]))
-    place = {label: i for i, label in enumerate(order)}
-    return tuple(replace(b, region=place[k]) for b, k in zip(boxes, labels, strict=True)), tuple(regions)
-
-
-def connected(boxes: Sequence[ChartBox]) -> list[int]:
-    """Return a number for each box, equal for those that share a face or are joined by others that do.
-
-    Boxes are those of a tree of halvings: each is a cube of the finest parts.
-    """
-    from scipy import ndimage  # only charts ask
-
-    if not boxes:
-        return []
-    finest, axes = max(b.level for b in boxes), len(boxes[0].place)
-    taken: npt.NDArray[np.bool_] = np.zeros((1 << finest,) * axes, dtype=bool)
-    corners = []
-    for box in boxes:
-        size = 1 << (finest - box.level)
-        corners.append(tuple(i * size for i in box.place))
-        taken[tuple(slice(i, i + size) for i in corners[-1])] = True
-    labels, _ = ndimage.label(taken)
-    return [int(labels[corner]) for corner in corners]
+        regions.append(ChartRegion(verdict, point, float(sizes[label] / free.size)))
+    return cells, tuple(regions)
 
 
 def located_at(function: CharacteristicFunction, point: Sequence[Fraction], modes: int = 1) -> PoleZeroMap:

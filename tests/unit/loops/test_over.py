@@ -110,6 +110,32 @@ def test_a_chart_says_at_every_point_what_holds_there() -> None:
     assert chart.at(5, 1) == "undecided"
 
 
+def test_boundaries_of_a_chart_pass_through_roots_on_the_axis() -> None:
+    chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)}, resolve=0.02)
+    assert len(chart.boundaries) == 2
+    for curve, turn in zip(sorted(chart.boundaries, key=lambda c: c[0][0] * c[0][1]), (0, 1), strict=True):
+        assert all(abs(a * late - pi / 2 - 2 * pi * turn) < 1e-8 for a, late, _ in curve)
+        assert all(abs(omega - a) < 1e-8 for a, _, omega in curve)
+        assert {4.0, 3.0} <= {x for point in (curve[0], curve[-1]) for x in point}  # ends of the ranges
+
+
+def test_a_real_pole_passes_the_axis_on_a_boundary_too() -> None:
+    """``s^2 + (b - 1) s + K - 2`` has a root at 0 where K = 2, and a pair on the axis where b = 1."""
+    model = Model(
+        parameters={"K": 3, "b": 2},
+        signals={"y": "(2 - K)/(s^2 + (b - 1)*s)*y + r"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    chart = model.stability(over=("K", "b"), ranges={"K": (0, 4), "b": (0, 2)})
+    assert chart.at(3, 1.5) == "stable"
+    assert chart.at(1, 1.5) == "unstable by 1"
+    assert chart.at(3, 0.5) == "unstable by 2"
+    real, pair = sorted(chart.boundaries, key=lambda curve: max(omega for _, _, omega in curve))
+    assert all(abs(gain - 2) < 1e-8 and omega == 0 for gain, _, omega in real)
+    assert all(abs(b - 1) < 1e-8 and abs(gain - 2 - omega**2) < 1e-7 for gain, b, omega in pair)
+
+
 def test_the_largest_box_about_the_declared_values_ends_at_the_boundary() -> None:
     chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)})
     box = chart.largest_box()

@@ -1,0 +1,114 @@
+"""Charts of stability: shaded regions with counts of unstable poles, and the curves between them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
+
+from symflex.figures.axes import root_figure, set_round_ticks, write_title
+from symflex.figures.style import COLOURS, COLUMN_INCHES, QUIET, label_of_name, label_of_unit, title_lines
+from symflex.loops.chart import StabilityChart, word_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.figures.axes import Canvas
+    from symflex.loops.stability_map import StabilityMap
+
+STABLE: Final = "#DDEBF5"
+"""A tint, pale enough for every line on it."""
+HEIGHT_INCHES: Final = 2.9
+STRIP_INCHES: Final = 1.7
+LEGIBLE: Final = 0.01
+"""Least share of the area of a region in which its count stands."""
+MOST_PIXELS: Final = 1024
+
+
+def draw_stability(
+    stability: StabilityChart | StabilityMap, canvas: Canvas, *, with_box: bool = False
+) -> Figure:
+    """Draw for which values of two parameters a model is stable, or of one.
+
+    The stable region is shaded, what is undecided is grey, and each region says how many poles are
+    unstable. Boundaries are curves through proved points; a star marks the declared values, and dashes, if
+    they are asked for, the largest box about them in which all is as there. Of one parameter the number of
+    unstable poles is drawn, with the frequencies [Hz] at which poles pass the axis.
+    """
+    lines = title_lines(canvas.title, canvas.width or COLUMN_INCHES)
+    axes = canvas.one_panel(HEIGHT_INCHES if isinstance(stability, StabilityChart) else STRIP_INCHES)
+    if isinstance(stability, StabilityChart):
+        _draw_chart(stability, axes, with_box=with_box)
+    else:
+        _draw_counts(stability, axes)
+    if canvas.frame.x:
+        axes.set_xlim(*canvas.frame.x)
+    if canvas.frame.y:
+        axes.set_ylim(*canvas.frame.y)
+    figure = root_figure(axes)
+    if not canvas.axes:
+        write_title(figure, lines)
+    return figure
+
+
+def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
+    (left, right), (low, high) = ((float(a), float(b)) for a, b in chart.ranges)
+    step = max(1, len(chart.cells) // MOST_PIXELS)
+    cells = np.pad(chart.cells[step // 2 :: step, step // 2 :: step].T, 1, mode="edge")
+    middles = (np.arange(len(cells)) - 0.5) / (len(cells) - 2)
+    x, y = left + (right - left) * middles, low + (high - low) * middles
+    is_stable = np.array([*(r.verdict.word == "stable" for r in chart.regions), False])
+    for shown, colour in ((is_stable[cells], STABLE), (cells < 0, QUIET)):
+        if shown.any():
+            axes.contourf(x, y, shown.astype(float), levels=(0.5, 1.5), colors=[colour], zorder=1)
+    for curve in chart.boundaries:
+        across, upwards, _ = np.array(curve).T
+        axes.plot(across, upwards, "-", color=COLOURS[0], linewidth=1.1, zorder=3)
+    for region in chart.regions:
+        if region.share >= LEGIBLE:
+            word = word_of(region.verdict)
+            said = f"{region.verdict.right} unstable" if region.verdict.right else word
+            at = (float(region.point[0]), float(region.point[1]))
+            axes.text(*at, said, ha="center", va="center", fontsize=7, zorder=4, clip_on=True)
+    a, b = chart.nominal
+    if a is not None and b is not None:
+        axes.plot([float(a)], [float(b)], "*", color="black", markersize=6, zorder=5)
+    if with_box and (box := chart.largest_box()):
+        (a0, a1), (b0, b1) = ((float(u), float(v)) for u, v in box)
+        axes.add_patch(
+            Rectangle((a0, b0), a1 - a0, b1 - b0, fill=False, linestyle="--", linewidth=0.8, zorder=4)
+        )
+    axes.set_xlim(left, right)
+    axes.set_ylim(low, high)
+    set_round_ticks(axes, 6, 6)
+    axes.set_xlabel(_label(chart.names[0], chart.units[0]))
+    axes.set_ylabel(_label(chart.names[1], chart.units[1]))
+
+
+def _draw_counts(stability: StabilityMap, axes: Axes) -> None:
+    ends = [float(x) for x in stability.limits if x is not None]
+    for interval in stability.intervals:
+        a, b = (float(x.mid()) if x is not None else ends[-1] for x in (interval.low, interval.high))
+        axes.plot([a, b], [interval.poles.right] * 2, "-", color=COLOURS[0], linewidth=1.6, zorder=3)
+        if not interval.poles.right and not interval.poles.axis:
+            axes.axvspan(a, b, color=STABLE, linewidth=0, zorder=0)
+    for boundary in stability.boundaries:
+        at = float(boundary.gain.mid())
+        axes.axvline(at, color=QUIET, linewidth=0.6, zorder=1)
+        said = ", ".join(f"{float(w.mid()) / (2 * np.pi):.4g} Hz" for w in boundary.frequencies)
+        note = axes.annotate(said, (at, 0.45), (1, 0), ("data", "axes fraction"), "offset points")
+        note.set(rotation=90, fontsize=6, va="center", ha="left")
+    axes.set_xlim(*ends)
+    most = max((interval.poles.right for interval in stability.intervals), default=0)
+    axes.set_ylim(-0.25, max(most, 2) + 0.5)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlabel(_label(stability.gain, stability.unit))
+    axes.set_ylabel("unstable poles")
+
+
+def _label(name: str, unit: str) -> str:
+    shown = label_of_unit(unit)
+    return f"${label_of_name(name)}$" + (f" [{shown}]" if shown else "")

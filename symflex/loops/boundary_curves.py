@@ -1,0 +1,208 @@
+"""Curves in a chart of two parameters on which a pole lies on the imaginary axis, with its frequency.
+
+Input: a characteristic function, the ranges of two parameters, and boxes with the pieces of the axis that are
+open there. Output: curves, as points that are proved to lie on them.
+
+Example: ``s + a exp(-s T)`` has a root on the axis where a T = pi/2 and omega = a; (1, 1.5707963..., 1) is a
+point. From one to the next the tangent is followed, and Newton's method returns to the curve while one
+parameter rests. Interval Newton proves a root about every point (Hansen 1968), with that parameter at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise, product
+from math import floor, hypot
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.balls import precision
+from symflex.budget import spend
+from symflex.loops.boxes import BITS, FirstOrder
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
+    from symflex.transfer import TransferFunction
+
+Point = tuple[float, float, float]
+"""Two parameters in parts of their ranges, and a frequency [rad/s]."""
+LONGEST, SHORTEST = 1 / 64, 1e-6
+"""Steps along a curve, in parts of the ranges."""
+BEND = 0.1
+"""Part of a step by which a curve may leave its tangent."""
+NEWTON_STEPS, CONVERGED = 6, 1e-12
+"""Newton steps to a curve, and how long the last may be, in parts of the range and of the frequency."""
+RADIUS, ROOM = 1e-9, 100
+"""About a point, in parts of the range: there a root is proved; the frequency's radius may be wider."""
+MOST_POINTS = 2000
+ALIKE = 0.05
+"""Part by which frequencies of one curve at one place may differ."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tracer:
+    """One polynomial of a characteristic function, followed over two parameters."""
+
+    function: CharacteristicFunction
+    ranges: Box
+    tf: TransferFunction
+    polynomials: tuple[fmpz_mpoly, ...]
+    which: int
+
+    def steps(
+        self, point: Point, free: int, reach: float = 0.0, rise: float = 0.0
+    ) -> tuple[list[arb], arb, arb] | None:
+        """Return slopes of the boundary, and the steps to it of one parameter and of the frequency.
+
+        The slopes are those of all within ``reach`` of the parameter and ``rise`` of the frequency.
+        """
+        spend()
+        ends = []
+        for k, (low, high) in enumerate(self.ranges):
+            wide = Fraction(reach) if k == free else Fraction(0)
+            x, size = Fraction(point[k]), high - low
+            ends.append((low + size * (x - wide), low + size * (x + wide)))
+        values = FirstOrder(self.function, self.tf, self.polynomials, tuple(ends))
+        near = values.generators(acb(0, arb(point[2], rise)))
+        ((_, slope),) = values.around(acb(0), [self.which], near)
+        ((value, slopes),) = values.at(acb(0, arb(point[2])), [self.which], near)
+        turn = slope * acb(0, 1)
+        sizes = [float(high - low) for low, high in self.ranges]
+        turns = [each * size / turn for each, size in zip(slopes, sizes, strict=True)]
+        step = -(value / turn).imag / turns[free].imag
+        climb = -(value / turn).real - turns[free].real * step
+        return ([x.imag for x in turns], step, climb) if step.is_finite() and climb.is_finite() else None
+
+    def corrected(self, point: Point, free: int) -> Point | None:
+        """Return the point of the curve with the other parameter as it is; None unless it is proved."""
+        x, omega = point[free], point[2]
+        for _ in range(NEWTON_STEPS):
+            known = self.steps(_moved(point, free, x, omega), free)
+            if known is None:
+                return None
+            step, climb = (float(each.mid()) for each in known[1:])
+            if abs(step) > LONGEST or (omega and abs(climb) > omega / 2):
+                return None
+            x, omega = x + step, omega + climb if omega else omega
+            if abs(step) < CONVERGED and abs(climb) <= CONVERGED * omega:
+                break
+        found, rise = _moved(point, free, x, omega), ROOM * RADIUS * omega
+        known = self.steps(found, free, RADIUS, rise)
+        return found if known and abs(known[1]) < RADIUS and (not omega or abs(known[2]) < rise) else None
+
+    def traced(self, start: Point) -> list[Point]:
+        """Return a curve through a point of it, to the ends of the ranges, or as far as it is proved."""
+        ahead = list(self._one_way(start, 1.0))
+        if ahead and ahead[-1] == start:
+            return [start, *ahead]
+        return [*list(self._one_way(start, -1.0))[::-1], start, *ahead]
+
+    def _one_way(self, start: Point, way: float) -> Iterator[Point]:
+        point, size, before = start, LONGEST / 4, (0.0, 0.0)
+        for count in range(MOST_POINTS):
+            known = self.steps(point, 0) or self.steps(point, 1)
+            if known is None:
+                return
+            across, up = (float(x.mid()) for x in known[0])
+            length = hypot(across, up)
+            tangent = (-up / length * way, across / length * way)
+            if (
+                before[0] * tangent[0] + before[1] * tangent[1] < 0
+            ):  # the slope along the axis changed its sign
+                way, tangent = -way, (-tangent[0], -tangent[1])
+            held = int(abs(tangent[1]) > abs(tangent[0]))
+            while size > SHORTEST:
+                part = size
+                if not 0 <= (aim := point[held] + size * tangent[held]) <= 1:
+                    part = (float(aim > 1) - point[held]) / tangent[held]
+                guess = (point[0] + part * tangent[0], point[1] + part * tangent[1], point[2])
+                guess = _moved(guess, held, float(aim > 1) if part < size else guess[held], point[2])
+                new = self.corrected(guess, 1 - held) if part > 0 else None
+                if new and abs(new[1 - held] - guess[1 - held]) < BEND * size:
+                    break
+                size /= 2
+            else:
+                return
+            if not 0 <= new[1 - held] <= 1:
+                edge = _moved(new, 1 - held, float(new[1 - held] > 1), new[2])
+                if (end := self.corrected(edge, held)) and 0 <= end[held] <= 1:
+                    yield end
+                return
+            if count > 1 and _is_passed(start, point, new):
+                yield start
+                return
+            yield new
+            if part < size:
+                return
+            point, before, size = new, tangent, min(1.5 * size, LONGEST)
+
+
+def _moved(point: Point, which: int, x: float, omega: float) -> Point:
+    return (point[0], x, omega) if which else (x, point[1], omega)
+
+
+def _is_passed(goal: Point, a: Point, b: Point) -> bool:
+    """Tell whether a curve comes by a point between two others."""
+    u, v, x, y = b[0] - a[0], b[1] - a[1], goal[0] - a[0], goal[1] - a[1]
+    along, off = (u * x + v * y) / hypot(u, v), (u * y - v * x) / hypot(u, v)
+    is_alike = abs(a[2] - goal[2]) <= ALIKE * goal[2]
+    return is_alike and 0 < along <= hypot(u, v) and abs(off) < BEND * hypot(u, v)
+
+
+def boundary_curves(
+    function: CharacteristicFunction, ranges: Box, boxes: Sequence[OpenBox]
+) -> list[list[Point]]:
+    """Return the curves that pass the boxes, with parameters in SI units."""
+    lows, sizes = [low for low, _ in ranges], [high - low for low, high in ranges]
+    parts = max(
+        (size / (b - a) for box in boxes for size, (a, b) in zip(sizes, box.box, strict=True)), default=1
+    )
+    curves: list[list[Point]] = []
+    passed: dict[tuple[int, int], list[float]] = {}
+    with precision(BITS):
+        for box in boxes:
+            x, y = (
+                float(((a + b) / 2 - low) / size)
+                for (a, b), low, size in zip(box.box, lows, sizes, strict=True)
+            )
+            here = floor(x * parts), floor(y * parts)
+            for tf, polynomials, which, low, high in _starts(function, box):
+                if any(low * (1 - ALIKE) <= w <= high * (1 + ALIKE) for w in passed.get(here, ())):
+                    continue
+                tracer = Tracer(function, ranges, tf, polynomials, which)
+                guess = (x, y, (low + high) / 2)
+                start = tracer.corrected(guess, 0) or tracer.corrected(guess, 1)
+                if start is None or max(abs(start[0] - x), abs(start[1] - y)) * parts > 1:
+                    continue
+                curve = tracer.traced(start)
+                curves.append(curve)
+                for one, two in pairwise(curve):
+                    count = int(2 * parts * max(abs(one[0] - two[0]), abs(one[1] - two[1]))) + 1
+                    for k in range(count + 1):
+                        u, v, w = (a + (b - a) * k / count for a, b in zip(one, two, strict=True))
+                        for i, j in product((-1, 0, 1), (-1, 0, 1)):
+                            passed.setdefault((floor(u * parts) + i, floor(v * parts) + j), []).append(w)
+    # The ends do not belong to the ranges.
+    rims = ({(k, point[k]) for point in curve} for curve in curves for k in (0, 1))
+    on_rim = [len(rim) == 1 and rim <= {(0, 0.0), (0, 1.0), (1, 0.0), (1, 1.0)} for rim in rims]
+    inner = [c for c, *flat in zip(curves, on_rim[::2], on_rim[1::2], strict=True) if not any(flat)]
+    (u, v), (a, b) = map(float, lows), map(float, sizes)
+    return [[(u + a * x, v + b * y, w) for x, y, w in curve] for curve in inner]
+
+
+def _starts(
+    function: CharacteristicFunction, box: OpenBox
+) -> Iterator[tuple[TransferFunction, tuple[fmpz_mpoly, ...], int, float, float]]:
+    """Return what may vanish in a box, and from where to where on the axis [rad/s]."""
+    for i, pieces in enumerate(box.pieces):
+        for low, high in pieces:
+            if not low:
+                resting = function.at_rest
+                yield from ((*resting, k, 0.0, 0.0) for k in range(len(resting[1])))
+            yield function.tf, function.factors, i, float(low), float(high)
