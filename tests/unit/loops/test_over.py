@@ -4,6 +4,7 @@ from fractions import Fraction
 from math import atan2, pi, sqrt
 from random import Random
 
+import numpy as np
 import pytest
 
 from symflex import Model
@@ -16,6 +17,9 @@ LAG = Model(
     inputs={"r": {}},
     outputs={"Y": "y"},
 )
+
+
+RANDOM = {"K": (0.5, 20), "c": (0.05, 1), "w": (0.5, 5), "z": (0.02, 0.8), "p": (0.1, 4)}
 
 
 def oscillator(gain: float) -> Model:
@@ -136,6 +140,32 @@ def test_a_real_pole_passes_the_axis_on_a_boundary_too() -> None:
     assert all(abs(b - 1) < 1e-8 and abs(gain - 2 - omega**2) < 1e-7 for gain, b, omega in pair)
 
 
+@pytest.mark.parametrize(
+    ("plant", "over", "printed", "digits"),
+    [
+        # MathWorks, "Assessing Gain and Phase Margins": stable for 0 < k < 2.7, exactly 96/35 by Routh.
+        ("(0.5*s + 1.3)/(s^3 + 1.2*s^2 + 1.6*s)", "k", 2.7, 1),
+        # MathWorks, allmargin: GainMargin 3.6000, DelayMargin 0.2847.
+        ("25/(s^3 + 10*s^2 + 10*s + 10)", "k", 3.6, 4),
+        ("25/(s^3 + 10*s^2 + 10*s + 10)", "T", 0.2847, 4),
+    ],
+)
+def test_limits_of_one_parameter_and_of_charts_are_those_that_pages_print(
+    plant: str, over: str, printed: float, digits: int
+) -> None:
+    model = Model(
+        parameters={"k": 1, "T": {"value": 0, "assume": "nonnegative"}},
+        signals={"y": f"k*exp(-s*T)*{plant}*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    ((_, limit),) = model.stability(over=over, limits=(0, 4 if over == "k" else 1)).stable
+    assert round(limit, digits) == printed
+    chart = model.stability(over=("k", "T"), ranges={"k": (0, 4), "T": (0, 1)})
+    goal = (1, limit) if over == "T" else (limit, 0)
+    assert min(abs(k - goal[0]) + abs(t - goal[1]) for c in chart.boundaries for k, t, _ in c) < 0.05
+
+
 def test_the_largest_box_about_the_declared_values_ends_at_the_boundary() -> None:
     chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)})
     box = chart.largest_box()
@@ -238,3 +268,35 @@ def test_a_kernel_alone_is_a_factor_that_may_vanish() -> None:
     about_pi = ((Fraction(3), Fraction(33, 10)),)  # 2 pi/2: a wave has the speed 2, and a quarter is held
     box = OpenBox(((Fraction(0), Fraction(0)),), 100.0, tuple(about_pi for _ in function.factors))
     assert any(function.narrowed(box).pieces)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+def test_charts_of_random_loops_say_what_numeric_roots_say(seed: int) -> None:
+    random = Random(seed)
+    values = {n: random.uniform(*ends) for n, ends in RANDOM.items()}
+    over = random.sample([*RANDOM], 2)
+    gain = random.choice(["K", "K^2", "K*(1 + c*s)", "K*(1 - c*s)"])
+    if "c" in over and "c" not in gain:
+        gain = "K*(1 - c*s)"
+    model = Model(
+        parameters={n: repr(x) for n, x in values.items()},
+        signals={"y": f"{gain}/((s^2 + 2*z*w*s + w^2)*(s + p))*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    ranges = {n: (values[n] / 3, 2 * values[n]) for n in over}
+    chart = model.stability(over=(over[0], over[1]), ranges=ranges)
+    assert chart.certified
+    open_points = 0
+    for _ in range(100):
+        at = values | {n: random.uniform(*ranges[n]) for n in over}
+        said = chart.at(*(at[n] for n in over))
+        k, c, w, z, p = (at[n] for n in ("K", "c", "w", "z", "p"))
+        steady = k * k if gain == "K^2" else k
+        slope = {"K*(1 + c*s)": k * c, "K*(1 - c*s)": -k * c}.get(gain, 0.0)
+        open_loop = np.polymul([1, 2 * z * w, w * w], [1, p])
+        right = int((np.roots(np.polyadd(open_loop, [slope, steady])).real > 0).sum())
+        open_points += said == "undecided"
+        assert said in ("undecided", f"unstable by {right}" if right else "stable")
+    assert open_points <= 5
