@@ -507,6 +507,11 @@ class PlotOptions:
         False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
     )
 
+    @property
+    def stability(self) -> StabilityOptions:
+        """What a figure of stability asks for."""
+        return StabilityOptions("", self.limits, None, None, self.over, self.ranges, self.resolve)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DrawOptions:

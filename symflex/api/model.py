@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn, overload
 from symflex import pipeline
 from symflex.api.analyses import budget_of
 from symflex.api.face import face_of
-from symflex.api.plots import plot_loop, plot_over
+from symflex.api.plots import plot_loop
 from symflex.api.response import MeasuredResponse
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
@@ -513,7 +513,7 @@ class Model:
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
-        """Return for which values of one parameter or two the model is stable, as ``symflex plot`` draws it.
+        """Draw for which values of one parameter or two the model is stable.
 
         Parameters
         ----------
@@ -533,12 +533,15 @@ class Model:
         >>> [text.get_text() for text in figure.axes[0].texts]
         ['stable', '2 unstable']
         """
+        from symflex.figures import draw_over  # imports matplotlib
+        from symflex.loops.over import stability_over
+
         names = (over,) if isinstance(over, str) else tuple(over)
         each = tuple((name, *ends) for name, ends in (ranges or {}).items())
         given = PlotOptions(
             "stability", over=names, ranges=each, resolve=resolve, box=box, width=width, font=font
         )
-        return plot_over(given, self.resolved, values, ax)
+        return draw_over(stability_over(self.resolved, given.stability, values), given, ax)
 
     def locus(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from symflex.options import PlotOptions, StabilityOptions, gain_ends
+from symflex.options import PlotOptions, gain_ends
 from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
@@ -203,24 +203,6 @@ def plot_loop(
         modes=given.modes,
         band_hz=band,
         frame=frame,
-        width_mm=width_of(given.width),
-        font=given.font or DEFAULT_FONT,
-        ax=ax,
-    )
-
-
-def plot_over(
-    given: PlotOptions, model: Model, values: Mapping[str, Given], ax: AxesGiven | None = None
-) -> Figure:
-    """Draw for which values of parameters a model is stable; see :func:`symflex.figures.draw_over`."""
-    from symflex.figures import DEFAULT_FONT, draw_over, part_shown  # imports matplotlib
-    from symflex.loops.over import stability_over
-
-    asked = StabilityOptions(limits=given.limits, over=given.over, ranges=given.ranges, resolve=given.resolve)
-    return draw_over(
-        stability_over(model, asked, values),
-        with_box=given.box,
-        frame=part_shown(given.kind, given)[1],
         width_mm=width_of(given.width),
         font=given.font or DEFAULT_FONT,
         ax=ax,

@@ -12,7 +12,7 @@ from symflex.cli.reporting import PICTURES, check_place, note
 from symflex.cli.respond import show_response
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.options import DrawOptions, PlotOptions, RespondOptions, StabilityOptions, duration, gain_ends
+from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -146,25 +146,17 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
 def _plot_over(spec: Specification, given: PlotOptions) -> int:
     """Draw for which values of one parameter, or of two, SPEC is stable."""
-    others = (given.tfs, given.gain, given.band, given.phase, given.modes, given.until, given.record)
-    if given.kind != STABILITY or not given.over or any(others):
-        hint = (
-            f"as in: symflex plot {spec.path} stability --over K --over T, with --range, --resolve or --box"
-        )
-        raise UsageError(
-            Diagnostic("SF902", "--over is for stability, which takes no --tf or band", None, hint)
-        )
-    from symflex.figures import checked_font, draw_over, part_shown, save
+    others = ("tfs", "gain", "band", "xlim", "ylim", "phase", "modes", "until", "record")
+    if given.kind != STABILITY or not given.over or any(getattr(given, n) for n in others):
+        hint = "as in: symflex plot FILE stability --over K --over T --box"
+        message = "--over is for stability, which takes no --tf, --band or ends of axes"
+        raise UsageError(Diagnostic("SF902", message, None, hint))
+    from symflex.figures import checked_font, draw_over, save
     from symflex.loops.over import stability_over
-    from symflex.print.latex import width_of
 
     path = check_place(given.output or f"{Path(spec.path).stem}_{STABILITY}.pdf", PICTURES)
-    font, width_mm = checked_font(given.font, path), width_of(given.width)
-    _, frame = part_shown(STABILITY, given)
-    asked = StabilityOptions(limits=given.limits, over=given.over, ranges=given.ranges, resolve=given.resolve)
-    stability = stability_over(spec.load(), asked)
-    drawn = draw_over(stability, with_box=given.box, frame=frame, width_mm=width_mm, font=font)
-    save(drawn, path, font=font)
+    given = replace(given, font=(font := checked_font(given.font, path)))
+    save(draw_over(stability_over(spec.load(), given.stability), given), path, font=font)
     note(f"wrote {path}")
     return 0
 

@@ -22,6 +22,7 @@ from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
 from symflex.loops import require_arrival, trace_locus
 from symflex.options import PlotOptions, axis_ends, band_ends
+from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
 
 if TYPE_CHECKING:
@@ -222,18 +223,9 @@ def draw_loop(
 
 
 def draw_over(
-    stability: StabilityChart | StabilityMap,
-    *,
-    with_box: bool = False,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width_mm: float | None = None,
-    font: str = DEFAULT_FONT,
-    ax: AxesGiven | None = None,
+    stability: StabilityChart | StabilityMap, given: PlotOptions, ax: AxesGiven | None = None
 ) -> Figure:
-    """Draw for which values of one parameter, or of two, a model is stable; the rest is as for :func:`draw`.
-
-    ``with_box`` draws the largest box about the declared values in which all is as there.
-    """
-    canvas = _canvas(None, frame, title, width_mm, ax)
-    return _styled(font, canvas, lambda: draw_stability(stability, canvas, with_box=with_box))
+    """Draw for which values of one parameter, or of two, a model is stable, as options say."""
+    canvas = _canvas(None, FREE, None, width_of(given.width), ax)
+    drawing = partial(draw_stability, stability, canvas, with_box=given.box)
+    return _styled(given.font or DEFAULT_FONT, canvas, drawing)

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from symflex.figures.axes import root_figure, set_round_ticks, write_title
-from symflex.figures.style import COLOURS, COLUMN_INCHES, QUIET, label_of_name, label_of_unit, title_lines
+from symflex.figures.axes import root_figure, set_round_ticks
+from symflex.figures.style import COLOURS, QUIET, label_of_name, label_of_unit
 from symflex.loops.chart import StabilityChart, word_of
 
 if TYPE_CHECKING:
@@ -38,20 +38,12 @@ def draw_stability(
     they are asked for, the largest box about them in which all is as there. Of one parameter the number of
     unstable poles is drawn, with the frequencies [Hz] at which poles pass the axis.
     """
-    lines = title_lines(canvas.title, canvas.width or COLUMN_INCHES)
     axes = canvas.one_panel(HEIGHT_INCHES if isinstance(stability, StabilityChart) else STRIP_INCHES)
     if isinstance(stability, StabilityChart):
         _draw_chart(stability, axes, with_box=with_box)
     else:
         _draw_counts(stability, axes)
-    if canvas.frame.x:
-        axes.set_xlim(*canvas.frame.x)
-    if canvas.frame.y:
-        axes.set_ylim(*canvas.frame.y)
-    figure = root_figure(axes)
-    if not canvas.axes:
-        write_title(figure, lines)
-    return figure
+    return root_figure(axes)
 
 
 def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
@@ -69,8 +61,8 @@ def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
         axes.plot(across, upwards, "-", color=COLOURS[0], linewidth=1.1, zorder=3)
     for region in chart.regions:
         if region.share >= LEGIBLE:
-            word = word_of(region.verdict)
-            said = f"{region.verdict.right} unstable" if region.verdict.right else word
+            count = region.verdict.right
+            said = f"{count} unstable" if count else word_of(region.verdict)
             at = (float(region.point[0]), float(region.point[1]))
             axes.text(*at, said, ha="center", va="center", fontsize=7, zorder=4, clip_on=True)
     a, b = chart.nominal

@@ -112,9 +112,7 @@ class Tracer:
             across, up = (float(x.mid()) for x in known[0])
             length = hypot(across, up)
             tangent = (-up / length * way, across / length * way)
-            if (
-                before[0] * tangent[0] + before[1] * tangent[1] < 0
-            ):  # the slope along the axis changed its sign
+            if before[0] * tangent[0] + before[1] * tangent[1] < 0:  # what it is divided by changed its sign
                 way, tangent = -way, (-tangent[0], -tangent[1])
             held = int(abs(tangent[1]) > abs(tangent[0]))
             while size > SHORTEST:
@@ -134,7 +132,7 @@ class Tracer:
                 if (end := self.corrected(edge, held)) and 0 <= end[held] <= 1:
                     yield end
                 return
-            if count > 1 and _is_passed(start, point, new):
+            if count > 2 and _are_near(start, new, size):  # noqa: PLR2004 (it has left its start)
                 yield start
                 return
             yield new
@@ -143,16 +141,12 @@ class Tracer:
             point, before, size = new, tangent, min(1.5 * size, LONGEST)
 
 
+def _are_near(a: Point, b: Point, size: float) -> bool:
+    return max(abs(a[0] - b[0]), abs(a[1] - b[1])) < size and abs(a[2] - b[2]) <= ALIKE * a[2]
+
+
 def _moved(point: Point, which: int, x: float, omega: float) -> Point:
     return (point[0], x, omega) if which else (x, point[1], omega)
-
-
-def _is_passed(goal: Point, a: Point, b: Point) -> bool:
-    """Tell whether a curve comes by a point between two others."""
-    u, v, x, y = b[0] - a[0], b[1] - a[1], goal[0] - a[0], goal[1] - a[1]
-    along, off = (u * x + v * y) / hypot(u, v), (u * y - v * x) / hypot(u, v)
-    is_alike = abs(a[2] - goal[2]) <= ALIKE * goal[2]
-    return is_alike and 0 < along <= hypot(u, v) and abs(off) < BEND * hypot(u, v)
 
 
 def boundary_curves(
@@ -189,9 +183,7 @@ def boundary_curves(
                         for i, j in product((-1, 0, 1), (-1, 0, 1)):
                             passed.setdefault((floor(u * parts) + i, floor(v * parts) + j), []).append(w)
     # The ends do not belong to the ranges.
-    rims = ({(k, point[k]) for point in curve} for curve in curves for k in (0, 1))
-    on_rim = [len(rim) == 1 and rim <= {(0, 0.0), (0, 1.0), (1, 0.0), (1, 1.0)} for rim in rims]
-    inner = [c for c, *flat in zip(curves, on_rim[::2], on_rim[1::2], strict=True) if not any(flat)]
+    inner = [c for c in curves if not any({p[k] for p in c} in ({0.0}, {1.0}) for k in (0, 1))]
     (u, v), (a, b) = map(float, lows), map(float, sizes)
     return [[(u + a * x, v + b * y, w) for x, y, w in curve] for curve in inner]
 

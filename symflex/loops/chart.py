@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -105,11 +105,7 @@ class StabilityChart:
 
     @cached_property
     def boundaries(self) -> list[list[Point]]:
-        """Curves on which a pole is on the axis: points of both parameters and a frequency [rad/s].
-
-        A pole is proved at each point, with one parameter within 1e-9 of its range; between points lines are
-        drawn.
-        """
+        """Curves on which a pole is on the axis: proved points of both parameters and frequency [rad/s]."""
         return boundary_curves(self.function, self.ranges, self.open)
 
     @cached_property
@@ -126,14 +122,12 @@ class StabilityChart:
         for each, above in pairwise([*sizes, np.full((1, 1), MIXED)]):
             taken = (each != MIXED) & (above.repeat(2, 0).repeat(2, 1)[: len(each), : len(each)] == MIXED)
             for place in np.argwhere(taken).tolist():
-                found.append(ChartBox(self._box(place, len(each)), int(each[tuple(place)])))
+                ends = zip(
+                    place, self.ranges, [(high - low) / len(each) for low, high in self.ranges], strict=True
+                )
+                box = tuple((low + size * i, low + size * (i + 1)) for i, (low, _), size in ends)
+                found.append(ChartBox(box, int(each[tuple(place)])))
         return tuple(found[::-1])
-
-    def _box(self, place: Sequence[int], parts: int) -> Box:
-        ends = zip(place, self.ranges, strict=True)
-        return tuple(
-            (low + (high - low) * i / parts, low + (high - low) * (i + 1) / parts) for i, (low, high) in ends
-        )
 
     def region_at(self, *values: Fraction | float | str) -> ChartRegion | None:
         """Return the region in which a point lies; None if it is undecided, or lies outside of the ranges."""
@@ -268,7 +262,9 @@ def find_chart(
                 free = free.repeat(2, 0).repeat(2, 1)
                 still_open = free.size - int(free.sum())
                 left: list[tuple[OpenBox, tuple[int, int]]] = []
-                for box, place in (child for each in pending for child in _parts(*each, function)):
+                places = (product((2 * x, 2 * x + 1), (2 * y, 2 * y + 1)) for _, (x, y) in pending)
+                parts = (halved(box, function) for box, _ in pending)
+                for box, place in zip(chain.from_iterable(parts), chain.from_iterable(places), strict=True):
                     cells = free[tuple(slice(PARTS * i, PARTS * (i + 1)) for i in place)]
                     if still_open > resolve * free.size and not cells.all():
                         narrowed = function.narrowed(box) if box.is_bounded else box
@@ -285,10 +281,8 @@ def find_chart(
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
     # The ends do not belong to the ranges: there the order may be lower.
-    rims = [{*ends} for ends in ranges]
-    inner = (
-        box for box, _ in pending if not any(rim & {*ends} for rim, ends in zip(rims, box.box, strict=True))
-    )
+    rims = {(k, x) for k, ends in enumerate(ranges) for x in ends}
+    inner = (box for box, _ in pending if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
     ends = {box.radius for box in inner if isinstance(box.radius, str)}
     regions_of, regions = _regions(function, free, ranges, reasons)
     return StabilityChart(
@@ -313,15 +307,6 @@ def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
             reach += spread + abs(slope) * (1 / PARTS + ROUNDING)
         free &= abs(middle) > reach
     return free
-
-
-def _parts(
-    box: OpenBox, place: tuple[int, int], function: CharacteristicFunction
-) -> list[tuple[OpenBox, tuple[int, int]]]:
-    """Return the parts of a box, with their places among boxes of their size."""
-    x, y = place
-    corners = product((2 * x, 2 * x + 1), (2 * y, 2 * y + 1))
-    return list(zip(halved(box, function), corners, strict=True))
 
 
 def halved(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
