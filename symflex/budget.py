@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 GB: Final = 10**9
 LOOK: Final = 0.02
 """Seconds between two looks at the memory, in which a process can take 40 MB: each asks the system."""
-TIME_OVER: Final = Diagnostic("SF506", "the time budget is used up", None, "allow more time, or ask for less")
+LESS: Final = "allow more time (--budget), or ask for less: fewer modes, digits or functions"
+TIME_OVER: Final = Diagnostic("SF506", "the time budget is used up", None, LESS)
 
 
 class Progress(Protocol):
@@ -64,7 +65,7 @@ class Budget:
     Traceback (most recent call last):
     ...
     symflex.errors.exceptions.BudgetError: error[SF506]: the time budget is used up
-      hint: allow more time, or ask for less
+      hint: allow more time (--budget), or ask for less: fewer modes, digits or functions
 
     Numbers of bytes are those of the whole process, Python and its libraries included:
 

@@ -197,7 +197,8 @@ def input_shaper(
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
     if modes < 1 or len(ringing) < modes:
-        message = f"{bound.name} has {counted(len(ringing), 'mode')} that oscillate, not {modes}"
+        few = f"only {counted(len(ringing), 'oscillatory mode')}" if ringing else "no oscillatory mode"
+        message = f"{bound.name} has {few}, and --modes {modes} asks for {modes}"
         raise UsageError(Diagnostic("SF902", message))
     chosen = tuple(ringing[:modes])
     if not all(root.certified for root in chosen):

@@ -45,6 +45,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "schema": ("library", "Write the JSON Schema of specifications, for editors."),
 }
 """The module of each, in which its function has its name, and what it does."""
+GROUPS = {
+    "Begin": "new examples elements units schema",
+    "Model": "check derive draw",
+    "Analyse": "roots rational respond shape sweep stability peak colocation",
+    "Show and hand on": "plot live export report",
+    "Papers and measurements": "audit fit measure",
+}
+"""How the help lists them."""
 
 
 MEANT = {
@@ -83,8 +91,9 @@ class LazyGroup(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         del ctx
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+        for title, names in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name, COMMANDS[name][1]) for name in names.split()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -112,7 +121,8 @@ class LazyGroup(click.Group):
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Exit codes: 0 ok, 2 usage, 3 invalid specification or data, 4 not certified, 5 budget exceeded.",
+    epilog="Exit codes: 0 ok, 1 a bug in symflex, 2 usage, 3 invalid specification or data, 4 not certified, "
+    "5 budget exceeded.",
 )
 @click.version_option(package_name="symflex", prog_name="symflex")
 def group() -> None:

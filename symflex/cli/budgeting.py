@@ -113,7 +113,7 @@ def budgeted(command: Callable[..., int]) -> Callable[..., int]:
         "--budget",
         type=Seconds(),
         metavar="SECONDS",
-        help="Stop after this time and show what was proved until then.",
+        help="Stop with an error after this time; roots, stability --over, sweep -o and fit keep what they found.",
     )
     return time(memory(run))
 

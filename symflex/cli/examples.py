@@ -61,13 +61,9 @@ def examples(context: click.Context, *, as_json: bool) -> int:
 
 
 def _line(name: str, path: Path, width: int) -> str:
-    """Return a line of the list; a long title ends at its colon, or where the line does."""
+    """Return a line of the list."""
     head = f"{name.ljust(width + 2)}  " if name in FOLDERS else f"  {path.stem.ljust(width)}  "
-    title, room = title_of(name, path), terminal_width() - len(head)
-    before = title.partition(": ")[0]
-    return head + (
-        before if len(title) > room >= len(before) else textwrap.shorten(title, room, placeholder=" ...")
-    )
+    return head + textwrap.shorten(title_of(name, path), terminal_width() - len(head), placeholder=" ...")
 
 
 @examples.command("copy")

@@ -314,7 +314,9 @@ def _checked_unit(text: str) -> Unit:
         return parse_unit(Text.alone("<unit>", text))
     except SpecError as problem:
         (wrong, *_) = problem.diagnostics
-        raise UsageError(Diagnostic("SF902", wrong.message, None, wrong.hint or "symflex units")) from None
+        raise UsageError(
+            Diagnostic("SF902", wrong.message, None, wrong.hint or "'symflex units' lists them")
+        ) from None
 
 
 def _unit_json(unit: Unit) -> dict[str, object]:

@@ -111,7 +111,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             raise UsageError(Diagnostic("SF902", message))
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn == "locus" and not gain:
-        message = "a locus needs a loop"
+        message = "a locus needs the gain of a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
     title = figure.title or None if figure else None
     if gain:

@@ -45,7 +45,7 @@ wheel disc disk flywheel rotor pulley_inertia | inertia
 bar link rigid_bar rigid_beam rigid_arm | rigid_link | with rigid_body for its mass
 pendulum inverted_pendulum pole | rigid_body | at a pin; gravity is a torsion_spring of m*g*l, negative
   if it is inverted
-damper dashpot shock_absorber viscous_friction | damper, rotary_damper
+damper dashpot shock_absorber friction viscous_friction | damper, rotary_damper
 tyre tire mount isolator bearing contact | spring | with a damper beside it
 torsion_damper torsional_damper rotational_damper angular_damper | rotary_damper
 coupling joint_stiffness harmonic_drive flexspline | torsion_spring

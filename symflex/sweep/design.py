@@ -252,7 +252,7 @@ def read_design(
     ['1', '10', '100']
     """
     if not texts:
-        raise UsageError(Diagnostic("SF902", "nothing is swept", None, f"say what: {FORMS}"))
+        raise UsageError(Diagnostic("SF902", "no parameter to sweep", None, f"add --over: {FORMS}"))
     return _design([_read(parameters, text) for text in texts], draws, seed)
 
 
@@ -282,7 +282,7 @@ def design_of(
             raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
         read.append(Axis(name, exact))
     if not read:
-        raise UsageError(Diagnostic("SF902", "nothing is swept"))
+        raise UsageError(Diagnostic("SF902", "no parameter to sweep"))
     return _design(read, draws, seed)
 
 

@@ -97,7 +97,7 @@ def values_for(
 def _without_value(missing: Sequence[ModelParameter]) -> Diagnostic:
     """Return one diagnostic for all parameters without a value: a symbolic model may have hundreds."""
     if len(missing) == 1:
-        hint = "give it a value here, or to bind() in Python"
+        hint = "give it a value here or with --set; in Python, to bind()"
         return Diagnostic("SF229", f"parameter '{missing[0].name}' has no value", missing[0].span, hint)
     shown = ", ".join(p.name for p in missing[:NAMES_SHOWN])
     more = f" and {len(missing) - NAMES_SHOWN} more" if len(missing) > NAMES_SHOWN else ""

@@ -75,7 +75,8 @@ def blocks() -> str:
 def things() -> str:
     """Return what engineers call things, and what these are here."""
     rows = [
-        (", ".join(w.replace("_", " ") for w in t.words), f"`{t.use}`" * bool(t.use), t.how) for t in THINGS
+        (", ".join(w.replace("_", " ") for w in t.words), f"`{t.use}`" * bool(t.use), _escaped(t.how))
+        for t in THINGS
     ]
     return _table(rows, ("you have", "write", "how"))
 

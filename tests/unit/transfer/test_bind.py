@@ -183,7 +183,7 @@ def test_a_very_long_unknown_name_is_shortened():
 def test_one_missing_value_is_told_where_its_parameter_stands():
     found = diagnostic(ModelError, "SF229", text=TWO_MASSES.replace('m = "2 kg"', "m = {}"))
     assert found.message == "parameter 'm' has no value"
-    assert found.hint == "give it a value here, or to bind() in Python"
+    assert found.hint == "give it a value here or with --set; in Python, to bind()"
     assert found.span.line == 3
 
 
