@@ -113,7 +113,7 @@ def budgeted(command: Callable[..., int]) -> Callable[..., int]:
         "--budget",
         type=Seconds(),
         metavar="SECONDS",
-        help="Stop with an error after this time; roots, stability --over, sweep -o and fit keep what they found.",
+        help="Stop with an error after this time; roots, sweep -o, fit and charts keep what they found.",
     )
     return time(memory(run))
 

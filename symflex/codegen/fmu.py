@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import io
 import platform
+import re
 import shutil
 import subprocess
 import tempfile
@@ -45,7 +46,10 @@ def fmu(file: StepFile) -> Export:
     """Return the unit; that no compiler was found is a warning."""
     name = identifiers({"": file.stem or "model"}, {*KEYWORDS, *RESERVED})[""]
     source = _source(file)
-    token = sha256(source.encode()).hexdigest()[:32]
+    statements = re.sub(
+        r"/\*.*?\*/", "", source, flags=re.DOTALL
+    )  # what the prose of a model does not change
+    token = sha256(statements.encode()).hexdigest()[:32]
     source = f'#define TOKEN "{token}"\n{source}'
     built = (
         '<?xml version="1.0" encoding="UTF-8"?>\n<fmiBuildDescription fmiVersion="3.0">\n'

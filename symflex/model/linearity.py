@@ -48,7 +48,8 @@ NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
 OPERATORS = frozenset("d der ddt diff dot deriv derivative velocity int integral integrate".split())
-LINEARISE = "write it in [equations], and the values at rest in [operating_point]: symflex makes it linear"
+LINEARISE = "linearise about an operating point, so that only one factor varies in time"
+AT_REST = "write it in [equations], and the values at rest in [operating_point]: symflex makes it linear"
 RATIO = "a quotient of two is a transfer function: make the denominator an input, and the numerator an output"
 
 
@@ -108,6 +109,11 @@ class _Degrees:
     constant: bool
     problems: list[Diagnostic] = field(default_factory=list)
 
+    @property
+    def linearise(self) -> str:
+        """What to do with a term that is not linear: fields have no operating point."""
+        return LINEARISE if self.scope.inside or self.scope.unknowns else AT_REST
+
     def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         self.problems.append(Diagnostic(code, message, span, hint))
 
@@ -125,13 +131,14 @@ class _Degrees:
                 degrees = [self.of(factor) for factor in factors]
                 if degrees.count("linear") > 1:
                     message = "a product of two quantities that vary in time is not linear"
-                    self.note("SF222", message, expression.span, LINEARISE)
+                    self.note("SF222", message, expression.span, self.linearise)
                 return _strongest(degrees)
             case Quotient(numerator, denominator):
                 top, bottom = self.of(numerator), self.of(denominator)
                 if bottom == "linear":
                     message = "division by a quantity that varies in time is not linear"
-                    self.note("SF222", message, denominator.span, RATIO if top == "linear" else LINEARISE)
+                    hint = RATIO if top == "linear" else self.linearise
+                    self.note("SF222", message, denominator.span, hint)
                 if is_number(denominator, 0):
                     self.note("SF224", "division by zero", denominator.span)
                 return _strongest([top, bottom])
@@ -185,7 +192,7 @@ class _Degrees:
             self.note("SF103", message, exponent.span, hint)
         if base == "linear" and value != 1:
             message = "a power of a quantity that varies in time is not linear"
-            self.note("SF222", message, power.span, LINEARISE)
+            self.note("SF222", message, power.span, self.linearise)
         return base
 
     def _call(self, call: Call) -> Degree:
@@ -207,7 +214,7 @@ class _Degrees:
         inner = self.of(call.argument)
         if inner == "linear":
             message = f"{call.name} of a quantity that varies in time is not linear"
-            self.note("SF222", message, call.span, LINEARISE)
+            self.note("SF222", message, call.span, self.linearise)
             return "unknown"
         if names_among(call.argument, (LAPLACE,)):
             message = f"{call.name} of an expression in s is not available yet"
@@ -291,7 +298,8 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
         hint = f"{IN_TIME}, and an integral x/s"
         return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)
     if call.name.lower() in NONLINEAR:
-        return Diagnostic("SF222", f"{call.name} is not linear", call.span, LINEARISE)
+        hint = LINEARISE if scope.unknowns else AT_REST
+        return Diagnostic("SF222", f"{call.name} is not linear", call.span, hint)
     hint = nearest(call.name, [*FUNCTIONS, *scope.unknowns]) or "functions: " + ", ".join(FUNCTIONS)
     hint += "; unknowns of fields: " + ", ".join(scope.unknowns) if scope.unknowns else ""
     return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)

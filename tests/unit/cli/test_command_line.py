@@ -109,7 +109,7 @@ def test_a_command_used_wrongly_ends_with_code_2(shell):
 
 def test_without_a_command_the_help_is_shown(shell):
     done = shell()
-    assert "Commands:" in done.out + done.err
+    assert "Analyse:" in done.out + done.err
 
 
 def test_every_command_has_help_in_80_columns(shell):

@@ -206,7 +206,11 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
             0,
             "wrote",
         ),
-        (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 mode that oscillate, not 7"),
+        (
+            ["--until", "1", "--shaped", "zv", "--modes", "7"],
+            2,
+            "has only 1 oscillatory mode, and --modes 7 asks for 7",
+        ),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
         (["--to", "odd.csv"], 2, "the times have no usable common step"),
         (["--to", "same.csv"], 3, "same.csv:4:1: error[SF604]: times do not increase"),
