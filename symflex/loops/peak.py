@@ -42,11 +42,11 @@ if TYPE_CHECKING:
     from symflex.roots import PolynomialInS, Root
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
-    Piece = tuple[arb, LoopValue, LoopValue]  # a place [rad/s], and the values around and in its middle
+    Piece = tuple[float, arb, LoopValue, LoopValue]  # magnitude, place, values around and in the middle
 
-BITS, SPARE_DIGITS = 160, 20
-"""Of pieces, which are halved some eighty times at most; of frequencies, beyond those of magnitudes."""
-SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-24, 60_000
+BITS, MOST_DIGITS, SPARE_DIGITS = 160, 30, 20
+"""Of pieces, which are halved some hundred times at most; of frequencies, beyond those of magnitudes."""
+SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
 """Relative widths at which a pole is looked for, and a search given up, as with so many pieces."""
 BELOW, SAME, FURTHER = 1e9, 1e-7, 60
 """The highest frequency over the first if 0 stays open; distance of places shown as one; steps far out."""
@@ -145,8 +145,8 @@ class LoopPeaks:
         alpha, least, most, phase = (figure(x, 6) if x.is_finite() else "any" for x in self.disk.values())
         peaks = (self.sensitivity, self.complementary_sensitivity)
         rows = [(f"largest |{x.tf}|", figure(x.magnitude, 6), x.place) for x in peaks]
-        allowed = ("  allows", f"x {least} to {most}", f"or {phase} deg")
-        return [*rows, ("disk margin", alpha, self.balanced.place), allowed]
+        rows.append(("disk margin", alpha, self.balanced.place))
+        return [*rows, ("  allows", f"x {least} to {most}", f"or {phase} deg")]
 
 
 def loop_peaks(loop: Loop, gain: Fraction) -> LoopPeaks:
@@ -207,8 +207,8 @@ def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
     with precision(max([bits_for_digits(asked.digits), *(2 * omega.bits() for omega in flat)]) + BITS):
         ends = [arb(0)] if band is None else [2 * arb.pi() * ball(end) for end in (band.low, band.high)]
         num, den = (acb_poly(f.enclosure()) for f in (above, below))
-        where = (*ends, *(x for x in flat if x > 0))
-        sizes = [(abs(num(acb(0, x)) / den(acb(0, x))), [x]) for x in where]
+        ends += [omega for omega in flat if omega > 0]
+        sizes = [(abs(num(acb(0, x)) / den(acb(0, x))), [x]) for x in ends]
         if band is None and not degree:
             sizes.append((abs(num[above.degree] / den[below.degree]), []))
         least = max((size.lower() for size, _ in sizes), key=float)
@@ -240,15 +240,16 @@ class _Pieces:
     """The search for the peak of a quotient A/B with kernels."""
 
     def __init__(self, bound: BoundTransferFunction, function: LoopFunction, asked: Peak) -> None:
-        self.bound, self.function, self.asked, self.count = bound, function, asked, 0
+        self.bound, self.function, self.asked = bound, function, asked
+        self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
         self.best, self.most = arb(0), arb(0)  # a magnitude that is reached; what bounds those far out
         self.near: list[Piece] = []  # all that may hold the peak
 
     def peak(self) -> Peak:
         """Return the peak."""
         bound, band, reasons, rest = self.bound, self.asked.band, list[str](), arb(0)
-        b = Factored.polynomial(bound.ratio.ring, self.function.b)
-        low, high = 0.0, KernelFunction(bound, b).frequency_of(WAVES)
+        waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, self.function.b))
+        low, high = 0.0, waves.frequency_of(WAVES)
         if band is not None:
             low, high = (bound.in_root(2 * pi * float(end)) for end in (band.low, band.high))
         origin = None if low else self.function.at_origin()
@@ -271,7 +272,7 @@ class _Pieces:
             pole = self._search(low, 2 * low)
         if pole is not None:
             return replace(self.asked, magnitude=arb("inf"), places=(pole,))
-        near = [piece[0] * arb(1, SAME) for piece in self.near if not self._is_below(piece, self.best)]
+        near = [piece[1] * arb(1, SAME) for piece in self.near if not self._is_below(piece, self.best)]
         places = list(joined(sorted(near, key=lambda place: float(place.mid()))))
         if origin is not None and origin.side(self.best, arb(low)) >= 0:
             falls = origin.is_real and origin.excess(rest, arb(low))[1] < 0
@@ -298,17 +299,17 @@ class _Pieces:
 
     def _level(self) -> arb:
         """Return a magnitude above the best by as little as the digits asked for leave open."""
-        return self.most.max((self.best * (1 + arb(10) ** -(self.asked.digits + 1))).upper())
+        return self.most.max((self.best * (1 + arb(10) ** -(self.digits + 1))).upper())
 
     def _search(self, low: float, high: float) -> arb | None:
         """Halve pieces until none may hold a larger magnitude; return a pole on the axis if one is met."""
         first = pieces(low, high, FIRST_RATIO) if low < high else []
         pending = [self._piece(arb(start).union(arb(end))) for start, end in first]
-        pending.sort(key=lambda piece: float((abs(piece[2].a) / abs(piece[2].b)).mid()))
+        pending.sort(key=lambda piece: piece[0])
         while pending:
             spend()
             piece, self.count = pending.pop(), self.count + 1
-            place, around, _ = piece
+            _, place, around, _ = piece
             if self._is_below(piece, self._level()):
                 self.near += [] if self._is_below(piece, self.best) else [piece]
                 continue
@@ -321,16 +322,16 @@ class _Pieces:
             if self.count > MOST_PIECES or width < NARROWEST:
                 message = f"the magnitude near {short_hertz(place)} Hz is not decided"
                 raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))
-            pending += [self._piece(place.mid().union(end)) for end in halves]
+            pending += sorted(map(self._piece, map(place.mid().union, halves)), key=lambda piece: piece[0])
         return None
 
     def _piece(self, place: arb) -> Piece:
         around, centre = self.function.on(place, BITS)
         size = abs(centre.a) / abs(centre.b)
         self.best = size.lower() if size.is_finite() and size > self.best else self.best
-        return place, around, centre
+        return float(size.mid()), place, around, centre
 
     def _is_below(self, piece: Piece, level: arb) -> bool:
-        place, around, centre = piece
+        _, place, around, centre = piece
         value, slope = around.excess(level)
         return bool(value < 0) or bool(centre.excess(level)[0] + slope * (place - place.mid()) < 0)
