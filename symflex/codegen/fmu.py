@@ -49,7 +49,7 @@ def fmu(file: StepFile) -> Export:
     statements = re.sub(
         r"/\*.*?\*/", "", source, flags=re.DOTALL
     )  # what the prose of a model does not change
-    token = sha256(statements.encode()).hexdigest()[:32]
+    token = sha256(statements.encode("utf-8", "replace")).hexdigest()[:32]
     source = f'#define TOKEN "{token}"\n{source}'
     built = (
         '<?xml version="1.0" encoding="UTF-8"?>\n<fmiBuildDescription fmiVersion="3.0">\n'
@@ -58,9 +58,9 @@ def fmu(file: StepFile) -> Export:
         "  </BuildConfiguration>\n</fmiBuildDescription>\n"
     )
     files = {
-        "modelDescription.xml": _description(file, name, token).encode(),
-        "sources/buildDescription.xml": built.encode(),
-        "sources/fmu.c": source.encode(),
+        "modelDescription.xml": _description(file, name, token).encode("utf-8", "replace"),
+        "sources/buildDescription.xml": built.encode("utf-8", "replace"),
+        "sources/fmu.c": source.encode("utf-8", "replace"),
     }
     binary = _compiled(source)
     if binary is not None:
@@ -157,7 +157,7 @@ def _compiled(source: str) -> bytes | None:
     if platform.system() != "Linux" or shutil.which(COMPILER[0]) is None:
         return None
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "fmu.c").write_text(source, encoding="utf-8")
+        Path(folder, "fmu.c").write_bytes(source.encode("utf-8", "replace"))
         command = [*COMPILER, "fmu.c", "-o", "fmu.so", "-lm"]
         made = subprocess.run(command, cwd=folder, capture_output=True, check=False)
         return Path(folder, "fmu.so").read_bytes() if made.returncode == 0 else None
