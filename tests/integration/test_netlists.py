@@ -79,6 +79,16 @@ REFUSED = {
     "V1 in 0 AC 1\nR1 in 0 {__import__('os')}": "SF105",
     "V1 in 0 AC 1\nR1 in 0 {R1[0]}": "SF105",
     "V1 in 0 AC 1\n.explode now": "SF105",
+    "V1 in 0 AC 1\nR1 in 0 1k m=2": "SF105",
+    "V1 in 0 AC 1\nR1 in 0 1k ac=2k": "SF105",
+    "V1 in 0 AC 1\nR1 in 0 10 k": "SF105",
+    "V1 in 0 AC 1\nC1 in 0 1n Rser=1": "SF105",
+    "V1 in 0 AC 1 Rser=50\nR1 in 0 1k": "SF105",
+    "V1 in 0 AC 1\nE1 out 0 fdopamp in 0 cm 1e5\nR1 out cm 1": "SF105",
+    "V1 in 0 AC 1\nE1 out 0 opamp in 0 1e5 3": "SF105",
+    "V1 in 0 AC 1\nX1 in 0 f m=2\n.subckt f a b\nR1 a b 1\n.ends": "SF105",
+    "V1 in 0 AC 1\nX1 in out adj LT1083": "SF105",  # a regulator
+    "V1 in 0 AC 1\nX1 in 0 p m out opamp": "SF105",  # LTspice's has three pins
 }
 
 
@@ -101,6 +111,20 @@ def test_a_diode_is_named_with_its_place_and_its_replacement(tmp_path):
 def test_netlists_are_read_in_the_encodings_of_ltspice(encoding, tmp_path):
     path = as_file(tmp_path, "V1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1µ\n", encoding=encoding)
     assert str(symflex.load(path).transfer_function("V_out/V1")) == "V_out/V1 = 1/(R1*C1*s + 1)"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ".source V1\n.detector V_out\nV1 in 0 V value=0 dc=0\nR1 in out R value={R} noisetemp=0\n"
+        "C1 out 0 C value={C} vinit=0\n.param R=1k C=1u",  # SLiCAP
+        "V1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n.ac lin 1 1k 1k\n.end\nR2 out 0 1k",
+        "V1 in 0 AC 1\nXU1 out o out opamp Aol=1e9\nR1 in o 1k\nC1 o 0 1u\n.print ac v(out)",
+    ],
+)
+def test_other_programs_write_a_low_pass_in_their_ways(body, tmp_path):
+    model = symflex.load(as_file(tmp_path, body))
+    assert complex(model.nested("V_out", "V1").bind()(1000j)) == pytest.approx(0.5 - 0.5j, rel=1e-7)
 
 
 def test_a_file_beside_the_netlist_is_included(tmp_path):

@@ -21,6 +21,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from decimal import Decimal
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, nearest
@@ -47,8 +48,15 @@ UNITS: Final = {"R": "Ohm", "L": "H", "C": "F"}
 TYPES: Final = {"R": ("resistor", "R"), "L": ("inductor", "L"), "C": ("capacitor", "C")}
 IGNORED: Final = frozenset(
     "end ends op tran dc options option temp backanno lib model ic nodeset save control endc noise meas "
-    "measure global width four sens pz disto step csparam func".split()
+    "measure width four sens pz disto step csparam func title fft wave".split()
 )
+HARMLESS: Final = frozenset(
+    "ic tc tc1 tc2 noisy noiseless noisetemp noiseflow dcvar dcvarlot vinit iinit".split()
+)
+"""What may stand behind the value of a component without changing its small signals."""
+PARASITIC: Final = frozenset("rser cpar z0 portnum".split())
+"""What SPICE adds to a source."""
+TAKEN: Final = frozenset(("s", "pi", "j", "ground"))
 REPLACED: Final = {
     "D": ("a diode", "a resistor of U_T/I_D, 26 mV over its current"),
     "Q": ("a bipolar transistor", "G out 0 in 0 {I_C/26m} with a resistor beta*26m/I_C from base to emitter"),
@@ -63,9 +71,8 @@ REPLACED: Final = {
     "B": ("a source of an arbitrary function", "E, F, G or H with its slope at the operating point"),
     "A": ("a digital or special function", "E with its gain"),
 }
-OP_AMPS: Final = re.compile(
-    r"opamp|universalopamp\w*|level\.?\d\w*|ideal_?opamp|lt\d{3,4}\w*|ad\d{3,4}\w*", re.I
-)
+OP_AMPS: Final = {4: re.compile(r"universalopamp\w*|level\.?\d\w*"), 2: re.compile("opamp")}
+"""The op-amps of LTspice, by the place of their output among their nodes."""
 MOST_DEPTH: Final = 20
 MOST_LINES: Final = 20_000
 
@@ -122,7 +129,8 @@ def specification_of(source: Source, read: Callable[[str], Source]) -> str:
     reader.circuit.comments = comments
     body = reader.without_subcircuits(lines, 0)
     scope = _Scope("", {}, {})
-    for line in body:
+    reader.names = {re.sub(r"\W", "_", w) for line in body if (w := line.words[0])[0].upper() in "RLCEFGH"}
+    for line in sorted(body, key=lambda x: not x.words[0].lower().startswith((".param", ".global"))):
         reader.statement(line, scope, 0)
     reader.couple()
     return _written(title, reader.finished(lines))
@@ -147,6 +155,8 @@ def _statements(source: Source) -> tuple[str, list[Card], list[str]]:
         if number > MOST_LINES:
             hint = "leave out what is not needed, or split the circuit"
             raise SpecError(Diagnostic("SF103", f"a netlist has at most {MOST_LINES} lines", None, hint))
+        if re.match(r"\.end\b", text, re.I):
+            break
         if re.match(r"\.control\b", text, re.I):
             in_control = True
         if text.startswith("*") or not text or in_control:
@@ -155,6 +165,8 @@ def _statements(source: Source) -> tuple[str, list[Card], list[str]]:
             in_control = in_control and not re.match(r"\.endc\b", text, re.I)
             continue
         code, _, comment = (*re.split(r"(;|\s\$\s|//)", text, maxsplit=1), "", "")[:3]
+        if code[:1].upper() in "EFGH":  # nodes may be in brackets
+            code = re.sub(r"(?<=\s)\(([^(){}'=]*)\)", r" \1 ", code)
         if code.startswith("+") and statements:
             before, first, _, remark = statements[-1]
             statements[-1] = (f"{before} {code[1:]}", first, start + len(text), remark or comment.strip())
@@ -183,6 +195,9 @@ class _Netlist:
         self.windings: dict[str, tuple[str, tuple[str, str], str]] = {}  # by name: nodes and value
         self.couplings: list[tuple[Card, str, tuple[str, str], str]] = []
         self.sensed: dict[str, str] = {}
+        self.names: set[str] = set()  # which nodes do not take: those of parameters and values
+        self.given: set[str] = set()  # names of .param in small letters
+        self.shared: set[str] = set()  # nodes of .global
 
     def without_subcircuits(self, lines: Sequence[Card], depth: int) -> list[Card]:
         """Return the statements outside of subcircuits, which are kept by name, with included files."""
@@ -262,12 +277,13 @@ class _Netlist:
             return "ground"
         if key in scope.nodes:
             return scope.nodes[key]
-        key = scope.prefix.lower() + key
+        prefix = "" if key in self.shared or key.startswith("$g_") else scope.prefix
+        key = prefix.lower() + key
         if key not in self.circuit.nodes:
-            name = re.sub(r"\W", "_", scope.prefix + word)
+            name = re.sub(r"\W", "_", prefix + word)
             name = f"n{name}" if not name[0].isalpha() else name
-            taken = {*self.circuit.nodes.values(), "s", "pi", "j", "ground"}
-            while name in taken:
+            taken = {*self.circuit.nodes.values(), *TAKEN}
+            while name in taken or name in self.names:
                 name += "_"
             self.circuit.nodes[key] = name
         return self.circuit.nodes[key]
@@ -310,12 +326,15 @@ class _Netlist:
     def _known(self, name: str) -> str:
         """Return a parameter's name as it was first written."""
         every = (*self.circuit.parameters, *self.circuit.definitions)
-        return next((n for n in every if n.lower() == name.lower()), name)
+        low = name.lower()
+        return next((n for n in every if n.lower() in (low, f"{low}_")), "pi" if low == "pi" else name)
 
     def _valued(self, line: Card, name: str, text: str, scope: _Scope, unit: str) -> str:
         """Return a parameter of the component's name for a number, or the expression that is its value."""
         value = self._value(line, text, scope, unit)
         if NUMBER.fullmatch(text) or INNER.fullmatch(text):
+            while name.lower() in self.given:
+                name += "_"
             self.circuit.parameters[name] = value
             return name
         return value
@@ -325,15 +344,27 @@ class _Netlist:
     def _passive(self, line: Card, scope: _Scope, letter: str) -> None:
         kind, key = TYPES[letter]
         name, ends = self._name(line.words[0], scope), self._nodes(line, scope, 1, 2)
-        rest = [w for w in line.words[3:] if w != "="]
-        if rest and rest[0].upper() == letter:
-            rest = rest[1:]
-        if not rest:
-            raise line.refuse(f"'{line.words[0][:40]}' has no value")
-        value = self._valued(line, name, rest[0], scope, UNITS[letter])
+        value = self._valued(line, name, self._last(line, 3, letter), scope, UNITS[letter])
         if letter == "L":
             self.windings[name.lower()] = (name, (ends[0], ends[1]), value)
         self._add(name, f'type = "{kind}", between = {_texts(ends)}, {key} = "{value}"', line)
+
+    def _last(self, line: Card, at: int, letter: str) -> str:
+        """Return the value from this word on, as in ``R=1k``; refuse what would change it."""
+        rest = list(line.words[at:])
+        while rest and (rest[0] == "=" or rest[0].upper() in (letter, "VALUE")):
+            rest = rest[1:]
+        if not rest:
+            raise line.refuse(f"'{line.words[0][:40]}' has no {'value' if letter in 'RLCK' else 'gain'}")
+        has_tc = "tc" in (low := [w.lower() for w in rest])
+        for before, word in pairwise(low):
+            is_read = "=" in (before, word) or (has_tc and NUMBER.fullmatch(word))
+            if not is_read or (word == "=" and before not in HARMLESS):
+                extra = before if word == "=" else word
+                if extra not in HARMLESS:
+                    hint = "write what it stands for as components of their own"
+                    raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", hint)
+        return rest[0]
 
     def _add(self, name: str, table: str, line: Card) -> None:
         if any(n.lower() == name.lower() for n, _, _ in self.circuit.elements):
@@ -343,6 +374,9 @@ class _Netlist:
     def _source(self, line: Card, scope: _Scope, letter: str) -> None:
         name, ends = self._name(line.words[0], scope), self._nodes(line, scope, 1, 2)
         rest = [w.lower() for w in line.words[3:]]
+        if extra := PARASITIC.intersection(rest):
+            message = f"'{min(extra)}' of '{line.words[0][:40]}' is not read"
+            raise line.refuse(message, "write what it stands for as components of their own")
         is_ac = any(w == "ac" or w.startswith("ac(") for w in rest)
         moves = any(re.match(r"(sin|sine|pulse|pwl|exp|sffm|wave\w*)\b", w) for w in rest)
         pair = (ends[0], ends[1])
@@ -362,8 +396,8 @@ class _Netlist:
         if letter == "N" or (low and low[0] == "opamp"):
             at = 3 + (letter != "N")
             plus, minus = self._nodes(line, scope, at, 2)
-            given = words[at + 2 : at + 3]
-            self._op_amp(line, name, (plus, minus), ends, self._value(line, given[0], scope) if given else "")
+            gain = self._last(line, at + 2, letter) if words[at + 2 :] not in ((), ("N",)) else ""
+            self._op_amp(line, name, (plus, minus), ends, self._value(line, gain, scope) if gain else "")
             return
         if any(re.match(r"poly|table|value|laplace|freq|vol|cur|i$|v$", w) for w in low):
             hint = "write a constant gain, or its slope at the operating point"
@@ -374,10 +408,8 @@ class _Netlist:
             inputs = self._nodes(line, scope, 3, 2)
         elif rest:
             current, at = self._control(line, scope, rest[0]), 4
-        if len(words) <= at:
-            raise line.refuse(f"'{words[0][:40]}' has no gain")
         unit = {"E": "", "F": "", "G": "A/V", "H": "Ohm"}[letter]
-        gain = self._valued(line, name, words[at], scope, unit)
+        gain = self._valued(line, name, self._last(line, at, letter), scope, unit)
         factor = _grouped(gain)
         back = (ends[1], ends[0])  # a positive current flows from the first node through the source
         match letter:
@@ -400,10 +432,10 @@ class _Netlist:
         self._add(name, f'type = "op_amp", inputs = {_texts(inputs)}, out = "{ends[0]}"{a}{more}', line)
 
     def _coupling(self, line: Card, scope: _Scope) -> None:
-        if len(line.words) != 4:  # noqa: PLR2004
+        if len(line.words) < 4 or line.words[3][:1] in "Ll":  # noqa: PLR2004
             raise line.refuse("a coupling names two inductors and its factor: K1 L1 L2 0.98")
         one, two = (self._name(w, scope) for w in line.words[1:3])
-        factor = self._value(line, line.words[3], scope)
+        factor = self._value(line, self._last(line, 3, "K"), scope)
         self.couplings.append((line, self._name(line.words[0], scope), (one, two), factor))
 
     def couple(self) -> None:
@@ -422,7 +454,11 @@ class _Netlist:
             (first, a, l_1), (second, b, l_2) = (self.windings[p.lower()] for p in pair)
             kept = [e for e in self.circuit.elements if e[0] not in (first, second)]
             self.circuit.elements = kept
-            mutual = f"{_grouped(factor)}*sqrt({_grouped(l_1)}*{_grouped(l_2)})"
+            is_number = [x not in self.circuit.parameters for x in (l_1, l_2)]
+            if any(is_number):  # an expression has no unit
+                self.circuit.parameters["one_H"] = "1 H"
+            both = [_grouped(x) + "*one_H" * bare for x, bare in zip((l_1, l_2), is_number, strict=True)]
+            mutual = f"{_grouped(factor)}*sqrt({'*'.join(both)})"
             table = f'type = "coupled_inductors", terminals = {_texts((*a, *b))}, '
             self._add(name, table + f'L_1 = "{l_1}", L_2 = "{l_2}", M = "{mutual}"', line)
 
@@ -435,7 +471,7 @@ class _Netlist:
         kind = words[-1].lower()
         name = self._name(words[0], scope)
         if kind not in self.subcircuits:
-            if OP_AMPS.fullmatch(kind) and len(words) in (5, 7):
+            if any(len(words) == at + 3 and names.fullmatch(kind) for at, names in OP_AMPS.items()):
                 self._library_op_amp(line, words, name, scope, given)
                 return
             hint = (
@@ -443,6 +479,8 @@ class _Netlist:
             )
             raise line.refuse(f"the subcircuit '{words[-1][:60]}' is not in the netlist", hint)
         head, inner = self.subcircuits[kind]
+        if "m" in given and "m" not in _assigned(list(head.words)):
+            raise line.refuse(f"m copies of '{words[0][:40]}' are not read", "write each of them")
         pins = [
             w for w in _before_assignments(list(head.words))[2:] if w.lower() not in ("params:", "param:")
         ]
@@ -455,6 +493,7 @@ class _Netlist:
             own = scope if key in given else _Scope("", {}, local)
             local[key] = _grouped(self._value(line, text, own))
         inside = _Scope(f"{name}_", nodes, {**scope.parameters, **local})
+        outside = dict(self.subcircuits)
         body = self.without_subcircuits(inner, depth + 1)
         for each in body:
             if each.words[0].lower() in (".param", ".params"):
@@ -464,6 +503,7 @@ class _Netlist:
         for each in body:
             if not each.words[0].lower().startswith(".param"):
                 self.statement(each, inside, depth + 1)
+        self.subcircuits = outside
 
     def _library_op_amp(
         self, line: Card, words: Sequence[str], name: str, scope: _Scope, given: Mapping[str, str]
@@ -486,12 +526,20 @@ class _Netlist:
             for key, text in _assigned(list(line.words)).items():
                 value = self._value(line, text, scope)
                 name = next((w for w in line.words if w.lower() == key), key)
+                name += "_" * (name in TAKEN)
+                self.given.add(name.lower())
+                self.names.add(name)
                 is_number = re.fullmatch(r"[-+.\de]+", value, re.I) is not None
                 (self.circuit.parameters if is_number else self.circuit.definitions)[name] = value
-        elif word == "ac" and len(line.words) > 4:  # noqa: PLR2004
-            ends = [self._value(line, w, scope, "Hz") for w in line.words[3:5]]
-            self.circuit.band = f"band = {_texts(ends)}"
-        elif word in ("print", "plot", "probe", "tf"):
+        elif word == "global":
+            self.shared |= {w.lower() for w in line.words[1:]}
+        elif word == "source":  # SLiCAP
+            self.sensed.setdefault("", line.words[-1])
+        elif word == "ac":
+            ends = [self._value(line, w, scope, "Hz") for w in line.words[3:5] if NUMBER.fullmatch(w)]
+            if len(set(ends)) == 2:  # noqa: PLR2004
+                self.circuit.band = f"band = {_texts(ends)}"
+        elif word in ("print", "plot", "probe", "tf", "detector"):
             asked = line.words[1:] if word != "tf" else line.words[1:2]
             for w in asked:
                 self._output(line, w, scope)
@@ -502,6 +550,7 @@ class _Netlist:
             raise line.refuse(f"'.{word[:40]}' is no directive that is read", hint)
 
     def _output(self, line: Card, word: str, scope: _Scope) -> None:
+        word = re.sub(r"^([VI])_(\w+)$", r"\1(\2)", word)  # as SLiCAP names them
         match = re.fullmatch(r"(v|vm|vdb|vp|i|im)\s*\(([^()]*)\)", word, re.I)
         if match is None:
             return
@@ -599,7 +648,10 @@ def _written(title: str, circuit: Circuit) -> str:
             width = max(len(key) for key, _ in rows)
             lines.extend(["", f"[{name}]", *(f"{key.ljust(width)} = {text}" for key, text in rows)])
 
-    section("parameters", ((n, f'"{v}"' if " " in v else v) for n, v in circuit.parameters.items()))
+    quoted = ((n, f'"{v}"' if " " in v else v) for n, v in circuit.parameters.items())
+    section(
+        "parameters", ((n, f'{{ value = {v}, assume = "real" }}' if "-" in v[:2] else v) for n, v in quoted)
+    )
     section("definitions", ((n, f'"{v}"') for n, v in circuit.definitions.items()))
     section(
         "elements", ((n, f"{{ {t} }}" + (f"  # {_plain(c)}" if c else "")) for n, t, c in circuit.elements)
