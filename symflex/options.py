@@ -248,6 +248,7 @@ class RootsOptions:
         flag_value="",
         help="How roots move with this parameter, or with every parameter if none is named; may be repeated.",
     )
+    spread: Stated | None = option(None, "--spread", **SPREAD)
     strict: bool = option(False, "--strict", help="Also exit with code 4 if part of the region is left out.")
     as_json: bool = option(False, "--json", **JSON)
 

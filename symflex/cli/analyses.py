@@ -18,6 +18,7 @@ from symflex.options import ColocationOptions, RationalOptions, RootsOptions, St
 if TYPE_CHECKING:
     from symflex.analysis.sensitivity import RootDerivative
     from symflex.loops.chart import StabilityChart
+    from symflex.loops.clouds import RootCloud
     from symflex.loops.spread import SpreadStability
     from symflex.loops.stability_map import StabilityMap
 
@@ -38,6 +39,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     damping ratios in letters, the conditions for real and imaginary roots, and frequency equations.
     --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
     per relative change of a parameter. Put it after SPEC: it takes the next word as the name of a parameter.
+    --spread adds rectangles that poles and zeros do not leave for any combination of values off by a share.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots proved so far are shown.
@@ -58,6 +60,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
+    clouds: tuple[RootCloud, ...] = ()
     more: dict[str, tuple[object, str]] = {}  # by key of JSON, the data and the text
     width, is_over = terminal_width(), located.certificate.is_exceeded
     try:
@@ -74,6 +77,11 @@ def roots(spec: Specification, given: RootsOptions) -> int:
             names = () if "" in given.sensitivity else given.sensitivity
             moved = sensitivities(model, bound, located, names, shown)
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved], sensitivity_text(moved, width)
+        if given.spread is not None:
+            from symflex.loops.clouds import clouds_text, root_clouds
+
+            clouds = root_clouds(model, located, given.spread, pair)
+            more["spread"] = [each.to_json_dict() for each in clouds], "\n" + clouds_text(clouds)
         if given.explain:
             from symflex.analysis.explanation import explain_zeros, explanation_text
 
@@ -89,7 +97,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
             say(told)
     if is_over:
         return 5
-    if any(m.status == "undecided" for m in moved):
+    if any(m.status == "undecided" for m in moved) or any(each.count is None for each in clouds):
         return 4
     return 0 if located.certificate.certified and not (given.strict and located.excluded) else 4
 

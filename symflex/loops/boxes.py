@@ -87,6 +87,7 @@ class CharacteristicFunction:
     values: tuple[tuple[str, ExactValue], ...]  # of the others
     # The same with fundamental functions in place of kernels, entire at s = 0 too; None without waves.
     nameless: TransferFunction | None = None
+    chosen: tuple[fmpz_mpoly, ...] | None = None  # factors in place of those of all poles
 
     @classmethod
     def of(cls, model: Model, tf: TransferFunction, names: Sequence[str]) -> CharacteristicFunction:
@@ -100,7 +101,12 @@ class CharacteristicFunction:
     @cached_property
     def factors(self) -> tuple[fmpz_mpoly, ...]:
         """Those that may vanish elsewhere than at s = 0."""
-        return _factors(self.tf)
+        return _factors(self.tf) if self.chosen is None else self.chosen
+
+    def of_roots(self, kind: str) -> CharacteristicFunction:
+        """Return the factors of the poles, or of the zeros, that the transfer function has."""
+        value = self.tf.den if kind == "pole" else self.tf.num
+        return replace(self, chosen=_factors(self.tf, [f for f, e in value.factors if e > 0]), nameless=None)
 
     @cached_property
     def _entire(self) -> tuple[fmpz_mpoly, ...]:
@@ -340,13 +346,15 @@ def _slope(value: Value) -> acb:
     return value[1] if isinstance(value, acb_series) else acb(0)
 
 
-def _factors(tf: TransferFunction) -> tuple[fmpz_mpoly, ...]:
+def _factors(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:
     ring = tf.ratio.ring
     alone = {
         ring.index[LAPLACE],
         *(ring.index[k.generator] for k in tf.kernels.kernels if k.function == "exp"),
     }
-    every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
+    every = given
+    if every is None:
+        every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))
 
 

@@ -100,7 +100,9 @@ def with_values(model: Model, values: Mapping[str, Given] | None) -> Model:
     return replace(model, parameters=own)
 
 
-def characteristic(model: Model, names: Sequence[str]) -> CharacteristicFunction:
+def characteristic(
+    model: Model, names: Sequence[str], pair: tuple[str, str] | None = None
+) -> CharacteristicFunction:
     """Return a model's characteristic function in some parameters; SF801 where it cannot be followed."""
     check_causal(model, "stability over a parameter")
     if is_tapered(model) or model.root is not None:
@@ -109,7 +111,7 @@ def characteristic(model: Model, names: Sequence[str]) -> CharacteristicFunction
         span = pick_gain(model.parameters, names[0]).span
         raise ModelError(Diagnostic("SF801", message, span, _sweep(names[0])))
     prepared = with_numbers(model, names, in_kernels=True)
-    (tf,) = derive_all(prepared, [seen_pair(prepared)])
+    (tf,) = derive_all(prepared, [pair or seen_pair(prepared)])
     return CharacteristicFunction.of(prepared, tf, names)
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from symflex.loops.boxes import Box
     from symflex.loops.chart import Word
     from symflex.model import Model
-    from symflex.options import StabilityOptions
+    from symflex.options import StabilityOptions, Stated
     from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import Given
 
@@ -119,16 +119,23 @@ def stability_spread(
     """
     if given.gain or given.over or given.ranges or given.limits:
         raise UsageError(Diagnostic("SF902", "--spread takes no --gain, --over or --range"))
-    model, share = with_values(model, values), "" if given.spread is None else given.spread
+    share = "" if given.spread is None else given.spread
+    return find_spread(*spread_function(with_values(model, values), share))
+
+
+def spread_function(
+    model: Model, share: Stated, pair: tuple[str, str] | None = None
+) -> tuple[CharacteristicFunction, Box, tuple[str, ...]]:
+    """Return a characteristic function in what is spread and moves poles, with the box, and units."""
     ends = spread_box(model.parameters, None if share == "" else share_of(share, "--spread"))
-    function = characteristic(model, tuple(ends))
-    moving = [p for p in model.parameters if p.name in ends and function.depends_on(p.name)]
+    function = characteristic(model, tuple(ends), pair)
+    moving = [p for p in model.parameters if p.name in ends and (pair or function.depends_on(p.name))]
     if not moving:
         raise ModelError(Diagnostic("SF801", "no pole of the model depends on a parameter with a spread"))
     names = tuple(p.name for p in moving)
     still = tuple((p.name, p.value) for p in model.parameters if p.value and p not in moving)
     function = replace(function, names=names, values=still)
-    return find_spread(function, tuple(ends[n] for n in names), tuple(p.unit for p in moving))
+    return function, tuple(ends[n] for n in names), tuple(p.unit for p in moving)
 
 
 def find_spread(function: CharacteristicFunction, box: Box, units: tuple[str, ...]) -> SpreadStability:

@@ -1,0 +1,185 @@
+"""Rectangles in which poles and zeros lie for every combination of values of parameters.
+
+Input: a model, one of its transfer functions, and the box in which its parameters lie. Output: a
+:class:`RootCloud` for each root that moves, or for roots whose rectangles overlap.
+
+Example: ``s^2 + b s + k``, b = 2, k = 100, off by up to 10 %: two poles, -1.1 to -0.9 + (9.4 to 10.5) j.
+
+The size is taken from slopes at the middle of the box. No root lies on a rectangle's edges for any
+combination, as in :mod:`symflex.loops.spread` on the axis; so as many lie inside as at the middle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import pi
+from typing import TYPE_CHECKING
+
+from symflex.errors import BudgetError
+from symflex.loops.boxes import CharacteristicFunction, OpenBox
+from symflex.loops.spread import halves, middle_of, reach, spread_function
+from symflex.print.text import INDENT, WIDTH, Passage, passages_text
+from symflex.roots.locate import locate
+from symflex.roots.region import Rectangle
+from symflex.roots.root import count_roots
+from symflex.transfer import bind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.loops.boxes import Box
+    from symflex.model import Model
+    from symflex.options import Stated
+    from symflex.roots import PoleZeroMap
+
+    Sides = tuple[float, float, float, float]
+
+LARGER = (1.05, 1.2, 1.5, 2.0, 3.0)
+"""Sizes of rectangles that are tried, times that to first order."""
+MOST_PARTS = 60
+"""Boxes of parameters on one edge after which a rectangle is not proved."""
+PIECE = (Fraction(1), Fraction(2))
+
+
+@dataclass(frozen=True, slots=True)
+class RootCloud:
+    """A rectangle of the s plane that roots do not leave."""
+
+    kind: str  # ``pole`` or ``zero``
+    sides: Sides  # least and largest real and imaginary part [rad/s]; its mirror image holds the conjugates
+    count: int | None  # how many lie in it for every combination; None where that is not proved
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return it as JSON data, with the ranges of natural frequency and damping ratio."""
+        frequency, damping = self.ranges
+        return {
+            "kind": self.kind,
+            "re": list(self.sides[:2]),
+            "im": list(self.sides[2:]),
+            "count": self.count,
+            "omega": frequency,
+            "zeta": damping,
+        }
+
+    @property
+    def ranges(self) -> tuple[list[float], list[float]]:
+        """Least and largest natural frequency [rad/s] and damping ratio in it, rounded outwards."""
+        left, right, low, high = self.sides
+        corners = [complex(x, y) for x in (left, right) for y in (max(low, 0.0), high)]
+        nearest = complex(max(left, min(right, 0.0)), max(low, 0.0))
+        ratios = [-z.real / abs(z) for z in corners] if abs(nearest) else [-1.0, 1.0]
+        wide = 1e-6
+        return [abs(nearest) * (1 - wide), max(map(abs, corners)) * (1 + wide)], [
+            max(min(ratios) - wide, -1.0),
+            min(max(ratios) + wide, 1.0),
+        ]
+
+
+def root_clouds(
+    model: Model, located: PoleZeroMap, share: Stated, pair: tuple[str, str]
+) -> tuple[RootCloud, ...]:
+    """Return where the poles and zeros of a map may lie; those at s = 0 stay there.
+
+    SF804, SF801 as for :func:`symflex.loops.spread.stability_spread`.
+    """
+    function, box, _ = spread_function(model, share, pair)
+    clouds: list[RootCloud] = []
+    for kind, roots in (("pole", located.poles), ("zero", located.zeros)):
+        own = function.of_roots(kind)
+        upper = [complex(r) for r in roots if not r.im < 0 and not r.is_zero]
+        if own.factors:
+            clouds += _clouds(own, box, upper, kind)
+    return tuple(clouds)
+
+
+def _clouds(
+    function: CharacteristicFunction, box: Box, roots: Sequence[complex], kind: str
+) -> list[RootCloud]:
+    sizes = [reach(function, s, box)[0] for s in roots]
+    left = list(zip(roots, sizes, strict=True))
+    clouds: list[RootCloud] = []
+    for larger in LARGER:
+        merged: list[tuple[Sides, list[tuple[complex, complex]]]] = []
+        for s, size in left:
+            sides, own = _sides(s, size, larger), [(s, size)]
+            while touching := [each for each in merged if _overlap(each[0], sides)]:
+                merged = [each for each in merged if each not in touching]
+                sides = _hull([sides, *(each for each, _ in touching)])
+                own += [x for _, each in touching for x in each]
+            merged.append((sides, own))
+        left = []
+        for sides, own in merged:
+            try:
+                count = _count(function, box, sides, kind)
+            except BudgetError:
+                count = None
+            if count is None and larger < LARGER[-1]:
+                left += own
+            else:
+                clouds.append(RootCloud(kind, sides, count))
+    return sorted(clouds, key=lambda each: each.ranges[0])
+
+
+def _sides(s: complex, size: complex, larger: float) -> Sides:
+    least = 1e-6 * abs(s)
+    wide, high = (max(larger * x, least) for x in (size.real, size.imag))
+    low = s.imag - high if s.imag else -max(high, wide)
+    top = s.imag + high if s.imag else -low
+    if low <= 0:
+        low = -top
+    return _rounded((s.real - wide, s.real + wide, low, top))
+
+
+def _rounded(sides: Sequence[float]) -> Sides:
+    left, right, low, high = (float(f"{x:.6g}") for x in sides)
+    return left, right, low, high
+
+
+def _overlap(a: Sides, b: Sides) -> bool:
+    return a[0] <= b[1] and b[0] <= a[1] and a[2] <= b[3] and b[2] <= a[3]
+
+
+def _hull(every: Sequence[Sides]) -> Sides:
+    left, right, low, high = zip(*every, strict=True)
+    return min(left), max(right), -max(high) if min(low) <= 0 else min(low), max(high)
+
+
+def _count(function: CharacteristicFunction, box: Box, sides: Sides, kind: str) -> int | None:
+    """Return how many roots lie in a rectangle for every combination; None where that is not proved."""
+    left, right, low, high = sides
+    base = max(low, 0.0)
+    corners = [complex(right, base), complex(right, high), complex(left, high), complex(left, base)]
+    edges = list(pairwise([*corners, corners[0]]))[: 4 if base else 3]
+    if not all(_is_free(function, box, a, b - a) for a, b in edges):
+        return None
+    bound = bind(function.tf, dict(zip(function.names, middle_of(box), strict=True)))
+    located = locate(bound, Rectangle(*map(Fraction, sides)), 10)
+    hidden = [sum(h.multiplicity for h in each.hidden) for each in (bound, function.tf)]
+    if not located.certificate.certified or hidden[0] > hidden[1]:
+        return None
+    return count_roots(located.poles if kind == "pole" else located.zeros)
+
+
+def _is_free(function: CharacteristicFunction, box: Box, start: complex, way: complex) -> bool:
+    """Tell whether no root lies on an edge for any combination."""
+    pending, done = [OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))], 0
+    while pending and done < MOST_PARTS:
+        each, done = function.narrowed(pending.pop(), path=(start - way, way)), done + 1
+        pending += halves(each, function) if any(each.pieces) else []
+    return not pending
+
+
+def clouds_text(clouds: Sequence[RootCloud]) -> str:
+    """Return the rectangles as tables in 80 columns."""
+    rows: list[tuple[str, ...]] = [
+        ("", "Re s from", "to", "Im s from", "to", "f [Hz] from", "to", "zeta from", "to")
+    ]
+    for each in clouds:
+        (low, high), damping = each.ranges
+        shown = (*each.sides, low / (2 * pi), high / (2 * pi), *damping)
+        several = {None: "not proved", 1: each.kind}.get(each.count, f"{each.count} {each.kind}s")
+        rows.append((several, *(f"{x:.6g}" for x in shown[:4]), *(f"{x:.4g}" for x in shown[4:])))
+    heading = f"{INDENT}rectangles for every combination [rad/s]"
+    return passages_text([Passage([heading], rows)], WIDTH)
