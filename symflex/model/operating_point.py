@@ -69,7 +69,7 @@ if TYPE_CHECKING:
 SOLVE = "solve"
 EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
 SMOOTH = f"write powers with whole exponents, and {', '.join(FUNCTIONS)}, abs of what has a sign"
-TRIALS = 20
+TRIALS = 200
 """Random points, of which three are to be in the domain of all functions."""
 AGREEING = 3
 BITS = 256
@@ -225,7 +225,7 @@ class _AboutRest:
                 message, hint = f"'{name}' is constant and has no derivative in time", None
             self.reader.note("SF210", message, leaf.span, hint)
         for value in self.rest.values.values():
-            for leaf in (n for n in nodes(value) if self.varies(n)):
+            for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
                 message = f"'{_written(leaf)}' is no parameter; values at rest are constant"
                 hint = nearest_name(_written(leaf), list(self.constants))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
@@ -277,12 +277,11 @@ class _AboutRest:
                 continue
             orders = [_order_of_s(f) for f in node.factors]
             moving = [i for i, f in enumerate(node.factors) if any(map(self.varies, nodes(f)))]
-            if not any(orders):
-                continue
-            if len(moving) > 1:
+            has_s = any(Name(LAPLACE) in nodes(f) for i, f in enumerate(node.factors) if i not in moving)
+            if len(moving) > 1 and has_s:
                 message = "s before a product of two quantities that vary can be read in two ways"
                 self.reader.note("SF222", message, node.span, "write x' for the derivative of x")
-            elif moving and isinstance(leaf := node.factors[moving[0]], Name):
+            elif moving and any(orders) and isinstance(leaf := node.factors[moving[0]], Name):
                 others = [f for i, f in enumerate(node.factors) if not orders[i] and i != moving[0]]
                 rewritten[node] = product_of([*others, Derivative(leaf.name, sum(orders), span=leaf.span)])
         for old, new in rewritten.items():
@@ -360,6 +359,9 @@ class _AboutRest:
             wanted.remove(unknown)
             solution = _solved(rest, Name(unknown))
             if solution is not None:
+                if unknown in self.signed and unknown in self.numbers and isinstance(solution, Call):
+                    declared = self._value(self.numbers[unknown], {}, None)
+                    solution = negative(solution) if declared < 0 else solution  # of two roots, the declared
                 self.constants[unknown] = solved[unknown] = solution
                 self.definitions.append(Definition(unknown, solution, "", equation.span))
             elif (value := self._solved_by_value(rest, unknown)) is not None:
@@ -424,8 +426,9 @@ class _AboutRest:
                 defined = self.constants[name]
                 if defined is None and random is None:
                     raise KeyError(name)
+                sign = 1 if random is None or name not in self.signed else random.choice((-1, 1))
                 known[name] = (
-                    arb(random.randrange(1, 1 << 20)) / (1 << 18)
+                    sign * arb(random.randrange(1, 1 << 20)) / (1 << random.randrange(18, 26))
                     if defined is None and random
                     else self._value(lower(defined or number(0)), known, random)
                 )

@@ -72,6 +72,15 @@ EQUATIONS = {
                        {"m": 3, "c": 0.2, "V": 5}),
     "thermistor": ("T", ["C*T' = I^2*R*exp(b/T) - k*(T - A)"], {"T": "T_0", "I": "I_0"}, ["I_0"], "I",
                    {"C": 2, "R": 0.01, "b": 3000, "k": 0.05, "A": 290, "T_0": 350}),
+    "magnet that pulls with a negative current": (
+        "x y", ["m*x'' = m*g - C*i^2/x^2", "y' = x"], {"x": "x_0", "i": "i_0", "y'": "x_0"}, ["i_0"], "i",
+        {"m": 0.05, "g": 9.81, "C": 1e-4, "x_0": 0.01, "i_0": -0.7},
+    ),
+    "a domain that is small": (
+        "x", ["x' = u - sqrt(1 - D^2)*sqrt(1 - E^2)*log(1 - G)*x^2"],
+        {"x": "X", "u": "X^2*log(1 - G)*sqrt((1 - D^2)*(1 - E^2))"}, [], "u",
+        {"D": 0.5, "E": 0.3, "G": 0.2, "X": 2},
+    ),
     "by value": ("theta", ["J*theta'' + k*theta - w*sin(theta) = tau"], {"theta": "q"}, ["q"], "tau",
                  {"J": 0.02, "k": 0.2, "w": 0.6, "q": 2}),
     "bracket": ("v", ["(m*v*cosh(v))' + b*tanh(v) = F"], {"v": "V", "F": "b*tanh(V)"}, [], "F",
@@ -85,7 +94,8 @@ EQUATIONS = {
 
 
 def _text(unknowns, equations, rest, solve, source, values):
-    lines = ["symflex = 1", "[parameters]", *(f"{n} = {v}" for n, v in values.items())]
+    real = {n: f'{{ value = {v}, assume = "real" }}' if v < 0 else v for n, v in values.items()}
+    lines = ["symflex = 1", "[parameters]", *(f"{n} = {v}" for n, v in real.items())]
     lines += ["[inputs]", f"{source} = {{}}", "[outputs]"]
     lines += [f'O_{n} = "{n}"' for n in unknowns.split()]
     written = ", ".join(f'"{e}"' for e in equations)
@@ -271,6 +281,8 @@ REFUSED = {
     "x' = abs(x)*x - u": "SF224",
     "x' = 1/x - u": "SF224",
     "x' = s*x*x - u": "SF222",
+    "x' = x*(s + 1)*x - u": "SF222",
+    "x' = sqrt(b^2) - b + x - u": "SF407",  # b is negative
     "x' = y - u": "SF210",
     "a' = x - u": "SF210",
     "x' = sqrt(x) - u": "SF224",
@@ -280,7 +292,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("equation", REFUSED)
 def test_equations_without_a_linear_one_are_refused(equation):
-    text = _text("x", [equation], {"x": "0"}, [], "u", {"a": 2})
+    text = _text("x", [equation], {"x": "0"}, [], "u", {"a": 2, "b": -1})
     assert refusal(loads, text) == f"SpecError {REFUSED[equation]}"
 
 
