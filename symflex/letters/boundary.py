@@ -130,13 +130,14 @@ def _solved(
         return top / bottom
 
     if delays:
-        (n, n_j), (d, d_j) = (parts(side.expand(), 0, 0) for side in (value.numerator(), value.denominator()))
+        sides = (page.reduced(side.expand()) for side in (value.numerator(), value.denominator()))
+        (n, n_j), (d, d_j) = (parts(side, 0, 0) for side in sides)
         above, below = n * n + n_j * n_j, d * d + d_j * d_j
         if (0, 1, 0) in split:  # the gain is before what is not delayed
             above, below = below, above
         k = page.ring.generator(gain) * below
         return page, [lowest(above, below), lowest(-n * d - n_j * d_j, k), lowest(n_j * d - n * d_j, k)]
-    (moving,) = [f for f, _ in value.factors if page.ring.used_in((f,)) & {*over}]
+    (moving,) = [page.reduced(f) for f, _ in value.factors if page.ring.used_in((f,)) & {*over}]
     if any(m[index[1]] + m[index[2]] > 1 for m in moving.monoms()):
         return None
     (a, a_j), (b, b_j), (c, c_j) = (parts(moving, *key) for key in ((0, 0), (1, 0), (0, 1)))
