@@ -15,8 +15,11 @@ from symflex.errors.diagnostic import nearest
 from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.model import Model
     from symflex.model.model import Figure
+    from symflex.transfer import AnyBoundFunction
 
 SWEEP = "sweep"
 STABILITY = "stability"
@@ -94,6 +97,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     if given.modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=given.modes))
     figure, drawn = _named(model, given.kind)
+    if figure is not None and figure.over:
+        return _plot_over(spec, replace(given, kind=STABILITY, over=figure.over), given.kind)
     path = path or check_place(f"{Path(spec.path).stem}_{given.kind}.pdf", PICTURES)
     width_mm = width_of(given.width)
     font = checked_font(given.font, path)
@@ -101,8 +106,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
         message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
         raise UsageError(Diagnostic("SF902", message))
-    shown, frame = part_shown(drawn, given)
-    shown = shown or (figure.band if figure else None)
+    band, frame = part_shown(drawn, given)
+    shown = band or (figure.band if figure else None)
     if figure and figure.until and frame.x is None:
         frame = replace(frame, x=(0.0, float(figure.until)))
     if given.until is not None:
@@ -111,8 +116,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             raise UsageError(Diagnostic("SF902", message))
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn == "locus" and not gain:
-        message = "a locus needs the gain of a loop"
-        raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
+        hint = "name its gain: --gain K, or gain in [figures]"
+        raise UsageError(Diagnostic("SF902", "a locus needs the gain of a loop", None, hint))
     title = figure.title or None if figure else None
     if gain:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
@@ -134,17 +139,21 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
         bounds = pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
-            for bound in bounds:
-                if bound.is_zero:
-                    note(f"{bound.name} is identically zero and is left out")
-            bounds = tuple(bound for bound in bounds if not bound.is_zero) or bounds
+            bounds = _without_zeros(bounds)
         drawing = draw(drawn, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
 
 
-def _plot_over(spec: Specification, given: PlotOptions) -> int:
+def _without_zeros(bounds: Sequence[AnyBoundFunction]) -> Sequence[AnyBoundFunction]:
+    """Return the functions that are not identically zero, all if none is left, and say which are left out."""
+    for bound in (bound for bound in bounds if bound.is_zero):
+        note(f"{bound.name} is identically zero and is left out")
+    return tuple(bound for bound in bounds if not bound.is_zero) or bounds
+
+
+def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -> int:
     """Draw for which values of one parameter, or of two, SPEC is stable."""
     others = ("tfs", "gain", "band", "xlim", "ylim", "phase", "modes", "until", "record")
     if given.kind != STABILITY or not given.over or any(getattr(given, n) for n in others):
@@ -154,7 +163,7 @@ def _plot_over(spec: Specification, given: PlotOptions) -> int:
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.over import stability_over
 
-    path = check_place(given.output or f"{Path(spec.path).stem}_{STABILITY}.pdf", PICTURES)
+    path = check_place(given.output or f"{Path(spec.path).stem}_{name}.pdf", PICTURES)
     given = replace(given, font=(font := checked_font(given.font, path)))
     save(draw_over(stability_over(spec.load(), given.stability), given), path, font=font)
     note(f"wrote {path}")

@@ -64,7 +64,9 @@ def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
             count = region.verdict.right
             said = f"{count} unstable" if count else word_of(region.verdict)
             at = (float(region.point[0]), float(region.point[1]))
-            axes.text(*at, said, ha="center", va="center", fontsize=7, zorder=4, clip_on=True)
+            # Above its point, at which the star of the declared values may stand.
+            note = axes.annotate(said, at, (0, 5), textcoords="offset points", ha="center", fontsize=7)
+            note.set(zorder=4, clip_on=True)
     a, b = chart.nominal
     if a is not None and b is not None:
         axes.plot([float(a)], [float(b)], "*", color="black", markersize=6, zorder=5)

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from symflex.quantities import Quantity
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
-FIGURE_KEYS = ("kind", "of", "gain", "range", "band", "until", "data", "title", "doc")
-FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
+FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "data", "title", "doc")
+FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "stability", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
 IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
@@ -161,10 +161,11 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         has_data = _has_data(reader, table, kind, chosen, what)
         limits = table.get("band")
         band = _band(reader, limits) if limits else None
+        over = _over(reader, table, kind, entry, [p.name for p in model.parameters])
         until = _until(reader, table, kind, what)
         ends = _range(reader, table, kind, what, next((p for p in model.parameters if p.name == gain), None))
         figures.append(
-            Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, ends)
+            Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, ends, over)
         )
     return tuple(figures)
 
@@ -251,6 +252,24 @@ def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model)
         reader.note("SF207", f"{what} is of kind '{kind}', which has no gain", text.span, hint)
     is_known = _check_among(reader, text, [p.name for p in model.parameters], "parameter")
     return text.value if is_known else ""
+
+
+def _over(
+    reader: Reader, table: TableValue, kind: str, figure: KeyValue, parameters: Sequence[str]
+) -> tuple[str, ...]:
+    """Return the one or two parameters over which a figure shows stability."""
+    entry, example = table.get("over"), 'for instance over = ["K", "T"]'
+    if kind != "stability":
+        if entry is not None:
+            reader.note("SF207", f"a figure of kind '{kind}' has no 'over'", entry.key_span, example)
+        return ()
+    if entry is None:
+        reader.note("SF214", f"figure '{figure.key}' does not say over what", figure.key_span, example)
+        return ()
+    texts = reader.strings(entry, f"over of figure '{figure.key}'") or ()
+    if not 1 <= len(texts) <= 2:  # noqa: PLR2004
+        reader.note("SF208", "stability is drawn over one parameter, or over two", entry.key_span, example)
+    return tuple(t.value for t in texts if _check_among(reader, t, parameters, "parameter"))
 
 
 def _range(

@@ -302,6 +302,7 @@ class Figure:
     band: tuple[Fraction, Fraction] | None = None
     until: Fraction | None = None
     limits: tuple[Fraction, Fraction] | None = None
+    over: tuple[str, ...] = ()  # the parameters of a figure of stability
 
 
 TRANSFORMER_SYMBOLS: Final = ("gears", "belt", "screw", "rack", "lever", "coils", "box")

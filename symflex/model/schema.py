@@ -293,6 +293,7 @@ def _figure() -> Schema:
         "kind": {"enum": list(FIGURE_KINDS), "description": "what is drawn"},
         "of": _said(texts, "transfer functions, OUT/IN"),
         "gain": _said(TEXT, "parameter that is the loop's gain"),
+        "over": _said(texts, "one or two parameters over which stability is drawn"),
         "range": _said(RANGE, "first and last gain of a locus"),
         "band": _said(RANGE, "frequencies shown [Hz]"),
         "until": _said(VALUE, "last time shown [s]"),

@@ -14,10 +14,12 @@ from symflex.analysis.response import SampledResponse
 from symflex.codegen.exporters import EXPORTERS
 from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
-from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_loop, draw_measured
+from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_loop, draw_measured, draw_over
 from symflex.figures.axes import FREE
 from symflex.files.write import free_name
+from symflex.loops.over import stability_over
 from symflex.model import Figure
+from symflex.options import PlotOptions
 from symflex.report.document import (
     Block,
     Cell,
@@ -67,7 +69,7 @@ def figure_section(study: Study) -> ChapterPart | None:
     for figure in (*(asked or _defaults(drawable)), *_steps(study, drawable)):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: PageFigure | SymflexError
-        is_loop = bool(figure.gain) and figure.kind in LOOP_FIGURES
+        is_loop = (bool(figure.gain) and figure.kind in LOOP_FIGURES) or bool(figure.over)
         if not is_loop and figure.kind not in FIGURES:
             drawn = SymflexError(Diagnostic("SF902", f"a figure of kind '{figure.kind}' names a gain"))
         elif is_loop or chosen:
@@ -118,6 +120,10 @@ def _picture(
     if figure.gain and figure.kind in LOOP_FIGURES:
         drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
         caption = f"{LOOP_WORDS[figure.kind]} {figure.gain}."
+    elif figure.over:
+        asked = PlotOptions(figure.kind, over=figure.over)
+        drawn = draw_over(stability_over(study.model, asked.stability), asked)
+        caption = f"Stability over {' and '.join(figure.over)}."
     elif beside is not None:
         drawn = draw_measured(beside.measured, beside.model, beside.unit)
         kind = (

@@ -32,8 +32,11 @@ def test_boundaries_of_textbooks():
     lag = "K(omega) = T*omega*sin(omega*L) - cos(omega*L); "
     lag += "K_i(omega) = omega*(T*omega*cos(omega*L) + sin(omega*L)); K_i = 0"
     integrator = "K(omega) = omega; cos(omega*T) = 0; sin(omega*T) = omega/K; K = 0"
+    wall = "K(omega) = omega*sqrt(m^2*omega^2 + b^2); cos(omega*T) = m*omega^2/K; sin(omega*T) = b*omega/K; "
+    wall += "K = 0"
     for letters, transfer, over, expected in (
         ("K T", "K/s*exp(-s*T)", ("T", "K"), integrator),  # K*T < pi/2
+        ("m b K T", "K/(m*s^2 + b*s)*exp(-s*T)", ("K", "T"), wall),  # a haptic wall
         # Silva, Datta and Bhattacharyya 2005, PI control of a lag with dead time
         ("K K_i T L", "(K + K_i/s)/(T*s + 1)*exp(-s*L)", ("K", "K_i"), lag),
     ):
