@@ -15,8 +15,6 @@ from symflex.errors.diagnostic import nearest
 from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.model import Model
     from symflex.model.model import Figure
     from symflex.transfer import AnyBoundFunction
@@ -146,7 +144,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     return 0
 
 
-def _without_zeros(bounds: Sequence[AnyBoundFunction]) -> Sequence[AnyBoundFunction]:
+def _without_zeros(bounds: tuple[AnyBoundFunction, ...]) -> tuple[AnyBoundFunction, ...]:
     """Return the functions that are not identically zero, all if none is left, and say which are left out."""
     for bound in (bound for bound in bounds if bound.is_zero):
         note(f"{bound.name} is identically zero and is left out")

@@ -300,7 +300,7 @@ def test_a_notebook_shows_stability_as_tables():
     """K/(s (s + 1)(s + 2)) around a loop: the boundary lies at K = 6, by Routh's table."""
     shown = symflex.loads(LOOP).stability("K")._repr_html_()
     assert "<pre>" not in shown
-    assert shown.count("<table>") == 3
+    assert shown.count("<table>") == 4
     assert re.search(r"<td[^>]*>6</td>", shown)
 
 

@@ -92,8 +92,8 @@ def test_a_beam_has_shapers_too():
 def test_what_there_is_not_is_refused():
     for modes, kind, said in (
         (1, "zvdd", "did you mean 'zvd'"),
-        (2, "zv", "has 1 mode that"),
-        (0, "zv", "not 0"),
+        (2, "zv", "has only 1 oscillatory mode"),
+        (0, "zv", "--modes 0"),
     ):
         found = words(input_shaper, rational("1/(s^2 + s/10 + 4)"), modes, kind)
         assert found.startswith("UsageError") and said in found, (modes, kind)
