@@ -35,6 +35,7 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
+from symflex.expressions import nodes as walk
 from symflex.expressions.derivative import derivative, rate, without_brackets
 from symflex.library.elements import ELEMENTS
 from symflex.model.declarations import in_order
@@ -109,6 +110,14 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
     held = [sum_of([e.left, negative(e.right)]) for e in equations]
     multipliers = [f"lambda_{k}" for k in range(1, len(held) + 1)]
     kinetic, potential, dissipation = (without_brackets(e, varies) for e in (kinetic, potential, dissipation))
+    parts = zip((kinetic, potential, dissipation, *held), (1, 0, 1) + (0,) * len(held), strict=True)
+    for node, most in ((n, most) for part, most in parts for n in walk(part)):
+        if node == Name(LAPLACE) or (isinstance(node, Derivative) and node.order > most):
+            message = f"'{format_expression(node)}' has no place in this part of {what}"
+            hint = "kinetic and dissipation have first rates, x'; potential and constraints have none"
+            reader.note("SF222", message, node.span or section.span, hint)
+    if reader.problems:
+        raise SpecError(*reader.problems)
     signals = []
     try:
         for text in coordinates:

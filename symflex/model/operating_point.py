@@ -344,6 +344,12 @@ class _AboutRest:
                 hint = nearest(name, self.seen) or EXAMPLE
                 message = f"'{name}' of [operating_point] stands in no equation"
                 self.reader.note("SF210", message, value.span or rest.span, hint)
+            base, order = name.rstrip("'"), name.count("'")
+            lower_rates = {base + "'" * k for k in range(1, order)}
+            if order and not is_number(value, 0) and (Name(base) in self.bare or lower_rates & self.seen):
+                message = f"'{base}' is not at rest, as '{name}' has a value, and equations depend on it"
+                hint = "only what occurs by its rates alone may turn steadily"
+                self.reader.note("SF407", message, value.span or rest.span, hint)
 
     def check_at_rest(self) -> None:
         """Solve what is asked for, and note every equation that does not hold at rest."""

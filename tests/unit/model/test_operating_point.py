@@ -290,10 +290,25 @@ REFUSED = {
 }
 
 
+def test_what_moves_steadily_has_no_place_in_equations_that_depend_on_it():
+    text = _text("x", ["x'' + x'*x = u"], {"x": "1", "x'": "a", "u": "a"}, [], "u", {"a": 2})
+    assert refusal(loads, text) == "SpecError SF407"
+
+
 @pytest.mark.parametrize("equation", REFUSED)
 def test_equations_without_a_linear_one_are_refused(equation):
     text = _text("x", [equation], {"x": "0"}, [], "u", {"a": 2, "b": -1})
     assert refusal(loads, text) == f"SpecError {REFUSED[equation]}"
+
+
+@pytest.mark.parametrize(
+    "part",
+    ["kinetic = \"m*(s*x)^2/2\"", "kinetic = \"m*x''^2/2\"", "potential = \"m*x'\"",
+     "kinetic = \"m*x'^2/2\"\nconstraints = [\"x' = x\"]"],
+)  # fmt: skip
+def test_energies_have_rates_only_where_lagranges_equations_see_them(part):
+    text = 'symflex = 1\nparameters = { m = 1 }\ninputs = { F = {} }\noutputs = { X = "x" }\n[energy]\n'
+    assert refusal(loads, f'{text}coordinates = ["x"]\n{part}\nforces = {{ x = "F" }}') == "SpecError SF222"
 
 
 def test_a_pendulum_may_be_a_point_on_a_circle_whose_rod_pulls():
