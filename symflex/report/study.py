@@ -18,6 +18,7 @@ from symflex.loops import AnyLoop, DynamicColocation, StabilityMap, find_stable_
 from symflex.loops.of_model import characteristic_loop, colocation
 from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import has_loss_factors
+from symflex.model.spec import read
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
@@ -69,7 +70,7 @@ class Study:
         model = pipeline.load(path, allow_outside)
         check_published(model, model.published)
         pipeline.check_solvable(pipeline.assemble_for_checks(with_numbers(model)))
-        return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
+        return Study(path, stem, read(path).text.replace("\r\n", "\n"), model, measured)
 
     @property
     def pairs(self) -> tuple[tuple[str, str], ...]:

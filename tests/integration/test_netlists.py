@@ -10,6 +10,7 @@ import pytest
 
 import symflex
 from symflex.errors import SymflexError
+from symflex.report.study import Study
 from tests.unit.refusals import refusal
 
 NETLISTS = {
@@ -62,6 +63,7 @@ REFUSED = {
     "V1 in 0 AC 1\nS1 in out c 0 sw": "SF105",
     "V1 in 0 AC 1\nB1 out 0 V=V(in)^2": "SF105",
     "V1 in 0 AC 1\nE1 out 0 POLY(1) in 0 0 1": "SF105",
+    "V1 in 0 AC 1\nE1 out 0 in 0 laplace=1/(1+s)": "SF105",
     "V1 in 0 AC 1\nR1 in out": "SF105",
     "V1 in 0 AC 1\nR1 in out ten": "SF210",
     "V1 in 0 AC 1\nR1 in out 1k\nR1 out 0 1k": "SF105",
@@ -152,3 +154,8 @@ def test_broken_netlists_end_in_a_model_or_a_typed_error(seed, tmp_path):
         path = tmp_path / f"{number}.cir"
         path.write_text("".join(text), encoding="utf-8")
         assert refusal(symflex.load, path).split(" ")[0] in ("", "SpecError", "ModelError")
+
+
+def test_a_report_shows_a_netlist_as_a_specification(tmp_path):
+    path = as_file(tmp_path, "V1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n", encoding="utf-16")
+    assert Study.of(path, "circuit").text.startswith("symflex = 1\n")

@@ -129,7 +129,10 @@ def specification_of(source: Source, read: Callable[[str], Source]) -> str:
     reader.circuit.comments = comments
     body = reader.without_subcircuits(lines, 0)
     scope = _Scope("", {}, {})
-    reader.names = {re.sub(r"\W", "_", w) for line in body if (w := line.words[0])[0].upper() in "RLCEFGH"}
+    assigned = [w for x in body if x.words[0].lower() in (".param", ".params") for w in pairwise(x.words)]
+    reader.given = {w.lower(): w + "_" * (w in TAKEN) for w, after in assigned if after == "="}
+    named = {re.sub(r"\W", "_", w) for line in body if (w := line.words[0])[0].upper() in "RLCEFGH"}
+    reader.names = named | set(reader.given.values())
     for line in sorted(body, key=lambda x: not x.words[0].lower().startswith((".param", ".global"))):
         reader.statement(line, scope, 0)
     reader.couple()
@@ -196,7 +199,7 @@ class _Netlist:
         self.couplings: list[tuple[Card, str, tuple[str, str], str]] = []
         self.sensed: dict[str, str] = {}
         self.names: set[str] = set()  # which nodes do not take: those of parameters and values
-        self.given: set[str] = set()  # names of .param in small letters
+        self.given: dict[str, str] = {}  # names of .param, by those in small letters
         self.shared: set[str] = set()  # nodes of .global
 
     def without_subcircuits(self, lines: Sequence[Card], depth: int) -> list[Card]:
@@ -325,9 +328,7 @@ class _Netlist:
 
     def _known(self, name: str) -> str:
         """Return a parameter's name as it was first written."""
-        every = (*self.circuit.parameters, *self.circuit.definitions)
-        low = name.lower()
-        return next((n for n in every if n.lower() in (low, f"{low}_")), "pi" if low == "pi" else name)
+        return self.given.get(name.lower(), "pi" if name.lower() == "pi" else name)
 
     def _valued(self, line: Card, name: str, text: str, scope: _Scope, unit: str) -> str:
         """Return a parameter of the component's name for a number, or the expression that is its value."""
@@ -399,9 +400,14 @@ class _Netlist:
             gain = self._last(line, at + 2, letter) if words[at + 2 :] not in ((), ("N",)) else ""
             self._op_amp(line, name, (plus, minus), ends, self._value(line, gain, scope) if gain else "")
             return
-        if any(re.match(r"poly|table|value|laplace|freq|vol|cur|i$|v$", w) for w in low):
+        odd = re.match(r"(poly|table|value|laplace|freq)\b.*", low[0]) if low else None
+        named = [w for w, after in pairwise(low) if after == "=" and w in ("laplace", "vol", "cur", "v", "i")]
+        if odd or named:
             hint = "write a constant gain, or its slope at the operating point"
-            raise line.refuse(f"'{words[0][:40]}' has a function that is not read: {rest[0][:40]}", hint)
+            raise line.refuse(
+                f"'{words[0][:40]}' has a function that is not read: {named[0] if named else low[0][:40]}",
+                hint,
+            )
         inputs: tuple[str, ...] = ()
         current, at = "", 5
         if letter in "EG":
@@ -525,10 +531,7 @@ class _Netlist:
         if word in ("param", "params"):
             for key, text in _assigned(list(line.words)).items():
                 value = self._value(line, text, scope)
-                name = next((w for w in line.words if w.lower() == key), key)
-                name += "_" * (name in TAKEN)
-                self.given.add(name.lower())
-                self.names.add(name)
+                name = self.given.get(key, key)
                 is_number = re.fullmatch(r"[-+.\de]+", value, re.I) is not None
                 (self.circuit.parameters if is_number else self.circuit.definitions)[name] = value
         elif word == "global":
