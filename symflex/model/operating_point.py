@@ -14,6 +14,7 @@ random values, so that a number that is not zero is proved, and an identity miss
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import count
@@ -238,6 +239,9 @@ class _AboutRest:
             self.seen |= {_written(n) for n in leaves} | {n.name for n in leaves if isinstance(n, Derivative)}
             self._infer_rates(equation)
             slopes = [(n, shorter(self._at_rest(derivative(whole, n)))) for n in leaves]
+            self._check_domain(
+                replace_values(whole, {n: self.values.get(_written(n), number(0)) for n in leaves})
+            )
             rest = simplified(self._at_rest(whole), {LAPLACE: number(0)})
             self.left_over.append((shorter(rest), equation))
         except ValueError as error:
@@ -257,6 +261,16 @@ class _AboutRest:
                 left, right = [negative(t) for t in left], [negative(t) for t in right]
             return Equation(sum_of(left), sum_of(right), span=equation.span)
         return None
+
+    def _check_domain(self, whole: Expression) -> None:
+        """Note a logarithm or root that has no value for the values that parameters have."""
+        with precision(BITS):
+            known = {name: self._value(value, {}, None) for name, value in self.numbers.items()}
+            for call in (n for n in nodes(whole) if isinstance(n, Call)):
+                with suppress(KeyError):  # what has no value yet
+                    if not self._value(call, dict(known), None).is_finite():
+                        message = f"'{format_expression(call)}' has no value at the operating point"
+                        self.reader.note("SF224", message, call.span, "correct the values of parameters")
 
     def moving_in(self, equation: Equation) -> list[Expression]:
         """Return the leaves that vary, of the products that the equation has, but for what follows an s."""

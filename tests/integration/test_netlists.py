@@ -82,12 +82,12 @@ REFUSED = {
     "V1 in 0 AC 1\nR1 in 0 {R1[0]}": "SF105",
     "V1 in 0 AC 1\n.explode now": "SF105",
     "V1 in 0 AC 1\nR1 in 0 1k m=2": "SF105",
-    "V1 in 0 AC 1\nR1 in 0 1k ac=2k": "SF105",
     "V1 in 0 AC 1\nR1 in 0 10 k": "SF105",
     "V1 in 0 AC 1\nC1 in 0 1n Rser=1": "SF105",
     "V1 in 0 AC 1 Rser=50\nR1 in 0 1k": "SF105",
     "V1 in 0 AC 1\nE1 out 0 fdopamp in 0 cm 1e5\nR1 out cm 1": "SF105",
-    "V1 in 0 AC 1\nE1 out 0 opamp in 0 1e5 3": "SF105",
+    "V1 in 0 AC 1\nX1 = 1": "SF105",
+    "V1 in 0 AC 1\nR1 in 0 1e9999999999k": "SF105",
     "V1 in 0 AC 1\nX1 in 0 f m=2\n.subckt f a b\nR1 a b 1\n.ends": "SF105",
     "V1 in 0 AC 1\nX1 in out adj LT1083": "SF105",  # a regulator
     "V1 in 0 AC 1\nX1 in 0 p m out opamp": "SF105",  # LTspice's has three pins

@@ -35,7 +35,7 @@ SUFFIXES: Final = {
 }  # fmt: skip
 PREFIXES: Final = {"e9": "G", "e6": "M", "e3": "k", "e-3": "m", "e-6": "u", "e-9": "n", "e-12": "p"}
 NUMBER: Final = re.compile(
-    r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(meg|mil|[tgkmunpfµμ])?([a-zµμ\u2126]*)", re.I
+    r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?)(meg|mil|[tgkmunpfµμ])?([a-zµμ\u2126]*)", re.I
 )
 INNER: Final = re.compile(r"(\d+)(meg|[kmunpr])(\d+)", re.I)
 """Values such as 4k7."""
@@ -474,6 +474,8 @@ class _Netlist:
         words = list(line.words)
         given = _assigned(words)
         words = [w for w in _before_assignments(words) if w.lower() not in ("params:", "param:")]
+        if len(words) < 2:  # noqa: PLR2004
+            raise line.refuse(f"'{line.words[0][:40]}' names no subcircuit")
         kind = words[-1].lower()
         name = self._name(words[0], scope)
         if kind not in self.subcircuits:
