@@ -56,6 +56,7 @@ from symflex.model.units import lower
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
+    from symflex.errors import Span
     from symflex.model.model import OperatingPoint
     from symflex.model.network import Draft
     from symflex.model.reading import Reader
@@ -109,7 +110,11 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
 
     held = [sum_of([e.left, negative(e.right)]) for e in equations]
     multipliers = [f"lambda_{k}" for k in range(1, len(held) + 1)]
-    kinetic, potential, dissipation = (without_brackets(e, varies) for e in (kinetic, potential, dissipation))
+    try:
+        energies = [without_brackets(e, varies) for e in (kinetic, potential, dissipation)]
+        kinetic, potential, dissipation = energies
+    except ValueError as error:
+        raise _no_derivative(error, section.span) from None
     parts = zip((kinetic, potential, dissipation, *held), (1, 0, 1) + (0,) * len(held), strict=True)
     for node, most in ((n, most) for part, most in parts for n in walk(part)):
         if node == Name(LAPLACE) or (isinstance(node, Derivative) and node.order > most):
@@ -135,13 +140,17 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
             right = forces.get(text.value, number(0))
             signals.append(Signal(text.value, Equation(sum_of(terms), right, span=text.span), text.span))
     except ValueError as error:
-        message = f"'{format_expression(error.args[0])}' has no derivative"
-        raise SpecError(Diagnostic("SF222", message, error.args[0].span or section.span, SMOOTH)) from None
+        raise _no_derivative(error, section.span) from None
     signals += [
         Signal(m, replace(e, left=c, right=number(0)), e.span)
         for m, e, c in zip(multipliers, equations, held, strict=True)
     ]
     return tuple(signals)
+
+
+def _no_derivative(error: ValueError, span: Span | None) -> SpecError:
+    message = f"'{format_expression(error.args[0])}' has no derivative"
+    return SpecError(Diagnostic("SF222", message, error.args[0].span or span, SMOOTH))
 
 
 def with_motion(

@@ -51,7 +51,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.expressions.derivative import derivative, simplified, without_brackets
-from symflex.expressions.nodes import Call
+from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
 from symflex.model.model import Definition, OperatingPoint
 from symflex.model.reading import literal_value
@@ -178,7 +178,7 @@ def with_value(parameter: DeclaredParameter, solved: Mapping[str, Fraction]) -> 
 
 
 def _primes(expression: Expression) -> bool:
-    return any(isinstance(n, Derivative) for n in nodes(expression))
+    return any(isinstance(n, Derivative | Differentiated) for n in nodes(expression))
 
 
 class _AboutRest:
@@ -225,6 +225,11 @@ class _AboutRest:
             if name in self.constants:
                 message, hint = f"'{name}' is constant and has no derivative in time", None
             self.reader.note("SF210", message, leaf.span, hint)
+        for call in (n for e in (*equations, *self.rest.values.values()) for n in nodes(e)):
+            if isinstance(call, Call) and call.name not in (*FUNCTIONS, "abs"):
+                message = f"unknown function '{call.name}'"
+                if not any(map(self.varies, nodes(call))):
+                    self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
         for value in self.rest.values.values():
             for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
                 message = f"'{_written(leaf)}' is no parameter; values at rest are constant"

@@ -284,6 +284,7 @@ REFUSED = {
     "x' = x*(s + 1)*x - u": "SF222",
     "x' = sqrt(b^2) - b + x - u": "SF407",  # b is negative
     "x' = y - u": "SF210",
+    "x' = sqr(a) + x - u": "SF210",
     "a' = x - u": "SF210",
     "x' = sqrt(x) - u": "SF224",
     "x' = log(b) - log(b) + log(x + b) - log(b) - u": "SF224",
@@ -301,8 +302,8 @@ def test_equations_without_a_linear_one_are_refused(equation):
 
 @pytest.mark.parametrize(
     "part",
-    ["kinetic = \"m*(s*x)^2/2\"", "kinetic = \"m*x''^2/2\"", "potential = \"m*x'\"",
-     "kinetic = \"m*x'^2/2\"\nconstraints = [\"x' = x\"]"],
+    ["kinetic = \"m*(l*sn(x))'^2/2\"", "kinetic = \"m*(s*x)^2/2\"", "kinetic = \"m*x''^2/2\"",
+     "potential = \"m*x'\"", "kinetic = \"m*x'^2/2\"\nconstraints = [\"x' = x\"]"],
 )  # fmt: skip
 def test_energies_have_rates_only_where_lagranges_equations_see_them(part):
     text = 'symflex = 1\nparameters = { m = 1 }\ninputs = { F = {} }\noutputs = { X = "x" }\n[energy]\n'
@@ -337,3 +338,8 @@ def test_a_coordinate_that_is_a_node_moves_with_what_is_attached_there():
         outputs={"X": "x"},
     )
     assert complex(model.transfer_function("X/F").bind()(2j)) == pytest.approx(1 / (35 - 0.2 * 4))
+
+
+def test_a_bracket_has_a_derivative_without_an_operating_point_too():
+    text = _text("x", ["(m*x)' + 3*x = u"], {}, [], "u", {"m": 2}).partition("[operating_point]")[0]
+    assert str(loads(text).transfer_function("O_x/u")) == "O_x/u = 1/(m*s + 3)"
