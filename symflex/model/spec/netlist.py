@@ -54,8 +54,7 @@ HARMLESS: Final = frozenset(
     "ic tc tc1 tc2 noisy noiseless noisetemp noiseflow dcvar dcvarlot vinit iinit".split()
 )
 """What may stand behind the value of a component without changing its small signals."""
-PARASITIC: Final = frozenset("rser cpar z0 portnum".split())
-"""What SPICE adds to a source."""
+APART: Final = "write what it stands for as components of their own"
 TAKEN: Final = frozenset(("s", "pi", "j", "ground"))
 REPLACED: Final = {
     "D": ("a diode", "a resistor of U_T/I_D, 26 mV over its current"),
@@ -363,8 +362,7 @@ class _Netlist:
             if not is_read or (word == "=" and before not in HARMLESS):
                 extra = before if word == "=" else word
                 if extra not in HARMLESS:
-                    hint = "write what it stands for as components of their own"
-                    raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", hint)
+                    raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", APART)
         return rest[0]
 
     def _add(self, name: str, table: str, line: Card) -> None:
@@ -375,9 +373,8 @@ class _Netlist:
     def _source(self, line: Card, scope: _Scope, letter: str) -> None:
         name, ends = self._name(line.words[0], scope), self._nodes(line, scope, 1, 2)
         rest = [w.lower() for w in line.words[3:]]
-        if extra := PARASITIC.intersection(rest):
-            message = f"'{min(extra)}' of '{line.words[0][:40]}' is not read"
-            raise line.refuse(message, "write what it stands for as components of their own")
+        if extra := {"rser", "cpar", "z0", "portnum"}.intersection(rest):
+            raise line.refuse(f"'{min(extra)}' of '{line.words[0][:40]}' is not read", APART)
         is_ac = any(w == "ac" or w.startswith("ac(") for w in rest)
         moves = any(re.match(r"(sin|sine|pulse|pwl|exp|sffm|wave\w*)\b", w) for w in rest)
         pair = (ends[0], ends[1])
