@@ -43,6 +43,7 @@ IN_EXPRESSION: Final = re.compile(
     r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(meg|mil|[tgkmunpfµ])?\b", re.I
 )
 EXPRESSION: Final = re.compile(r"[\w\s.+\-*/^()µ]*")
+POWER: Final = re.compile(r"\bpow\(\s*([\w.]+)\s*,\s*(\w+)\s*\)", re.I)
 TOKEN: Final = re.compile(r"\{[^}]*\}|'[^']*'|\"[^\"]*\"|\w+\s*\([^()]*\)|[^\s,=()]+|=")
 UNITS: Final = {"R": "Ohm", "L": "H", "C": "F"}
 TYPES: Final = {"R": ("resistor", "R"), "L": ("inductor", "L"), "C": ("capacitor", "C")}
@@ -313,7 +314,7 @@ class _Netlist:
         return _quantity(match[1], (match[2] or "").lower(), unit)
 
     def _expression(self, line: Card, text: str, scope: _Scope) -> str:
-        text = text.replace("**", "^").strip()
+        text = POWER.sub(r"(\1^\2)", text.replace("**", "^").strip())
         if not EXPRESSION.fullmatch(text) or not text:
             hint = "expressions have numbers, parameters, + - * / ^ and functions of one argument"
             raise line.refuse(f"'{text[:60]}' is no expression that can be read", hint)
