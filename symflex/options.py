@@ -74,7 +74,7 @@ SHOWN: Final = {"show_default": True}
 SHAPERS: Final = ("zv", "zvd", "ei")
 SHAPED_MODES: Final = {"least": 1, "most": 20, **SHOWN, "help": "Shape the N lowest modes."}
 MOST_DIGITS: Final = 10_000
-JOINT: Final = {"help": "Has no effect any more: shapers of several modes are convolved."}
+JOINT: Final = {"hidden": True}  # has no effect since shapers of several modes are convolved
 SPREAD: Final = {
     "metavar": "[SHARE]",
     "is_flag": False,
@@ -231,7 +231,11 @@ class RootsOptions:
         None, "--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s]."
     )
     digits: int | None = option(
-        None, "--digits", least=1, most=MOST_DIGITS, help="Correct significant digits.  [default: 15]"
+        None,
+        "--digits",
+        least=1,
+        most=MOST_DIGITS,
+        help="Correct significant digits.  [default: 6; 15 in JSON]",
     )
     explain: bool = option(
         False, "--explain", help="Say which constrained system has the zeros as its poles."
@@ -461,8 +465,10 @@ class ColocationOptions:
 
     tf: str = option("", "--tf", required=True, metavar="OUT/IN", help="Output away from the actuator.")
     reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="Colocated output.")
-    phase: Stated = option("10 deg", "--phase", **SHOWN, help="Largest phase difference.")
-    magnitude: Stated = option("1 dB", "--magnitude", **SHOWN, help="Largest magnitude difference.")
+    phase: Stated = option("10 deg", "--phase", **SHOWN, metavar="ANGLE", help="Largest phase difference.")
+    magnitude: Stated = option(
+        "1 dB", "--magnitude", **SHOWN, metavar="GAIN", help="Largest magnitude difference."
+    )
     band: Ends | None = option(
         None, "--band", **TWO, help="Frequencies to examine.  [default: band of [analysis]]"
     )
@@ -657,7 +663,7 @@ class MeasureOptions:
         None, "--band", type=float, **TWO, help="Frequencies to write [Hz].  [default: band of [analysis]]"
     )
     spacing: float | None = option(
-        None, "--spacing", type=float, help="Spacing of lines [Hz].  [default: HI/800]"
+        None, "--spacing", type=float, metavar="X", help="Spacing of lines [Hz].  [default: HI/800]"
     )
     averages: int = option(40, "--averages", least=1, **SHOWN, help="Number of records to average.")
     noise: float = option(

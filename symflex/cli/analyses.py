@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.budget import entered_budget
-from symflex.cli.command import Specification, command_of, first_pair
+from symflex.cli.command import Command, Specification, command_of, first_pair
 from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 
 _NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
+DIGITS = 15
+"""Digits of roots in JSON, of which a double has as many."""
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
 
@@ -46,7 +48,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.print.roots import roots_text
+    from symflex.print.roots import SHORT_DIGITS, roots_text
     from symflex.roots.region import region_of
 
     chosen = region_of(given, "--")
@@ -54,7 +56,8 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     with entered_budget().at_least(DERIVING).entered():
         model = spec.load()
         pair = first_pair(model, given.tf, "showing")
-        shown = given.digits or model.analysis.digits or 15
+        asked = given.digits or model.analysis.digits
+        shown = asked or DIGITS
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_named=is_explained)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
@@ -93,7 +96,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     if given.as_json:
         emit_json({**located.to_json_dict(), **{key: data for key, (data, _) in more.items()}})
     else:
-        for told in (roots_text(located, shown, width), *(told for _, told in more.values())):
+        for told in (roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())):
             say(told)
     if is_over:
         return 5
@@ -121,7 +124,7 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     answer(given.as_json, lambda: rational_json(approximation), lambda: rational_text(approximation))
 
 
-class Ranged(click.Command):
+class Ranged(Command):
     """A command whose ``--range LO HI`` may begin with the name of a parameter."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

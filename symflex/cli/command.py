@@ -9,12 +9,13 @@ calls the function below ``@command_of("rational", RationalOptions)`` with
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import keep, note, reporting, show
+from symflex.cli.reporting import keep, note, reporting
+from symflex.errors.diagnostic import counted
 from symflex.options import OUTSIDE, option
 
 if TYPE_CHECKING:
@@ -33,12 +34,11 @@ class _WhatIsRead:
     """What every command that reads a specification is asked."""
 
     spec: str = option("", is_path=True)
-    allow_outside: tuple[str, ...] = option((), "--allow-outside", **OUTSIDE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _Setting:
-    """The values that stand in place of declared ones; last in the help."""
+    """The values that stand in place of declared ones, and where else files are read; last in the help."""
 
     settings: tuple[str, ...] = option(
         (),
@@ -47,6 +47,7 @@ class _Setting:
         metavar="NAME=VALUE",
         help="Change a parameter: k='80 kN/m', or a number in SI units; may be repeated.",
     )
+    allow_outside: tuple[str, ...] = option((), "--allow-outside", **OUTSIDE)
 
 
 @dataclass(frozen=True)
@@ -58,16 +59,35 @@ class Specification:
     settings: Mapping[str, str]  # other values of parameters
 
     def load(self) -> Model:
-        """Read the specification, and print its warnings to stderr."""
+        """Read the specification; how many warnings it has is the last that the command prints."""
         from symflex import pipeline
 
         model = pipeline.load(self.path, self.allow_outside, self.settings)
-        show(pipeline.warnings(model))
+        if count := len(pipeline.warnings(model)):
+            last = f"{counted(count, 'warning')}: symflex check {self.path}"
+            click.get_current_context().call_on_close(lambda: note(last))
         return model
 
 
+COMMON: Final = frozenset("--json --set --allow-outside --budget --memory --help".split())
+"""Options of nearly every command."""
+
+
+class Command(click.Command):
+    """A command whose help lists the options of nearly every command last."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options of this command, then the common ones."""
+        for title, is_common in (("Options", False), ("Common options", True)):
+            chosen = (p for p in self.get_params(ctx) if is_common is not COMMON.isdisjoint(p.opts))
+            options = (p for p in chosen if isinstance(p, click.Option))
+            if rows := [row for p in options if (row := p.get_help_record(ctx))]:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
 def command_of(
-    name: str, options: type[T], cls: type[click.Command] = click.Command
+    name: str, options: type[T], cls: type[click.Command] = Command
 ) -> Callable[[Callable[[Specification, T], int | None]], click.Command]:
     """Make a command of a function of a specification and options."""
 
@@ -95,7 +115,7 @@ def bare_command(name: str, options: type[T]) -> Callable[[Callable[[T], int]], 
             return run(options(**given))
 
         called.__doc__ = run.__doc__
-        return click.command(name)(with_parameters(options, budgeted(reporting(called))))
+        return click.command(name, cls=Command)(with_parameters(options, budgeted(reporting(called))))
 
     return made
 
@@ -115,7 +135,9 @@ def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., 
     if "choices" in said:
         said["type"] = click.Choice(said.pop("choices"))
     elif "least" in said:
-        kind = click.FloatRange if said.get("type") is float else click.IntRange
+        is_real = said.get("type") is float
+        kind = click.FloatRange if is_real else click.IntRange
+        said.setdefault("metavar", "X" if is_real else "D" if "--digits" in flags else "N")
         said["type"] = kind(said.pop("least"), said.pop("most", None))
     elif said.pop("is_path", False):
         said["type"] = click.Path()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.command import Specification, command_of
+from symflex.cli.command import Command, Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
@@ -45,10 +45,11 @@ def check(spec: Specification, given: CheckOptions) -> int:
 
     Warnings point to possible typing errors: a node that only one element touches, a name that nothing uses,
     an input that reaches nothing, an element without effect. They also say whether a frequency was read in
-    cycles or in radians where both are possible. All other commands print warnings too.
+    cycles or in radians where both are possible. All other commands end with how many there are.
     """
     from symflex import pipeline
 
+    model = None
     try:
         model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
         equations = pipeline.assemble_for_checks(model)
@@ -56,6 +57,9 @@ def check(spec: Specification, given: CheckOptions) -> int:
         pipeline.check_along(model)
     except SymflexError as error:
         if not given.as_json:
+            if model is not None:
+                found = pipeline.warnings(model)
+                click.get_current_context().call_on_close(lambda: show(found))
             raise
         problems = [diagnostic_json(d) for d in error.diagnostics]
         emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems, "warnings": []})
@@ -130,8 +134,9 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
-    Without --tf, all are printed. A long denominator that several share is printed once, as D. Strings in
-    JSON follow the expression grammar of specifications, with every denominator in full.
+    Without --tf, all are printed. A long denominator that several share is printed once, as D, and so are
+    definitions that mean the same in several. Strings in JSON follow the expression grammar of
+    specifications, with every denominator in full.
 
     --short and --order print formulas that are not exact, and below them what is proved: how much
     coefficients, poles and zeros change, and in which band the magnitude keeps within 1 dB.
@@ -190,8 +195,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     else:
         from symflex.print.text import derive_text
 
-        room = terminal_width()
-        say("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
+        say(derive_text(entries, terminal_width(), is_form_named=given.form is not None))
     return 0
 
 
@@ -217,7 +221,7 @@ def _read_off(spec: Specification, given: DeriveOptions) -> int:
     return 0
 
 
-class ExportCommand(click.Command):
+class ExportCommand(Command):
     """A command whose help lists the targets."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from symflex.cli.command import bare_command
-from symflex.cli.reporting import check_place, say, show
+from symflex.cli.command import Specification, bare_command
+from symflex.cli.reporting import check_place, say
 from symflex.options import LiveOptions
 
 
@@ -28,8 +28,7 @@ def live(given: LiveOptions) -> int:
     with ProgressBar() as bar:
         models = []
         for spec in specs:
-            model = pipeline.load(spec, given.allow_outside)
-            show(pipeline.warnings(model))
+            model = Specification(str(spec), tuple(map(str, given.allow_outside)), {}).load()
             models.append((model, pipeline.pick_pairs(model, given.tfs)))
         page = live_page(models, bar)
     write_atomically(path, page.encode())

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import arb
 
+from symflex.errors.diagnostic import counted
 from symflex.print.text import INDENT, WIDTH, aligned, broken
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
 SHORT_DIGITS: Final = 6
-"""Digits of frequencies and damping ratios in a terminal."""
+"""Digits of roots in a terminal by default, and of frequencies and damping ratios there."""
 _FREQUENCY_BITS: Final = 256
 
 
@@ -217,12 +218,12 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         lines += broken(INDENT + located.verdict.sentence, width)
     if located.verdict.hidden:
         lines += broken(INDENT + located.verdict.hidden_motion, width)
+    lines += broken(INDENT + phase, width) if (phase := _phase_text(located)) else []
     if shown := region_text(located.region):
         if located.verdict.word == "unstable" and not located.unstable:
             shown += "; all known poles in the right half plane"
-        lines += broken(f"{INDENT}shown: {shown}", width)
-    if located.is_default_region:
-        lines.append(f"{INDENT}this is the default: a distributed system has infinitely many poles")
+        default = "; by default, as there are infinitely many" * located.is_default_region
+        lines += broken(f"{INDENT}shown: {shown}{default}", width)
     for part in located.excluded:
         im = f" +- {part.im:g} j" if part.im else ""
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
@@ -244,6 +245,17 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     if not all(root.certified for root in everything):
         lines.append("  ? marks roots that could not be told apart, enclosed as one")
     return "\n".join(lines)
+
+
+def _phase_text(located: PoleZeroMap) -> str:
+    """Say whether zeros lie in the right half plane; of endlessly many zeros those shown are known."""
+    if count := sum(zero.multiplicity for zero in located.zeros if zero.re > 0):
+        return f"not minimum phase: {counted(count, 'zero')} in the right half-plane"
+    if not located.certificate.certified or not all(z.re < 0 or z.on_imaginary_axis for z in located.zeros):
+        return ""
+    if located.is_infinite or region_text(located.region):
+        return "no zero shown is in the right half-plane" if located.zeros else ""
+    return "minimum phase: no zero is in the right half-plane"
 
 
 def region_text(region: Region) -> str:

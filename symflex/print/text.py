@@ -44,31 +44,57 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     return "\n".join(lines)
 
 
-def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
-    """Return a transfer function as a fraction, with its definitions and hidden modes.
+def derive_text(
+    entries: Iterable[tuple[AnyTransferFunction, PrintedForm]],
+    width: int = WIDTH,
+    *,
+    is_form_named: bool = False,
+) -> str:
+    """Return transfer functions as fractions, with their definitions and hidden modes.
 
-    Sums longer than ``width`` columns are broken before plus and minus.
+    Sums longer than ``width`` columns are broken before plus and minus. A definition that stands above, in
+    the same names, is not repeated.
     """
+    above: dict[str, list[Expression]] = {}
+    lines: list[str] = []
+    for tf, form in entries:
+        name = f", {form.name} form" if is_form_named else ""
+        lines += _fraction_lines(tf, form, name, width, above)
+        lines += [""] * bool(lines[-1])
+    return "\n".join(lines).rstrip()
+
+
+def _fraction_lines(
+    tf: AnyTransferFunction, form: PrintedForm, kind: str, width: int, above: dict[str, list[Expression]]
+) -> list[str]:
+    """Return the lines of one transfer function, and add its definitions to those ``above``."""
     quantity = tf.quantity + (f" [{tf.unit}]" if tf.unit else "")
     verdict = f"; {form.stability.headline}" if form.stability else ""
-    lines = [f"{_left_side(tf, form)}   {quantity}, {form.name} form{verdict}", ""]
+    lines = [f"{_left_side(tf, form)}   {quantity}{kind}{verdict}", ""]
     num, den = wrapped(form.num, width - 2), wrapped(form.den, width - 2)
     if is_number(form.den, 1):
         lines += [INDENT + line for line in num]
     else:
         bar = max(map(len, (*num, *den)))
-        above, below = ([e[0].center(bar).rstrip()] if len(e) == 1 else e for e in (num, den))
-        lines += [INDENT + line for line in (*above, "-" * bar, *below)]
+        over, below = ([e[0].center(bar).rstrip()] if len(e) == 1 else e for e in (num, den))
+        lines += [INDENT + line for line in (*over, "-" * bar, *below)]
     lines.append("")
     form, hidden = with_hidden(tf, form)
-    for word, (name, expression) in zip(chain(["where"], repeat("     ")), form.where, strict=False):
-        lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
-    laws = (line for law in form.laws for line in law_lines(*law))
-    for word, line in zip(chain([] if form.where else ["where"], repeat("     ")), laws, strict=False):
+    repeated = _repeated(form, above)
+    words = chain(["where"], repeat("     "))
+    for line in wrap(", ".join(repeated) + " as above" if repeated else "", width - 2 * len(INDENT) - 4):
+        lines.append(f"{INDENT}{next(words)} {line}")
+    for (name, expression), word in zip(form.where, words, strict=False):
+        if name not in repeated:
+            lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
+    laws = (line for law in form.laws if law[0] not in repeated for line in law_lines(*law))
+    for line, word in zip(laws, words, strict=False):
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
-    for word, (left, expression) in zip(chain(["so   "], repeat("     ")), form.closed, strict=False):
-        lines += hanging(f"{INDENT}{word} {format_expression(left)} = ", expression, width)
+    closed = ((format_expression(left), expression) for left, expression in form.closed)
+    own = [each for each in closed if each[0] not in repeated]
+    for word, (left, expression) in zip(chain(["so   "], repeat("     ")), own, strict=False):
+        lines += hanging(f"{INDENT}{word} {left} = ", expression, width)
     if form.where or form.laws:
         lines.append("")
     for factor, multiplicity in hidden:
@@ -80,7 +106,20 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines.append("")
     for line in form.approximation.said if form.approximation else ():
         lines += wrap(line, width, initial_indent=INDENT, subsequent_indent=INDENT * 2)
-    return "\n".join(lines)
+    return lines
+
+
+def _repeated(form: PrintedForm, above: dict[str, list[Expression]]) -> list[str]:
+    """Return the names that mean what they mean above, as everything does that they are made of."""
+    meant: dict[str, list[Expression]] = {}
+    closed = ((format_expression(left), expression) for left, expression in form.closed)
+    for name, expression in chain[tuple[str, Expression]](form.where, form.laws, closed):
+        meant.setdefault(name, []).append(expression)
+    new = {name for name, lines in meant.items() if above.get(name) != lines}
+    while more := {n for n in meant.keys() - new if any(x.name in new for e in meant[n] for x in names(e))}:
+        new |= more
+    above |= meant
+    return [name for name in meant if name not in new]
 
 
 def _left_side(tf: AnyTransferFunction, form: PrintedForm) -> str:

@@ -127,14 +127,17 @@ def _block(name: str, block: Block) -> str:
 def _command(name: str, command: click.Command, parent: click.Context) -> str:
     context = click.Context(command, info_name=name, parent=parent)
     usage = command.get_usage(context).removeprefix("Usage: ")
-    formatter = context.make_formatter()
+    formatter, epilog = context.make_formatter(), context.make_formatter()
     command.format_options(context, formatter)
-    command.format_epilog(context, formatter)
-    options = textwrap.dedent(formatter.getvalue().partition("\n")[2])
+    command.format_epilog(context, epilog)
+    own, _, common = formatter.getvalue().partition("Common options:\n")
+    options = textwrap.dedent(own.removeprefix("Options:\n")) + epilog.getvalue()
+    names = ", ".join(f"`{name}`" for name in re.findall(r"^  (?:-\w, )?(--[\w-]+)", common, re.MULTILINE))
     about = inspect.cleandoc(command.help or "").replace("\b\n", "")
     inside = command.commands.items() if isinstance(command, click.Group) else ()
     parts = [_command(f"{name} {inner}", one, parent) for inner, one in inside]
-    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options), *parts])
+    shared = [f"[Common options](#common-options): {names}."] if names else []
+    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options), *shared, *parts])
 
 
 def _text(content: str) -> str:

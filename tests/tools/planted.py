@@ -141,7 +141,7 @@ def printed(path: Path) -> Prints:
                 found[f"{n} at {s}"] = error.diagnostics[0].code
         for form in (None, *FORMS):
             try:
-                found[f"{n} as {form}"] = derive_text(tf, print_form(tf, form), 80)
+                found[f"{n} as {form}"] = derive_text([(tf, print_form(tf, form))], 80)
             except UsageError:  # the function has no such form
                 continue
     return found

@@ -15,7 +15,7 @@ def test_text_shows_a_fraction_under_its_name_and_unit(shell):
     done = shell("derive", "x.toml", "--tf", "X/F")
     assert (done.code, done.err) == (0, "")
     assert [line.strip() for line in done.out.splitlines()] == [
-        "X/F   receptance [m/N], definitions form",
+        "X/F   receptance [m/N]",
         "",
         "1",
         "---------",

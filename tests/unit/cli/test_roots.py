@@ -106,10 +106,37 @@ def test_what_is_proved_is_enough_for_the_strict(shell):
 
 
 def test_the_default_region_of_a_distributed_system_is_explained(beam):
-    assert (
-        "this is the default: a distributed system has infinitely many poles"
-        in beam("roots", "beam.toml").out
-    )
+    shown = " ".join(beam("roots", "beam.toml").out.split())
+    assert "; by default, as there are infinitely many" in shown
+
+
+@pytest.mark.parametrize(
+    ("transfer", "said"),
+    [
+        ("(s - 1)*(s^2 - 2*s + 5)/(s + 2)^4", "not minimum phase: 3 zeros in the right half-plane"),
+        ("(s^2 + 1)/(s + 2)^4", "minimum phase: no zero is in the right half-plane"),
+        ("D*(s + 1)/(s + 2)^2", ""),  # a delay: no zero, and more phase than is least
+    ],
+)
+def test_zeros_in_the_right_half_plane_are_counted(shell, transfer, said):
+    delay = 'blocks.D = { type = "delay", T = 1 }' * ("D*" in transfer)
+    spec = f'symflex = 1\ninputs.u = {{}}\noutputs.y = "{transfer}*u"\n{delay}'
+    (shell.folder / "zeros.toml").write_text(spec)
+    lines = [line.strip() for line in shell("roots", "zeros.toml").out.splitlines()]
+    assert [line for line in lines if "minimum phase" in line] == [said] * bool(said)
+
+
+def test_a_table_has_six_digits_and_json_fifteen(shell):
+    spec = 'symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + sqrt(2))"\n'
+    (shell.folder / "root.toml").write_text(spec)
+    (shell.folder / "asked.toml").write_text(spec + "analysis.digits = 9\n")
+    for name, options, digits in (
+        ("root", (), "-1.41421"),
+        ("asked", (), "-1.41421356"),
+        ("root", ("--digits", "8"), "-1.4142136"),
+    ):
+        assert f" {digits} " in shell("roots", f"{name}.toml", *options).out
+    assert shell("roots", "root.toml", "--json").json["poles"][0]["re"] == "-1.41421356237310"
 
 
 def test_a_budget_is_for_lumped_systems_too(shell):

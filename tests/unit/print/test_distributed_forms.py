@@ -140,7 +140,7 @@ def test_vaughans_forms_of_the_mobilities_are_the_papers_with_two_misprints_corr
     # Eppinger & Seering 1988, "Bending Beam Models": the first has 2C^2 for 6C^2 and -1 for -1/2 there, and
     # both have sqrt(2/p) in front, which is 1/sqrt(p/2) unless p is negative.
     for tf, expected in zip(of_case("sliding_free_beam"), VAUGHAN, strict=True):
-        assert expected + VAUGHAN_WHERE in derive_text(tf, print_form(tf, "vaughan"))
+        assert expected + VAUGHAN_WHERE in derive_text([(tf, print_form(tf, "vaughan"))])
 
 
 # A fact: the function of a case in a form, and what is printed above and below where it says so.
@@ -237,7 +237,7 @@ conditions = ["w(l) = 0", "w(0.3*l) = v(0.3*l)", "N*(v'(0.3*l) - w'(0.3*l)) = F"
 def test_the_left_side_of_the_frequency_form_alone_is_a_function_of_the_frequency():
     tf = case("pinned_pinned", "theta_near/tau")
     form = print_form(tf, "frequency")
-    assert derive_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega)   ")
+    assert derive_text([(tf, form)]).startswith("theta_near(j*omega)/tau(j*omega)   ")
     assert form_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega) = ")
     latex = transfer_function_latex(tf, form, width_mm=None)
     assert r"\frac{\theta_{\mathrm{near}}(j \omega)}{\tau(j \omega)}" in latex
@@ -247,7 +247,7 @@ def test_the_left_side_of_the_frequency_form_alone_is_a_function_of_the_frequenc
 
 
 def hidden_lines(tf, form):
-    return [line for line in derive_text(tf, print_form(tf, form)).splitlines() if "hidden: " in line]
+    return [line for line in derive_text([(tf, print_form(tf, form))]).splitlines() if "hidden: " in line]
 
 
 def test_hidden_factors_bear_the_arguments_of_the_form_or_twice_these():
@@ -279,7 +279,7 @@ def test_hidden_factors_in_a_form_s_names_are_those_spelled_out(pair):
 
 def test_long_hidden_factors_are_printed_to_their_end_within_80_columns():
     tf = case("clamped_clamped", "W_quarter/p")
-    text = derive_text(tf, print_form(tf))
+    text = derive_text([(tf, print_form(tf))])
     (start,) = [i for i, line in enumerate(text.splitlines()) if "hidden: " in line]
     shown_ = " ".join(line.strip() for line in text.splitlines()[start:]).strip()
     assert shown_.endswith("cancelled")
@@ -410,7 +410,7 @@ def test_text_keeps_to_80_columns():
     for name in KINDS:
         for number, tf in enumerate(of_case(name)):
             for form in forms_of(tf):
-                rows = derive_text(tf, printed(name, number, form)).split("\n")
+                rows = derive_text([(tf, printed(name, number, form))]).split("\n")
                 # Nobody reads a formula of a hundred lines.
                 assert max(map(len, rows)) <= 80 or len(rows) > 100, (tf.name, form)
 

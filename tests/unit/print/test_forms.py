@@ -12,7 +12,7 @@ from symflex import pipeline
 from symflex.errors import ModelError, SpecError, UncertifiedError
 from symflex.expressions import format_expression, quotient
 from symflex.print.forms import hidden_expressions, print_form, print_forms
-from symflex.print.forms.printed import RATIONAL
+from symflex.print.forms.printed import RATIONAL, PrintedForm
 from symflex.print.json_format import derive_json
 from symflex.print.text import derive_text
 from tests.contract.exact import Point, read, value_of
@@ -299,7 +299,7 @@ PROGRAM = """
 from symflex import pipeline
 from symflex.print.forms import print_form
 from symflex.print.forms.printed import forms_of
-from symflex.expressions import format_expression, quotient
+from symflex.expressions import S, format_expression, quotient
 for stem in ("lumped_bending_beam", "sliding_free_beam"):
     for tf in pipeline.derive_all(pipeline.load(f"derivations/eppinger1988/{stem}.toml")):
         for name in (*forms_of(tf), None):
@@ -334,9 +334,7 @@ def test_a_form_that_lists_poles_says_what_a_hidden_one_makes_of_stability():
     text = 'symflex = 1\ninputs.u = {}\nsignals.x = "u/(s - 3)"\noutputs.y = "(s - 3)*x/(s + 1)"'
     tf = tf_of(text, "y", "u")
     form = print_form(tf, "zpk")
-    assert (
-        derive_text(tf, form).splitlines()[0].endswith("zpk form; unstable: 1 pole in the right half plane")
-    )
+    assert derive_text([(tf, form)]).splitlines()[0].endswith("; unstable: 1 pole in the right half plane")
     assert derive_json(tf, form)["stability"]["right_half_plane"] == 1
 
 
@@ -863,3 +861,23 @@ def test_names_of_ones_own_are_checked():
         with pytest.raises(SpecError) as refused:
             oscillator(own_names)
         assert [d.code for d in refused.value.diagnostics] == [code], own_names
+
+
+def test_a_definition_is_not_repeated_unless_something_in_it_means_another_thing():
+    tf = tf_of('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"', "y", "u")
+    whole, same, other = (
+        PrintedForm("closed", read("s"), read("1"), tuple((name, read(line)) for name, line in lines.items()))
+        for lines in (
+            {"P": "a*s", "T": "P + b", "q": "b*c"},
+            {"P": "a*s", "T": "P + b"},
+            {"P": "a*s^2", "T": "P + b", "q": "b*c"},
+        )
+    )
+    text = derive_text([(tf, form) for form in (whole, same, other, whole)])
+    lines = [line.removeprefix("  where").strip() for line in text.splitlines()]
+    assert [line for line in lines if " = " in line or "above" in line] == [
+        *("P = a*s", "T = P + b", "q = b*c"),
+        "P, T as above",
+        *("q as above", "P = a*s^2", "T = P + b"),
+        *("q as above", "P = a*s", "T = P + b"),
+    ]  # fmt: skip

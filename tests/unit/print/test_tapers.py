@@ -29,7 +29,7 @@ def rod():
 
 def test_the_differential_equations_of_a_tapered_rod_are_where_lines(rod):
     # u' = f/(E A) and f' = rho A s^2 u (Graff 1975, section 2.1); Z is a parameter's letter here.
-    text = derive_text(rod, print_form(rod)).splitlines()
+    text = derive_text([(rod, print_form(rod))]).splitlines()
     assert [line.strip() for line in text[2:5]] == ["Y_12(l)", "-------", "Y_22(l)"]
     assert [line.removeprefix("  where").strip() for line in text[6:9]] == [
         "Y_1j' = 2*l/(E*A_0*(2*l - x))*Y_2j",
@@ -66,7 +66,7 @@ def string(extra="c", **case):
 def test_a_hanging_string_is_bernoullis_bessel_function():
     # Watson 1944, section 1.2: J_0(2 omega sqrt(l/g)), which is I_0 of s.
     tf, form = string(**HANGING)
-    text = derive_text(tf, form).splitlines()
+    text = derive_text([(tf, form)]).splitlines()
     assert ["  so    Z_11(0) = I_0(q)", "        q = 2*s*sqrt(l/N)"] == text[-2:]
     assert derive_json(tf, form)["closed"] == [["Z_11(0)", "I_0(q)"], ["q", "2*s*sqrt(l/N)"]]
     assert r"Z_{11}(0) = I_{0}(q)" in derive_json(tf, form)["latex"]
@@ -75,14 +75,14 @@ def test_a_hanging_string_is_bernoullis_bessel_function():
 
 def test_a_bessel_function_leaves_a_parameter_its_name():
     tf, form = string("I_0", **HANGING)
-    assert "Z_11(0) = BesselI_0(q)" in derive_text(tf, form)
+    assert "Z_11(0) = BesselI_0(q)" in derive_text([(tf, form)])
     assert r"\mathrm{I}_{0}(q)" in derive_json(tf, form)["latex"]
 
 
 def test_orders_that_are_fractions_stand_in_parentheses():
     # w'' = k^2 (1 + x/l) w is Airy's equation, and Airy's functions are of order 1/3.
     tf, form = string(**THICK)
-    assert "I_(1/3)(q_2)" in derive_text(tf, form)
+    assert "I_(1/3)(q_2)" in derive_text([(tf, form)])
     assert "I_{1/3}" in derive_json(tf, form)["latex"]
 
 
