@@ -10,16 +10,14 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from time import monotonic
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final, Protocol
 
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 GB: Final = 10**9
 LOOK: Final = 0.02

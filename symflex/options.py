@@ -11,26 +11,24 @@ all commands, would take 7 ms of every start.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, isfinite, isinf, nan
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from symflex.errors import Diagnostic, SpecError, Text, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
     from symflex.model import ModelParameter
     from symflex.quantities import Quantity
 
-    Stated = float | Fraction | str
-    """A number, or a text with or without a unit."""
-    Ends = tuple[Stated, Stated]
-    Places = Sequence[str | Path]
-
+Stated = float | Fraction | str
+"""A number, or a text with or without a unit."""
+Ends = tuple[Stated, Stated]
+Places = Sequence[str | Path]
 T = TypeVar("T")
 
 FREQUENCIES: Final = 200

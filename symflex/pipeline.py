@@ -14,14 +14,15 @@ room, imported where it is used: most commands need few of them, and many of the
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.errors import Source
-from symflex.model import load_with
+from symflex.model import Model, Setting, load_with
 from symflex.model.spec import read
 from symflex.print.warnings import warnings
-from symflex.transfer import bind, derive
+from symflex.transfer import AnyBoundFunction, bind, derive
 from symflex.transfer.of_model import (
     assemble,
     assemble_for_checks,
@@ -37,11 +38,7 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from symflex.model import Model, Setting
     from symflex.roots import Budget, PoleZeroMap, Region
-    from symflex.transfer import AnyBoundFunction
 
 
 def load(

@@ -7,19 +7,14 @@ length are the kernels. Both are generators of the ring, with exact definitions 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from flint import nmod_poly
 
-from symflex.algebra.factored import PRIME, random_point, residue
-from symflex.errors import Diagnostic, ModelError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Sequence
-
-    from symflex.algebra.factored import Factored
-    from symflex.errors import Span
+from symflex.algebra.factored import PRIME, Factored, random_point, residue
+from symflex.errors import Diagnostic, ModelError, Span
 
 Value = TypeVar("Value", bound=Any)
 DispersionKind = Literal["exponential", "wave", "bending", "pair", "general", "varying"]

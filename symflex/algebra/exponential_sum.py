@@ -9,22 +9,18 @@ used: in balls and in doubles at any s, on the axes where there are no losses, o
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import comb
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from flint import acb
+from flint import acb, fmpz_mpoly
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Kernel, KernelTable
-    from symflex.algebra.factored import Factored
-    from symflex.algebra.ring import Ring
+from symflex.algebra.dispersion import Kernel, KernelTable
+from symflex.algebra.factored import Factored
+from symflex.algebra.ring import Ring
 
 MOST_EXPONENTIALS = 1500
 """Terms up to which a sum is written out: each is evaluated at every step of every path."""

@@ -9,20 +9,18 @@ angle ``n x`` serves. Hyperbolic functions follow the same rules.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+from flint import fmpz_mpoly
 
 from symflex.algebra.dispersion import Kernel, KernelTable
 from symflex.algebra.exponential_sum import spread
 from symflex.algebra.factored import Factored
 from symflex.algebra.ring import Ring, coefficients_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
 
 
 @dataclass(frozen=True, slots=True, eq=False)

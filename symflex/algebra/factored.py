@@ -5,13 +5,14 @@ Their values at a random point of a prime field tell whether they vanish, almost
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, lcm, prod
 from random import Random
 from typing import TYPE_CHECKING
 
-from flint import fmpz
+from flint import fmpz, fmpz_mpoly
 
 from symflex.algebra.ring import (
     DEGREE_LIMIT,
@@ -27,10 +28,6 @@ from symflex.balls import Arithmetic, ball, raised
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
     from symflex.algebra.sparse import Monomial
 
 

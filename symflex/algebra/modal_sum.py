@@ -11,22 +11,19 @@ arithmetic, and left out; in rounded numbers nothing of it can be lost then, how
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations_with_replacement, product
 from math import comb, factorial, prod
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from flint import fmpz_mpoly
+
+from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
 from symflex.algebra.factored import Factored, common_denominator
 from symflex.algebra.ring import PolynomialMemo, Ring, by_powers, coefficients_of
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
 
 KEY_LIMIT = 4000
 """Products of exponentials a sum may have."""

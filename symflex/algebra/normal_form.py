@@ -8,25 +8,17 @@ square roots of whole numbers.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpz_mpoly_ctx
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.algebra.dispersion import Dispersion, KernelTable
 from symflex.algebra.factored import Factored, common_denominator
-from symflex.algebra.ring import by_powers, degree_in
+from symflex.algebra.ring import Ring, by_powers, degree_in
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Dispersion, KernelTable
-    from symflex.algebra.ring import Ring
-
 
 TWO_STATES = 2
 PAIR_TERMS = 60_000

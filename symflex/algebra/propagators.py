@@ -9,24 +9,18 @@ polynomials.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, product
 from math import comb, prod
 from operator import add
-from typing import TYPE_CHECKING
 
-from flint import fmpq, fmpq_mat, fmpz_mat
+from flint import fmpq, fmpq_mat, fmpz_mat, fmpz_mpoly
 
 from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
 from symflex.algebra.factored import Factored, common_denominator, random_point, residue
 from symflex.algebra.ring import Ring
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
 
 MULTIPLE_LIMIT = 12
 """Lengths that are longer sums of base lengths keep kernels of their own."""

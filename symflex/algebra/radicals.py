@@ -11,26 +11,20 @@ coefficient can be freed of roots: it is multiplied by its conjugates.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
 from math import gcd, isqrt
 from random import Random
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from flint import fmpz, nmod_poly
+from flint import fmpz, fmpz_mpoly, nmod_poly
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.factored import PRIME, Factored, residue
-from symflex.algebra.ring import by_powers, coefficients_of, degree_in
+from symflex.algebra.ring import Ring, by_powers, coefficients_of, degree_in
 from symflex.budget import spend
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.ring import Ring
 
 TRIES = 2_000
 """Primes, and numbers in place of parameters, that are tried until all radicands are squares."""

@@ -8,21 +8,16 @@ constants is one generator with a numeric definition.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import comb, prod
-from typing import TYPE_CHECKING, Generic, TypeVar, cast
+from typing import Generic, TypeVar, cast
 
 from flint import Ordering, arb, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx
 
-from symflex.algebra.sparse import SparseContext, SparsePolynomial
+from symflex.algebra.sparse import Monomial, SparseContext, SparsePolynomial
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from symflex.algebra.sparse import Monomial
-
 
 LAPLACE = "s"
 TERM_LIMIT = 3_000_000

@@ -7,11 +7,8 @@ monomial names its generators only. There are no common divisors, no substitutio
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from math import gcd
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
 
 Monomial = tuple[tuple[int, int], ...]
 """Positions of generators, ascending, with their exponents."""

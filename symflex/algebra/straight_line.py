@@ -14,23 +14,19 @@ used twice; steps 0 and 1 are the numbers zero and one.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from functools import reduce
 from operator import neg, truediv
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from symflex.algebra.factored import PRIME
+from flint import fmpz_mpoly
+
+from symflex.algebra.factored import PRIME, Factored
 from symflex.algebra.ring import PolynomialMemo, terms_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.factored import Factored
 
 Key = tuple[int, ...]
 

@@ -11,25 +11,17 @@ every wavenumber is a power series in e.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from random import Random
-from typing import TYPE_CHECKING
 
-from flint import fmpz, nmod_poly
+from flint import fmpz, fmpz_mpoly, nmod_poly
 from flint.utils.flint_exceptions import DomainError
 
-from symflex.algebra.ring import by_powers, degree_in, terms_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Dispersion, KernelTable
-    from symflex.algebra.factored import Factored
-    from symflex.algebra.ring import Ring
-
+from symflex.algebra.dispersion import Dispersion, KernelTable
+from symflex.algebra.factored import Factored
+from symflex.algebra.ring import Ring, by_powers, degree_in, terms_of
 
 TERMS = (8, 16, 32)
 """Lengths of Taylor series that are tried."""

@@ -22,12 +22,10 @@ Generated code gets copies of these functions: they use numpy and each other, an
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 Values = Any
 """A number, an array of numbers, or lists of these."""

@@ -25,6 +25,7 @@ with sizes in place of numbers bounds as many terms as one likes. If B is at mos
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, comb, floor, inf, log2
@@ -53,8 +54,6 @@ from symflex.budget import GB, spend
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
     from symflex.along.growth import Growth, Leg
     from symflex.along.system import Coefficients, Lines, SingularBeginning, VaryingSystem
 

@@ -12,21 +12,16 @@ estimate bounds its Taylor coefficients by how it grows on discs.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import factorial, inf, isfinite, log2, prod
-from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import acb, acb_poly, arb
 
-from symflex.along.system import sequence_of
+from symflex.along.system import MinorsAlong, Place, SingularBeginning, VaryingSystem, sequence_of
 from symflex.balls import precision
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.along.system import MinorsAlong, Place, SingularBeginning, VaryingSystem
 
 Weights = tuple[arb, ...]
 """Powers of two by which states are scaled."""

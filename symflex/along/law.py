@@ -11,34 +11,26 @@ where u is s, its square, or s less the middle of a ball; and bounds on them.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from math import gcd
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series
 
-from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in, evaluated, summed
+from symflex.algebra import FUNCTIONS, LAPLACE, Dispersion, Factored, by_powers, degree_in, evaluated, summed
 from symflex.algebra.ring import PolynomialMemo, terms_of
-from symflex.along.fundamental_matrix import expand
+from symflex.algebra.sparse import Monomial
+from symflex.along.fundamental_matrix import PowerExpansion, expand
 from symflex.along.growth import SingularCoefficientError, growth_along, legs_along
-from symflex.along.system import RationalPart, SingularBeginning
-from symflex.balls import at_centre, ball, current_bits, precision, raised, series_terms
+from symflex.along.system import Coefficients, Number, Place, RationalPart, SingularBeginning
+from symflex.balls import Value, at_centre, ball, current_bits, precision, raised, series_terms
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import fold
+from symflex.expressions import Expression, fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from symflex.algebra import Dispersion
-    from symflex.algebra.sparse import Monomial
-    from symflex.along.fundamental_matrix import PowerExpansion
-    from symflex.along.system import Coefficients, Number, Place
-    from symflex.balls import Value
-    from symflex.expressions import Expression
 
 ELSEWHERE = acb(0.7, 1.3)
 """A frequency like any other, at which coefficients have no pole in s."""

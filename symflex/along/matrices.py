@@ -9,6 +9,7 @@ they are rational, as with a loss factor 1 + eta s below, it is expanded about t
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil, inf, log2, pi
@@ -16,16 +17,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
+from symflex.algebra import Dispersion, Factored
+from symflex.along.fundamental_matrix import PowerExpansion
 from symflex.along.law import LEAST, ROOM, BoundLaw
 from symflex.balls import Value, at_centre, current_bits, raised
+from symflex.expressions import Call
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from symflex.algebra import Dispersion, Factored
-    from symflex.along.fundamental_matrix import PowerExpansion
     from symflex.along.minors import Minor, MinorSums
-    from symflex.expressions import Call
 
 BUCKET = 64
 """Bits are rounded up to a multiple of this, so that few matrices are expanded."""

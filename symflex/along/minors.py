@@ -9,20 +9,16 @@ products of entries these are signed sums of grow like their powers, and lose as
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations
-from typing import TYPE_CHECKING
 
+from flint import fmpz_mpoly
+
+from symflex.algebra.dispersion import Dispersion, KernelTable
+from symflex.algebra.factored import Factored
 from symflex.algebra.ring import PolynomialMemo, Ring, coefficients_of, degree_in
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Dispersion, KernelTable
-    from symflex.algebra.factored import Factored
 
 Lines = tuple[int, ...]
 

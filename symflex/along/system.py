@@ -10,15 +10,13 @@ Output: bounds on those of other equations, that minors of solutions satisfy.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from flint import acb, acb_poly, arb, arb_poly
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 Place = tuple[int, int]
 """Row and column."""

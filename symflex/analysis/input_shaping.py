@@ -16,8 +16,8 @@ vibration: a vector diagram approach); without damping W is V, with it W is such
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -27,15 +27,10 @@ from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
 from symflex.print.roots import SHORT_DIGITS, TERMINAL_COLUMNS, PrintedRoot
 from symflex.print.text import Passage, passages_text
-from symflex.roots import Everything, Modes
+from symflex.roots import Everything, Modes, Root
 from symflex.roots.locate import locate
 from symflex.roots.root import decimals, figure
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.roots import Root
-    from symflex.transfer import AnyBoundFunction
+from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.shape/1"
 TOLERANCE = 0.05

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -14,18 +15,15 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.model import Model, load_with
 from symflex.model.loss_factors import check_causal
 from symflex.model.spec import read
+from symflex.options import FitOptions, MeasureOptions
 from symflex.roots import Band
 from symflex.roots.locate import locate
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import derive_bound, pick_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     import numpy.typing as npt
-
-    from symflex.options import FitOptions, MeasureOptions
-    from symflex.transfer import BoundTransferFunction
 
 
 def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:

@@ -19,6 +19,7 @@ miss no resonance.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -33,7 +34,7 @@ from flint import acb
 from symflex.budget import spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Band, Certificate, Everything, PoleZeroMap
+from symflex.roots import Band, Certificate, Everything, PoleZeroMap, Root
 from symflex.roots.counting.winding import Winding, continuous_step
 from symflex.roots.functions.entire import Followed, Sample
 from symflex.roots.functions.kernel_function import KernelFunction
@@ -41,15 +42,11 @@ from symflex.roots.functions.nested_function import NestedFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
+from symflex.transfer import AnyBoundFunction
 from symflex.transfer.nested_form import BoundNested
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
     import numpy.typing as npt
-
-    from symflex.roots import Root
-    from symflex.transfer import AnyBoundFunction
 
 
 def count_turns(

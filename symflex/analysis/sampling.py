@@ -21,6 +21,7 @@ differ by ``2 pi j/h`` are one pole at samples. So what is made of roots is comp
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -45,20 +46,17 @@ from symflex.budget import spend
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UncertifiedError, UsageError
 from symflex.errors.optional import installed
 from symflex.model.loss_factors import check_causal
+from symflex.roots import Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem, problem_of
 from symflex.roots.root import exact_fraction
 from symflex.state_space import not_rational
 from symflex.state_space.sampled import Sampling
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     import numpy.typing as npt
-
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
 
 FIRST_DIGITS, LAST_DIGITS = 60, 4000
 TRIED_AT = acb(1.2345, 0.5432)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.analysis import response as response_room
 from symflex.analysis.time_response import EnclosedResponse
 from symflex.api.face import face_of
 from symflex.data import measurement
+from symflex.data.measurement import Estimate
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.data.measurement import Estimate
     from symflex.figures import AxesGiven
 
 LARGEST_DRAWING = 4000

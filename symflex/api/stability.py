@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import mpmath
+from flint import arb
 
 from symflex.balls import to_mpmath
+from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import degrees, hertz
 
 if TYPE_CHECKING:
-    from flint import arb
-
     from symflex import loops as stability_room
-    from symflex.roots.pole_zero_map import StabilityVerdict
 
 
 @dataclass(frozen=True)

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from symflex import state_space as state_space_room
 from symflex.codegen.state_space import StateEquations
+from symflex.model import ExactValue, Model
 from symflex.options import duration, finite
 from symflex.print.sympy import symbols_of, to_sympy
+from symflex.state_space.numeric import BoundStateSpace
+from symflex.state_space.popov import Vector
+from symflex.state_space.sampled import SampledStateSpace
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from decimal import Decimal
-    from fractions import Fraction
-
     import sympy
-
-    from symflex.model import ExactValue, Model
-    from symflex.state_space.numeric import BoundStateSpace
-    from symflex.state_space.popov import Vector
-    from symflex.state_space.sampled import SampledStateSpace
 
 
 MOST_STATES: Final = 8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -9,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from symflex import pipeline
+from symflex import transfer as transfer_room
 from symflex.api.analyses import Analyses
 from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
@@ -18,11 +20,11 @@ from symflex.errors import Diagnostic, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.letters.groups import dimensionless_of
-from symflex.letters.limits import limits_of
+from symflex.letters.limits import InLetters, limits_of
 from symflex.library.elements import LineElement
-from symflex.model import with_numbers
+from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import check_causal
-from symflex.options import DeriveOptions, checked_digits
+from symflex.options import DeriveOptions, Stated, checked_digits
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
@@ -32,17 +34,11 @@ from symflex.transfer import BoundNested, bind_nested
 from symflex.transfer.double_value import FIRST_BITS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import numpy as np
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    from symflex import transfer as transfer_room
     from symflex.analysis.input_shaping import InputShaper
-    from symflex.letters.limits import InLetters
-    from symflex.model import Model
-    from symflex.options import Stated
 
 
 Number = int | float | Fraction | Decimal | str

@@ -11,12 +11,10 @@ true, or true by too little, is left undecided (Moore 1966).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterator
+from typing import TypeVar
 
 from symflex.balls.precision import UndecidedError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 Decided = TypeVar("Decided")
 

@@ -15,17 +15,14 @@ after rows have been brought to one size, so that balls stay narrow.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
-from typing import TYPE_CHECKING
 
 from flint import acb
 
 from symflex.balls.precision import UndecidedError
 from symflex.balls.values import balancing, binary_exponent
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
 
 THRESHOLD = -4
 """log2 of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""

@@ -10,15 +10,12 @@ unknowns it ties is gone, or goes together with one.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+from flint import arb
 
 from symflex.balls.precision import UndecidedError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from flint import arb
 
 Rows = list[dict[int, "arb"]]
 """A symmetric matrix, every entry off the diagonal in both of its rows."""

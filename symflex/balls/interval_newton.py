@@ -8,12 +8,10 @@ step f(m)/f'(X) lies between -0.016 and -0.013, well inside, and the root betwee
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable
+from typing import TypeVar
 
 from flint import acb, arb
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 Ball = TypeVar("Ball", arb, acb)
 

@@ -10,16 +10,15 @@ sharpen an answer and never change it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TypeVar
 
 import flint
+from flint import acb, arb
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     import mpmath
-    from flint import acb, arb
 
 
 BITS_PER_DIGIT = math.log2(10)

@@ -11,16 +11,14 @@ Polynomials are prepared for evaluation: products shared by successive terms are
 from __future__ import annotations
 
 import copyreg
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from flint import acb, acb_series, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.balls.precision import precision, series_terms
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
 
 Value = acb | acb_series
 """A number, or a power series in the displacement from one."""

@@ -15,20 +15,17 @@ which coefficients of high degree lose. In direct form there is one section of a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite, pi
 from random import Random
 from sys import float_info
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.analysis.sampling import SampledTransferFunction, monic
 from symflex.balls import precision
 from symflex.errors import Diagnostic, ModelError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 SAMPLES, FREQUENCIES = 1000, 200
 """Samples of a run that measures rounding, +1 or -1 at random, which excites all frequencies, and frequencies

@@ -14,11 +14,13 @@ that say what each defines; code gets the parts it calls and those that they cal
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cache
 from importlib import resources
 from math import isfinite
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from symflex.codegen.module_text import (
     default_value,
@@ -30,18 +32,11 @@ from symflex.codegen.module_text import (
     wrapped,
 )
 from symflex.codegen.program.band import is_closed
-from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
+from symflex.codegen.program.nodes import Piecewise
+from symflex.codegen.program.verify import SAMPLES, Verification, choose_band, choose_programs
+from symflex.model import Model, ModelParameter
 from symflex.model.loss_factors import check_causal
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-    from fractions import Fraction
-
-    from symflex.codegen.program.nodes import Piecewise
-    from symflex.codegen.program.verify import Verification
-    from symflex.model import Model, ModelParameter
-    from symflex.transfer import AnyTransferFunction
-
+from symflex.transfer import AnyTransferFunction
 
 BAND = "band"
 """The form of code that is a product over poles and zeros."""

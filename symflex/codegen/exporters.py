@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from symflex.codegen.c.module import C99
 from symflex.codegen.c.sampled import SAMPLED_C
+from symflex.codegen.export import Exporter
 from symflex.codegen.fmu import FMU
 from symflex.codegen.javascript import JAVASCRIPT
 from symflex.codegen.julia import JULIA
@@ -14,14 +15,9 @@ from symflex.codegen.matlab import MATLAB
 from symflex.codegen.modelica import ModelicaExporter
 from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.python.sampled import SAMPLED_PYTHON
+from symflex.codegen.sampled import SampledLanguage
 from symflex.codegen.state_space import StateSpaceExporter
 from symflex.codegen.typst import TypstExporter
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.codegen.export import Exporter
-    from symflex.codegen.sampled import SampledLanguage
 
 EXPORTERS: dict[str, Exporter] = {
     "numpy": NUMPY,

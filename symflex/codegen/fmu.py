@@ -23,7 +23,6 @@ from dataclasses import replace
 from hashlib import sha256
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from symflex.codegen.c.body import KEYWORDS, RESERVED
@@ -31,10 +30,7 @@ from symflex.codegen.c.module import COMMENT, prefix_of
 from symflex.codegen.c.sampled import c_steps
 from symflex.codegen.export import Export
 from symflex.codegen.module_text import identifiers
-from symflex.codegen.sampled import SampledLanguage
-
-if TYPE_CHECKING:
-    from symflex.codegen.sampled import StepFile
+from symflex.codegen.sampled import SampledLanguage, StepFile
 
 OLD = (1980, 1, 1, 0, 0, 0)
 """When all files of an archive were written: the same model gives the same bytes."""

@@ -8,17 +8,14 @@ own way is a template of its printer, or overridden: complex numbers, a statemen
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import TextWrapper
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
-
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
 

@@ -16,21 +16,16 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import count
-from typing import TYPE_CHECKING
 
-from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
+from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
 from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.derivative import differentiated
 from symflex.codegen.program.evaluate import nearest_double
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.codegen.export import Contents, Member
 
 WIDTH = 100
 """Columns of generated JavaScript."""

@@ -7,19 +7,14 @@ Output: its text. Read from the top: expressions, the private functions that com
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
+from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import default_value, identifiers
-from symflex.codegen.program.nodes import ONE, Laplace
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import CodePiece, Piecewise
+from symflex.codegen.program.nodes import ONE, CodePiece, Laplace, Piecewise
 
 WIDTH = 92
 """Columns, as Julia's own style has it."""

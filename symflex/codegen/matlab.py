@@ -8,11 +8,12 @@ local functions that compute with columns, the file.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.codegen.export import Export, Language, Outline, called_parts, parts_of
+from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     FORMULA_TERMS,
@@ -22,19 +23,11 @@ from symflex.codegen.module_text import (
     origin_lines,
     wrapped,
 )
-from symflex.expressions import Name, format_expression, number, substitute, sum_of
+from symflex.codegen.program.nodes import CodeNode, CodePiece, Piecewise
+from symflex.expressions import Expression, Name, format_expression, number, substitute, sum_of
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import constant_symbols, plain_printer
-from symflex.transfer import TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import CodeNode, CodePiece, Piecewise
-    from symflex.expressions import Expression
-    from symflex.transfer import AnyTransferFunction
-
+from symflex.transfer import AnyTransferFunction, TransferFunction
 
 WIDTH = 88
 """Columns of generated MATLAB."""

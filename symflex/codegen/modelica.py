@@ -19,22 +19,19 @@ Association, Modelica Language Specification 3.6, 2023.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.codegen.export import Export
 from symflex.codegen.module_text import default_value, identifiers, inert, origin_lines, wrapped
 from symflex.codegen.state_space import StateEquations
 from symflex.expressions import Expression, Name, format_expression, product_of, substitute, sum_of
+from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.state_space import realise
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.model import Model
-    from symflex.state_space.popov import Vector
-    from symflex.transfer import AnyTransferFunction
+from symflex.state_space.popov import Vector
+from symflex.transfer import AnyTransferFunction
 
 RESERVED: Final = frozenset(
     "algorithm and annotation block break class connect connector constant constrainedby der discrete "

@@ -6,24 +6,18 @@ What a user wrote becomes names that are identifiers, one to one, and text that 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from textwrap import TextWrapper
-from typing import TYPE_CHECKING
 
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.expressions import Quotient, format_expression, is_number
 from symflex.library.elements import LineElement
-from symflex.print.forms import print_form
+from symflex.model import Model, ModelParameter
+from symflex.print.forms import PrintedForm, print_form
 from symflex.print.latex.table import decimal_text
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from symflex.model import Model, ModelParameter
-    from symflex.print.forms import PrintedForm
-    from symflex.transfer import AnyTransferFunction
-
+from symflex.transfer import AnyTransferFunction
 
 FORMULA_LENGTH = 1_600
 """Characters of a formula that a docstring shows: twenty lines, which fill a terminal of 24."""

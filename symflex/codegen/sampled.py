@@ -9,12 +9,16 @@ to a :class:`SampledLanguage`, which spells it::
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING
 
+from flint import acb
+
 from symflex.budget import spend
 from symflex.codegen.module_text import (
+    BlockComment,
     default_value,
     identifiers,
     inert,
@@ -23,19 +27,13 @@ from symflex.codegen.module_text import (
     wrapped,
 )
 from symflex.errors import BudgetError, Diagnostic
-from symflex.transfer import bind
+from symflex.model import Model
+from symflex.transfer import AnyTransferFunction, bind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
-
-    from flint import acb
-
     from symflex.codegen.difference import DifferenceEquation
     from symflex.codegen.export import Export
-    from symflex.codegen.module_text import BlockComment
-    from symflex.model import Model
     from symflex.state_space.sampled import Sampling
-    from symflex.transfer import AnyTransferFunction
 
 SHOWN_POLES = 8
 """Poles in z that a comment lists."""

@@ -6,12 +6,14 @@ Output: an :class:`Export`, the module's text and how well its numbers agree wit
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from flint import fmpz_mpoly
 
 from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
@@ -42,26 +44,19 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.library.blocks import BLOCKS
+from symflex.model import Model
 from symflex.model.linearity import integer_exponent
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
-from symflex.state_space import minimal, not_rational, realise
+from symflex.state_space import State, StateSpace, minimal, not_rational, realise
 from symflex.state_space.numeric import Arrays, response
-from symflex.state_space.sampled import sampled_state_space
-from symflex.transfer import bind
+from symflex.state_space.popov import FieldElement, Vector
+from symflex.state_space.sampled import Sampling, sampled_state_space
+from symflex.transfer import AnyTransferFunction, bind
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
-    from flint import fmpz_mpoly
-
-    from symflex.model import Model
-    from symflex.state_space import State, StateSpace
-    from symflex.state_space.popov import FieldElement, Vector
-    from symflex.state_space.sampled import Sampling
-    from symflex.transfer import AnyTransferFunction
 
 
 class StateEquations:

@@ -7,18 +7,14 @@ Input: transfer functions. Output: text that ``typst compile`` turns into a page
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from symflex.codegen.export import Export
+from symflex.model import Model
 from symflex.print.documents import typst_document
 from symflex.print.forms import print_forms, with_shared_denominators
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
+from symflex.transfer import AnyTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

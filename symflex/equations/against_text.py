@@ -11,19 +11,15 @@ field: two rational functions that agree there are almost surely equal (Schwartz
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import reduce
 from random import Random
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, residue
 from symflex.errors import REPORT, BudgetError, Diagnostic, InternalError, ModelError, SymflexError
 from symflex.expressions import Expression, Negative, Number, Power, Product, Quotient, Sum, format_expression
+from symflex.library.elements import LinearForm
 from symflex.model.linearity import integer_exponent
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from symflex.library.elements import LinearForm
 
 FAULT = "SF991"
 Point = tuple["Mapping[str, int]", int]

@@ -7,21 +7,15 @@ l is another one, ``exp(-2*a*l)``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
-from symflex.algebra import composed
-from symflex.expressions import substitute
+from symflex.algebra import Factored, composed
+from symflex.equations.evaluate import ExactEvaluator
+from symflex.expressions import Call, Expression, substitute
 from symflex.model.along import COORDINATE
 from symflex.model.brackets import slope_along_x
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.algebra import Factored
-    from symflex.equations.evaluate import ExactEvaluator
-    from symflex.expressions import Call, Expression
 
 
 @dataclass(frozen=True, eq=False)

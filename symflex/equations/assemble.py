@@ -6,6 +6,7 @@ Output: :class:`Equations`; every element has left its stamp, parallel branches 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -54,26 +55,22 @@ from symflex.library.elements import (
     ElementUse,
     EquationRow,
     LinearForm,
+    Placing,
     PortTerminal,
     Stamp,
     Variable,
 )
+from symflex.library.elements.element import Role
 from symflex.library.elements.line import LineElement
-from symflex.model import scope_of
+from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement, scope_of
 from symflex.model.along import COORDINATE, is_tapered, varies_along_x
 from symflex.model.model import INPUT_KINDS
 from symflex.model.network import variable_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
     from symflex.equations.distributed import AlongPoint, Distributed, FieldSolution, State
-    from symflex.library.elements import Placing
-    from symflex.library.elements.element import Role
-    from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
-    Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
-
+Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 PI = "pi"
 GENERATOR_LIMIT = 1_000
 """Names over a dense ring, whose monomials hold an exponent for each; a round number, not a measured one."""

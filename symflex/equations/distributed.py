@@ -6,22 +6,25 @@ Output: a :class:`Distributed`, with the ring that has generators for every fund
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import factorial, pi, prod
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Dispersion, Factored, Radicals
-from symflex.algebra.propagators import WAVENUMBER_NAMES, propagate
+from symflex.algebra.dispersion import SingularStart
+from symflex.algebra.propagators import WAVENUMBER_NAMES, Propagation, propagate
 from symflex.algebra.ring import terms_of
 from symflex.budget import spend
 from symflex.equations.against_text import at_random, compare, error_of, number_of
 from symflex.equations.along import AlongX
+from symflex.equations.evaluate import ExactEvaluator
 from symflex.equations.singular_ends import CUT, UnsolvedEndError, singular_start
-from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
+from symflex.errors import BudgetError, Diagnostic, ModelError, Span, SymflexError
 from symflex.expressions import (
     Call,
     Derivative,
+    Equation,
     Expression,
     Name,
     Negative,
@@ -43,20 +46,10 @@ from symflex.library.fields import (
     varies,
     varying_components,
 )
+from symflex.library.partial_fractions import Matrix
+from symflex.model import ExactValue, FieldProblem, Model, PlacedElement
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import named_brackets
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-
-    from symflex.algebra.dispersion import SingularStart
-    from symflex.algebra.propagators import Propagation
-    from symflex.equations.evaluate import ExactEvaluator
-    from symflex.errors import Span
-    from symflex.expressions import Equation
-    from symflex.library.partial_fractions import Matrix
-    from symflex.model import ExactValue, FieldProblem, Model, PlacedElement
-
 
 POLYNOMIAL = -1
 """The dispersion of field equations all of whose exponents are zero: their solutions need no kernel."""

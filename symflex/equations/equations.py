@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, Radicals, Ring
+from symflex.algebra import Dispersion, Factored, Radicals, Ring
 from symflex.expressions import Call, Expression, fold, format_expression
+from symflex.library.elements import EquationRow, LinearForm, Variable
+from symflex.model import Model, ModelParameter
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.algebra import Dispersion
     from symflex.algebra.propagators import Propagation
-    from symflex.library.elements import EquationRow, LinearForm, Variable
     from symflex.library.fields import FieldSystem
-    from symflex.model import Model, ModelParameter
 
 
 @dataclass(frozen=True, slots=True)

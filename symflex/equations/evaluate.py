@@ -6,11 +6,11 @@ cancels between blocks in it is a hidden mode, not nothing.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from math import isqrt, prod
-from typing import TYPE_CHECKING
 
 from symflex.algebra import (
     LAPLACE,
@@ -45,14 +45,9 @@ from symflex.expressions import (
 )
 from symflex.library.blocks import StateSpaceBlock, TransferFunctionBlock
 from symflex.library.elements import LinearForm, Variable
+from symflex.model import ModelScope, PlacedBlock
 from symflex.model.linearity import integer_exponent
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
-
-    from symflex.model import ModelScope, PlacedBlock
-    from symflex.model.model import RootOfS
-
+from symflex.model.model import RootOfS
 
 OPENED_PARTS = 1_000
 OPENED_DEPTH = 200

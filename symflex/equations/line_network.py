@@ -14,23 +14,20 @@ See :mod:`symflex.algebra.line_networks` for what is done with it.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import count as count_from
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from flint import fmpz_mpoly
+
+from symflex.algebra import Factored
 from symflex.algebra.ring import terms_of
+from symflex.equations.equations import Continuum, Equations
 from symflex.library.elements import LinearForm, Variable
 from symflex.library.fields import coupled_states
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored
-    from symflex.equations.equations import Continuum, Equations
-    from symflex.library.partial_fractions import Matrix
+from symflex.library.partial_fractions import Matrix
 
 Value = TypeVar("Value")
 

@@ -14,16 +14,15 @@ every k > 0, so a solution without logarithms is a power series and follows from
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.dispersion import SingularStart
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
     from symflex.library.partial_fractions import Matrix
 
 POWER_LIMIT = 64

@@ -7,13 +7,11 @@ to one and every sign to plus; the logarithms of its numerator and denominator a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from typing import NamedTuple
 
 # A constant is followed exactly while it is this small: enough for every exponent that is allowed.
 FOLLOWED_BITS = 128

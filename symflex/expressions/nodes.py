@@ -8,17 +8,15 @@ numbers stays what it is. Walks over a tree list its parts, replace them, and fo
 
 from __future__ import annotations
 
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import reduce
 from operator import add, mul, neg, truediv
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.quantities import Quantity
+from symflex.errors import Span
+from symflex.quantities import Quantity
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import re
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions.limits import (
@@ -53,9 +54,6 @@ from symflex.expressions.nodes import (
 from symflex.expressions.slips import FUNCTIONS, RECIPROCALS, character_slip, end_slip, token_slip
 from symflex.quantities import parse_quantity
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 NAME_LENGTH = 64
 BLANKS = " \t\r\n"

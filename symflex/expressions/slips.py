@@ -6,14 +6,11 @@ Everything here reads the text around the place where the parser stopped; nothin
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
 
 from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT, character_hint, code_point, unit_named
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from symflex.quantities.lalr import Token
+from symflex.quantities.lalr import Token
 
 FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 """The functions of the language, each of one argument."""

@@ -6,15 +6,12 @@ import os
 import platform
 import stat
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 MARK = b"symflex: "
 SHOWN = 200

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING, ClassVar
@@ -9,8 +10,6 @@ from typing import TYPE_CHECKING, ClassVar
 from symflex.library import ParameterPort, Stateless
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from symflex.algebra import Factored
 
 

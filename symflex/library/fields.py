@@ -15,21 +15,18 @@ divides by, so the transfer matrix is entire in s wherever A is.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, prod
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
 from symflex.algebra.dispersion import DispersionKind
 from symflex.errors import BudgetError, Diagnostic
-from symflex.library.partial_fractions import Share, factors, shares, solve, squared
+from symflex.library.partial_fractions import Matrix, Share, factors, shares, solve, squared
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.library.partial_fractions import Matrix
-
     FieldTheory = Callable[[Factored, Mapping[str, Factored]], "FieldSystem"]
     """The first-order system of a uniform element, from s and the element's values."""
 

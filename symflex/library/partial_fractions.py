@@ -14,16 +14,13 @@ Example: two equal strings, of which one drives the other.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import Factored, Ring
 from symflex.algebra.ring import by_powers, degree_in, irreducible_factors
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from flint import fmpz_mpoly
 
 Matrix = tuple[tuple[Factored, ...], ...]
 Row = list[Factored]

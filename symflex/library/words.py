@@ -9,14 +9,10 @@ Output: the :class:`Thing` it names, with the element, block or command for it a
 from __future__ import annotations
 
 import re
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from symflex.errors import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterable
-
 
 MISSPELT = 0.85
 """Likeness of a word with a slip in it."""

@@ -16,13 +16,15 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64encode
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from hashlib import sha256
 from importlib import resources
 from math import tau
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from symflex import pipeline
+from symflex.codegen.export import Contents, Member
 from symflex.codegen.javascript import JAVASCRIPT, RESERVED, javascript_module
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.evaluate import nearest_double
@@ -30,20 +32,14 @@ from symflex.drawing import drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
 from symflex.live.tape import MODES, tape_of
+from symflex.model import Model, ModelParameter
 from symflex.model.spec import TableValue, parse
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.html import escape_html
 from symflex.print.latex import model_labels
 from symflex.print.mathml import EQUALS, label_mathml, math_element, transfer_function_mathml
-from symflex.roots import Modes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.codegen.export import Contents, Member
-    from symflex.model import Model, ModelParameter
-    from symflex.roots import PoleZeroMap, Progress, Root
-    from symflex.transfer import AnyTransferFunction
+from symflex.roots import Modes, PoleZeroMap, Progress, Root
+from symflex.transfer import AnyTransferFunction
 
 SCRIPTS: Final = ("discs.js", "roots.js", "page.js")
 """Files of the script, in their order."""

@@ -28,10 +28,10 @@ A polynomial in s of degree n has n zeros: n discs that are apart hold them all,
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial, reduce
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
@@ -47,12 +47,7 @@ from symflex.roots import Everything, Modes
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.passivity import energy_proof
-from symflex.transfer import bind
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
+from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 
 MODES = 10
 """Number of modes that a page follows; the edge of its window lies between that and the next ones."""

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
+from symflex.model import ExactValue, Model
 from symflex.print.forms import print_form
 from symflex.print.latex import model_labels, notebook_latex
 from symflex.print.latex.table import decimal_text
 from symflex.print.roots import PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
+from symflex.print.text import Passage
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.model import ExactValue, Model
-    from symflex.print.text import Passage
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import BoundTransferFunction
 
 
 # MathJax and KaTeX look for mathematics within one text node: alone in a node, these begin none.

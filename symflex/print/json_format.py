@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from graphlib import TopologicalSorter
-from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, format_expression, names
-from symflex.print.forms import hidden_expressions
+from symflex.print.forms import PrintedForm, hidden_expressions
 from symflex.print.latex import inline_latex
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.print.forms import PrintedForm
-    from symflex.transfer import AnyTransferFunction
+from symflex.transfer import AnyTransferFunction
 
 SCHEMA = "symflex.derive/1"
 

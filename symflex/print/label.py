@@ -12,10 +12,11 @@ from __future__ import annotations
 import functools
 import html
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import starmap
 from string import ascii_lowercase
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from symflex.model.labels import ACCENTS, GREEK, SYMBOLS
 from symflex.print.width import (
@@ -40,9 +41,6 @@ from symflex.print.width import (
     always,
     greek_width,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
 
 WIDEST_LABEL: Final = 12.0
 """Width in em beyond which a label gives way to the name in small type."""

@@ -13,8 +13,9 @@ is rows: the quotient, what its names stand for, and its ``where`` lines.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.expressions import (
     Call,
@@ -28,6 +29,8 @@ from symflex.expressions import (
     is_number,
     names,
 )
+from symflex.model import Input, Output
+from symflex.print.forms import PrintedForm
 from symflex.print.label import LABEL_SIGNS, identifier, numeral, operator, row, symbol, words
 from symflex.print.latex.equation import form_labels, free_names, laws_and_starts, split_sign, varying_names
 from symflex.print.latex.expression import Writer
@@ -42,15 +45,7 @@ from symflex.print.writer import (
     is_half,
     parts_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model import Input, Output
-    from symflex.print.forms import PrintedForm
-    from symflex.transfer import AnyTransferFunction
-
+from symflex.transfer import AnyTransferFunction
 
 INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
 SPACED_TIMES: Final = '<mo lspace="0.17em" rspace="0">&#x2062;</mo>'

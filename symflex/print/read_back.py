@@ -13,6 +13,7 @@ their differential equations say. Balls that do not meet prove that a form is wr
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,8 +22,8 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from flint import acb, arb, fmpq
 
-from symflex.algebra import LAPLACE, Factored
-from symflex.balls import at_centre, precision
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel
+from symflex.balls import Value, at_centre, precision
 from symflex.budget import spend
 from symflex.errors import REPORT, Diagnostic, InternalError, SpecError, Text
 from symflex.expressions import (
@@ -42,17 +43,12 @@ from symflex.expressions import (
 )
 from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
+from symflex.transfer import AnyTransferFunction
 from symflex.transfer.enclose import principal_values
-from symflex.transfer.probes import SOLVED_BITS, probes_of
+from symflex.transfer.probes import SOLVED_BITS, Probes, probes_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.algebra import Dispersion, Kernel
-    from symflex.balls import Value
     from symflex.print.forms.printed import PrintedForm
-    from symflex.transfer import AnyTransferFunction
-    from symflex.transfer.probes import Probes
 
 PRECISIONS: Final = (64, 192, 576)
 """Bits at which points are tried that are not decided with fewer."""

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import sympy
+from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored
 from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, fold, substitute
+from symflex.model import Model
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
-from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from flint import fmpz_mpoly
     from sympy.physics.control import TransferFunction as SympyTransferFunction
-
-    from symflex.algebra import Factored
-    from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.transfer import TransferFunction
 
 
 def symbols_of(model: Model) -> dict[str, sympy.Symbol]:

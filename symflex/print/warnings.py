@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from symflex.equations import Equations
 from symflex.equations.elimination import is_singular, unreached
 from symflex.errors import Diagnostic, SymflexError
 from symflex.expressions import Sum
+from symflex.model import Model
 from symflex.model.unused import unnamed_definitions, unused_name
 from symflex.transfer.of_model import NEVER_LARGE, assemble_for_checks, derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.equations import Equations
-    from symflex.model import Model
 
 FEW_UNKNOWNS = 1_000
 """Unknowns up to which a dense matrix of numbers takes a quarter of a second."""

@@ -10,12 +10,10 @@ chapter 18: four mu at a plus, five at an equals sign, none in scripts.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from string import digits, punctuation
-from typing import TYPE_CHECKING, Final
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+from typing import Final
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from symflex.algebra.ring import FUNCTIONS
 from symflex.expressions import (
@@ -30,7 +30,7 @@ from symflex.expressions import (
     Sum,
 )
 from symflex.expressions.format import number_text
-from symflex.print.label import symbol
+from symflex.print.label import Label, symbol
 from symflex.print.width import (
     CDOT_SIZES,
     DIGIT_SIZES,
@@ -52,9 +52,6 @@ from symflex.print.width import (
     total,
     widest,
 )
-
-if TYPE_CHECKING:
-    from symflex.print.label import Label
 
 
 class Shape(IntEnum):

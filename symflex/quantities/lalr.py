@@ -14,11 +14,9 @@ from __future__ import annotations
 
 import json
 import re
-from typing import TYPE_CHECKING, Any, Final
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence, Set
-    from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence, Set
+from pathlib import Path
+from typing import Any, Final
 
 END: Final = "$END"
 

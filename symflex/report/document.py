@@ -15,15 +15,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from symflex.errors import SymflexError, UncertifiedError
+from symflex.expressions import Expression
 from symflex.figures import render
+from symflex.model import Model
 from symflex.print.latex import latex_expression, model_labels
 from symflex.print.mathml import MathRow, mathml_expression
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from symflex.expressions import Expression
-    from symflex.model import Model
 
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]

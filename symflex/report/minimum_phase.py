@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Literal
 
 from symflex.budget import spend
 from symflex.errors import BudgetError
-from symflex.expressions import negative, sum_of
+from symflex.expressions import Expression, negative, sum_of
 from symflex.letters.routh import conditions_of, is_passive
+from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.expressions import Expression
-    from symflex.transfer import TransferFunction
 
 Kind = Literal["always", "never", "if positive", "as given", "unknown"]
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
@@ -22,17 +24,13 @@ from symflex.model.spec import read
 from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
-from symflex.transfer import TransferFunction
+from symflex.roots import PoleZeroMap
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from pathlib import Path
-
     import numpy.typing as npt
 
     from symflex.data.measurement import MeasuredResponse
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 MOST_FUNCTIONS: Final = 24

@@ -14,6 +14,7 @@ these is larger than all others together, the circle holds k roots (Rouche 1862)
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -30,13 +31,11 @@ from symflex.roots.functions.kernel_function import split_off_kernels
 from symflex.roots.pole_zero_map import HiddenRoot
 from symflex.roots.problem import cancelled
 from symflex.roots.root import Root, count_roots, overlap
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import assemble_sparse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from symflex.roots.networks.cramer import CramerEquations
-    from symflex.transfer import BoundTransferFunction
 
 NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
 POINT_DIGITS = 50

@@ -12,6 +12,7 @@ Every root is proved whoever found it; a poor engine costs time and never a wron
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
@@ -19,14 +20,11 @@ from typing import TYPE_CHECKING
 from symflex.roots.axes.lossless import LosslessSearch, lossless_search
 from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.plane.search import RootSearch
-from symflex.roots.polynomials.discs import propose_by_durand_kerner, propose_by_laguerre
+from symflex.roots.polynomials.discs import Proposer, propose_by_durand_kerner, propose_by_laguerre
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
     from symflex.roots.counting.argument_principle import CertifiedWinding
     from symflex.roots.functions.kernel_function import KernelFunction
-    from symflex.roots.polynomials.discs import Proposer
 
     Start = Callable[["Sought"], Iterator[RootSearch | LosslessSearch]]
 

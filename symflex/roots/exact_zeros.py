@@ -9,20 +9,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import isqrt, lcm
-from typing import TYPE_CHECKING
 
 from flint import fmpz_poly
 
 from symflex.algebra import LAPLACE, Factored, by_powers
-from symflex.algebra.exponential_sum import arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import Argument, arguments_of, exponential_sum
 from symflex.roots.functions.kernel_function import has_kernels
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import is_complex, problem_of
 from symflex.roots.root import Root, overlap
-
-if TYPE_CHECKING:
-    from symflex.algebra.exponential_sum import Argument
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 
 def is_shared_exactly(bound: BoundTransferFunction, root: Root, digits: int) -> bool:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from cmath import exp as cexp
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from math import exp, inf, isfinite, pi
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
+from symflex.equations import Equations
 from symflex.equations.elimination import free_at_rest
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.model import with_numbers
+from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import check_causal, has_loss_factors
 from symflex.model.model import IMAGINARY
+from symflex.roots.counting.winding import Cell
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.distributed.proof import limits
 from symflex.roots.distributed.right_half_plane import (
@@ -53,16 +55,8 @@ from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
 from symflex.roots.root import ROUNDING, TOUCHING, Root, overlap, root_at_zero
 from symflex.roots.sheets import locate_on_sheet
-from symflex.transfer import BoundNested
+from symflex.transfer import AnyBoundFunction, BoundNested, BoundTransferFunction
 from symflex.transfer.of_model import assemble, assemble_sparse, derive_bound, derive_if_small
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.equations import Equations
-    from symflex.model import Model
-    from symflex.roots.counting.winding import Cell
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 
 def locate(

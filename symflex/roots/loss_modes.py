@@ -12,10 +12,11 @@ plane like any other, but for its mirror images: with j among its coefficients i
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from flint import acb
+from flint import acb, fmpz_mpoly
 
 from symflex.algebra import by_powers, degree_in, summed, terms_of
 from symflex.balls import precision
@@ -33,16 +34,9 @@ from symflex.roots.pole_zero_map import (
 )
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
-from symflex.roots.region import Everything
+from symflex.roots.region import Everything, Region
 from symflex.roots.root import LossyRoot, Root
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.roots.region import Region
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 NO_STABILITY: Final = StabilityVerdict(
     "unknown",

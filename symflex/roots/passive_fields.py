@@ -16,28 +16,21 @@ Where a layer couples displacements G is a symmetric matrix with semidefinite co
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, combinations, permutations, product
-from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.algebra import LAPLACE, Factored, by_powers, composed, degree_in, evaluated
 from symflex.balls import precision
-from symflex.equations import assemble
-from symflex.expressions import Name
-from symflex.library.elements import LinearForm, put_in
+from symflex.equations import Continuum, Equations, assemble
+from symflex.expressions import Call, Name
+from symflex.library.elements import LinearForm, Terms, Variable, put_in
+from symflex.model import ExactValue, Model
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.signs import Line, sign_between, sign_of, value_along
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from symflex.equations import Continuum, Equations
-    from symflex.expressions import Call
-    from symflex.library.elements import Terms, Variable
-    from symflex.model import ExactValue, Model
 
 BITS = 128
 MOST_STATES = 6

@@ -26,17 +26,18 @@ from ``abs(s)^2 = P/(rho A) (P/(EI) + 12/l^2)`` on.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from math import atan2, pi, prod
-from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
 from symflex.balls import ball, precision
+from symflex.equations import Equations
 from symflex.expressions import (
     Expression,
     Name,
@@ -50,23 +51,17 @@ from symflex.expressions import (
     nodes,
     substitute,
 )
+from symflex.library.elements import Terms
 from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
-from symflex.model import Signal
+from symflex.model import ExactValue, Model, Output, PlacedElement, Signal
 from symflex.model.along import COORDINATE
 from symflex.model.network import variable_of
 from symflex.model.signs import Line, follows_inputs, line_of, parameter_signs, value_along
 from symflex.roots.passive_fields import BITS, INERTIA, fields_supply_nothing, free_terms
 from symflex.roots.root import ROUNDING
 from symflex.transfer.of_model import assemble
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-
-    from symflex.equations import Equations
-    from symflex.library.elements import Terms
-    from symflex.model import ExactValue, Model, Output, PlacedElement
 
 PASSIVE = "passive, nothing supplies energy"
 COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"

@@ -5,6 +5,7 @@ What the poles say of stability, as far as they are known, is a :class:`Stabilit
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf, pi
@@ -18,8 +19,6 @@ from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
 from symflex.roots.root import ROUNDING, TOUCHING, Root, count_roots, groups, overlap
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
     from symflex.roots.problem import RootProblem
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cmp_to_key
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -13,13 +13,8 @@ from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, Proposer, connected
 from symflex.roots.polynomials.isolation import isolations
-from symflex.roots.problem import Splitting, SquareFreePart, split
+from symflex.roots.problem import RootProblem, Splitting, SquareFreePart, split
 from symflex.roots.root import GUARD_BITS, Root, count_roots, root_at_zero
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.roots.problem import RootProblem
 
 DISTINCTION_ROUNDS = 5
 """Doublings of the digits until roots of different factors are told apart."""

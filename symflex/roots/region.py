@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -13,9 +15,6 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions, band_ends, frequency
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from fractions import Fraction
-
     from symflex.roots.root import Root
 
 

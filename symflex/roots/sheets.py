@@ -12,13 +12,13 @@ how many there are. Factors without roots of s have their roots in s itself.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 from math import log, pi, prod
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import NO_KERNELS, Factored, degree_in, terms_of
 from symflex.balls import precision
@@ -38,16 +38,9 @@ from symflex.roots.pole_zero_map import (
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled
-from symflex.roots.region import Band, Everything, Modes, Rectangle
+from symflex.roots.region import Band, Everything, Modes, Rectangle, Region
 from symflex.roots.root import Root, count_roots, groups
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.roots.region import Region
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 EITHER_SHEET = "a root lies so close to the branch cut that its sheet is not decided"
 SINGULAR = "at its branch point s = 0 the function is infinite"

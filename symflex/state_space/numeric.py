@@ -6,7 +6,7 @@ Output: :class:`Arrays`, each entry rounded once.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite
@@ -15,22 +15,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import acb, acb_mat, arb, fmpz_mpoly
+from numpy import float64
 
 from symflex.balls import precision, precisions, value_at
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.errors.optional import installed
 from symflex.expressions import format_expression
+from symflex.model import ExactValue
+from symflex.state_space.popov import FieldElement
+from symflex.state_space.realise import Channel, StateSpace
 from symflex.transfer.enclose import enclosure, later
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     import numpy.typing as npt
-    from numpy import float64
-
-    from symflex.model import ExactValue
-    from symflex.state_space.popov import FieldElement
-    from symflex.state_space.realise import Channel, StateSpace
 
 
 @dataclass(frozen=True, slots=True)

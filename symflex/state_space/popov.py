@@ -20,19 +20,15 @@ The field in which the rows are solved is that of quotients of polynomials free 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from flint import fmpz_mpoly
+
+from symflex.algebra import Radicals, Ring
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Radicals, Ring
-
 
 Key = tuple[int, int]
 """A column and a power of s. Unknowns come first, then inputs."""

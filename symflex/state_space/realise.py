@@ -15,10 +15,10 @@ Example: a mass on a spring and a damper, pushed by F and read at its node.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.algebra import LAPLACE, Factored, Radicals, Ring
 from symflex.equations import ConstantFunction, Equations, assemble, radicals_of
 from symflex.equations.elimination import explain_singular
 from symflex.errors import Diagnostic, ModelError
@@ -26,6 +26,7 @@ from symflex.expressions import Attribute, Expression, Name, names, product_of
 from symflex.expressions import power as power_of
 from symflex.library.elements import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
+from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
@@ -40,13 +41,6 @@ from symflex.state_space.popov import (
     solve,
 )
 from symflex.transfer.derive import nested_transfer
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Radicals
-    from symflex.model import Model
-
 
 DISPLACEMENT, FLOW, VOLTAGE, SIGNAL = 0, 5, 6, 7
 """Weights of unknowns, where a derivative counts 4. What weighs most in an equation is solved for: velocities

@@ -28,14 +28,12 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY, ExactValue
-from symflex.options import duration, finite, frequency
+from symflex.options import Stated, duration, finite, frequency
 from symflex.state_space.numeric import Arrays, Matrices, rounding_of
+from symflex.state_space.realise import StateSpace
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-    from symflex.options import Stated
-    from symflex.state_space.realise import StateSpace
 
 Balls = Callable[[int], tuple[arb_mat, ...]]
 """A, B, C and D in balls of so many bits."""

@@ -15,21 +15,21 @@ Example: ``1/(m s^2 - k)`` for a mass m on a spring k at s = 1 + 1j rad/s, m = 2
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from random import Random
-from typing import TYPE_CHECKING
 
 from flint import acb
 
 from symflex.algebra import LAPLACE
 from symflex.balls import ball, current_bits, precision
 from symflex.budget import uncollected
-from symflex.equations import assemble
+from symflex.equations import Equations, assemble
+from symflex.equations.assemble import Nested
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
-from symflex.model import ExactValue
+from symflex.model import ExactValue, Model
 from symflex.model.along import is_tapered
 from symflex.transfer.direct_solve import (
     DirectSolve,
@@ -38,13 +38,6 @@ from symflex.transfer.direct_solve import (
     SingularPointError,
 )
 from symflex.transfer.enclose import enclosure
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.equations import Equations
-    from symflex.equations.assemble import Nested
-    from symflex.model import Model
 
 BITS = 192
 """Precision that is tried first; then one or two more an unknown, as long chains of members need."""

@@ -8,25 +8,22 @@ Example: ``1/(m s^2 + k)`` has a closed form and an expanded one; both must have
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, NO_KERNELS, PolynomialMemo
+from flint import acb, acb_mat
+
+from symflex.algebra import LAPLACE, NO_KERNELS, Dispersion, Factored, PolynomialMemo
 from symflex.balls import Arithmetic, at_centre, current_bits, plan
 from symflex.model.along import varies_along_x
 from symflex.transfer.against_equations import Agreement
 from symflex.transfer.direct_solve import GeneratorValues, Point, carried
-from symflex.transfer.transfer_function import TransferFunction
+from symflex.transfer.transfer_function import ClosedForm, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from flint import acb, acb_mat
-
-    from symflex.algebra import Dispersion, Factored
     from symflex.transfer.bound import BoundTransferFunction
-    from symflex.transfer.transfer_function import ClosedForm
 
 
 def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:

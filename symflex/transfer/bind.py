@@ -13,19 +13,21 @@ With values that make two factors equal, such as k_1 = k_2, what was apart befor
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
 from math import lcm
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, degree_in
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Factored, Radicals, Ring, degree_in
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression, names
-from symflex.model import ExactValue, with_numbers
+from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE
 from symflex.model.declarations import assuming
 from symflex.model.settings import exact_number
@@ -36,14 +38,6 @@ from symflex.transfer.bound import BoundTransferFunction, radicals_at
 from symflex.transfer.derive import derive, nested_transfer
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Radicals
-    from symflex.model import Model, ModelParameter
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""

@@ -9,31 +9,27 @@ the precision is raised until the ball is narrower than the last bit.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
 from math import prod
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from flint import acb, acb_poly, acb_series, arb
+from flint import acb, acb_poly, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import NO_KERNELS, Factored, KernelTable, PolynomialMemo, Ring, degree_in
+from symflex.algebra import NO_KERNELS, Factored, KernelTable, PolynomialMemo, Radicals, Ring, degree_in
 from symflex.balls import EvaluationPlan, at_centre, ball, expansion, plan, precision, value_at
 from symflex.budget import spend
 from symflex.equations import radicals_of
+from symflex.expressions import Call
+from symflex.model import ExactValue
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.transfer.double_value import double_value
 from symflex.transfer.enclose import enclosure, later
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Radicals
     from symflex.algebra.modal_sum import ModalSums
     from symflex.along.matrices import VaryingMatrices
-    from symflex.expressions import Call
-    from symflex.model import ExactValue
     from symflex.transfer.enclose_kernels import KernelValues
     from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 

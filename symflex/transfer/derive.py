@@ -8,15 +8,19 @@ A ``model`` block stands for a transfer function of its own model, over the ring
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, degree_in
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, Ring, degree_in
 from symflex.budget import spend
-from symflex.equations import assemble, radicals_of
-from symflex.equations.elimination import Determinants, explain_singular
+from symflex.equations import Equations, assemble, radicals_of
+from symflex.equations.elimination import Closure, Determinants, explain_singular
 from symflex.errors import BudgetError, Diagnostic, ModelError
+from symflex.model import Input, Output, PlacedBlock
 from symflex.model.along import is_tapered
 from symflex.transfer.against_equations import ModelSolve, compare
 from symflex.transfer.agreement import agreement
@@ -31,15 +35,7 @@ from symflex.transfer.transfer_function import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Ring
     from symflex.algebra.propagators import Propagation
-    from symflex.equations import Equations
-    from symflex.equations.elimination import Closure
-    from symflex.model import Input, Output, PlacedBlock
     from symflex.transfer.distributed import KernelReduction
 
 

@@ -15,32 +15,23 @@ Example: a mass m = 2 kg on a spring k = 8 N/m at s = 1 + 1j rad/s, from its one
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_series, arb
+from flint import acb, acb_mat, acb_series, arb, fmpz, fmpz_mpoly
 
-from symflex.algebra import FUNCTIONS, LAPLACE, evaluated, summed, terms_of
-from symflex.balls import UndecidedError, ball, current_terms, eliminate, raised, series_terms
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, evaluated, summed, terms_of
+from symflex.balls import Arithmetic, UndecidedError, ball, current_terms, eliminate, raised, series_terms
 from symflex.budget import spend
+from symflex.equations import Continuum, Equations
 from symflex.errors import ModelError
-from symflex.expressions import fold
+from symflex.expressions import Call, Expression, fold
+from symflex.library.elements import LinearForm, Variable
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
 from symflex.transfer.enclose import later
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz, fmpz_mpoly
-
-    from symflex.algebra import Factored
-    from symflex.balls import Arithmetic
-    from symflex.equations import Continuum, Equations
-    from symflex.expressions import Call, Expression
-    from symflex.library.elements import LinearForm, Variable
 
 ZERO = acb(0)
 FEW_TERMS = 16

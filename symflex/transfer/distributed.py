@@ -14,6 +14,7 @@ stood before, the wavenumber below would count as a pole at s = 0, which the rod
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -21,6 +22,8 @@ from itertools import accumulate, combinations, product, repeat
 from math import prod
 from operator import mul
 from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import (
     LAPLACE,
@@ -33,7 +36,7 @@ from symflex.algebra import (
     degree_in,
     irreducible_factors,
 )
-from symflex.algebra.exponentials import Exponentials, lift, split_content
+from symflex.algebra.exponentials import Exponentials, KernelPair, lift, split_content
 from symflex.algebra.normal_form import NormalForm
 from symflex.algebra.ring import by_powers
 from symflex.algebra.vanishing import OriginSeries, Vanishing
@@ -43,12 +46,6 @@ from symflex.transfer.expansion import KERNEL_TERMS
 from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.exponentials import KernelPair
-
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
 
 WAYS = 12

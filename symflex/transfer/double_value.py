@@ -7,6 +7,7 @@ accurate to 54 bits holds one double or two neighbours.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, isfinite, nan
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,6 @@ from flint import acb, arb
 from symflex.balls import precision, precisions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     Ball = Callable[[acb], acb]
 
 FIRST_BITS = 96

@@ -6,9 +6,9 @@ rational number where there is one. Example: ``sqrt(4)`` is a ball about 2. Theo
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isqrt, prod
-from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_series
 
@@ -16,14 +16,8 @@ from symflex.algebra import FUNCTIONS
 from symflex.balls import Arithmetic, ball
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Call, Expression, Number, fold, format_expression, names
+from symflex.model import ExactValue
 from symflex.quantities import IMAGINARY_UNIT
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from symflex.expressions import Call
-    from symflex.model import ExactValue
-
 
 MOST_FACTORS = 64
 """Power of a ball about 0 that is multiplied out, as logarithms tell nothing of it."""

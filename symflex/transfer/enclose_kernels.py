@@ -14,20 +14,17 @@ Example: a rod with ``gamma^2 = rho s^2/E``, c = sqrt(E/rho) = 5000 m/s, l = 1 m
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_poly, acb_series, arb
+from flint import acb, acb_mat, acb_poly, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.balls import Arithmetic, Value, at_centre, ball, current_bits, narrowed, raised, stays_inside
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
     from symflex.along.matrices import VaryingMatrices
     from symflex.along.minors import Minor

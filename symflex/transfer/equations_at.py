@@ -15,32 +15,25 @@ products of bounds; where abs(A) is at most B, entry by entry, abs(exp(A)) is at
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import prod
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb, fmpq
 
-from symflex.algebra import LAPLACE, Factored, composed, evaluated, terms_of
+from symflex.algebra import LAPLACE, Dispersion, Factored, composed, evaluated, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.along.law import BoundLaw
 from symflex.balls import Arithmetic, Value, at_centre, current_bits, eliminate, raised
-from symflex.expressions import names_among
+from symflex.equations import Equations
+from symflex.expressions import Call, names_among
 from symflex.library.elements import LinearForm
+from symflex.model import ExactValue
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.model.model import IMAGINARY, J
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order
 from symflex.transfer.enclose_kernels import fundamental_functions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
-
-    from symflex.algebra import Dispersion
-    from symflex.equations import Equations
-    from symflex.expressions import Call
-    from symflex.model import ExactValue
 
 Powers = Sequence[tuple[str, int]]
 Plan = tuple[acb, Powers, Sequence[tuple[int, Sequence[tuple[acb, Powers]], int]]]

@@ -6,25 +6,19 @@ Output: the same over a ring that has no generator for definitions, nor for prop
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from math import prod
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, MEMORY_LIMIT, Factored, Ring
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, MEMORY_LIMIT, Factored, Radicals, Ring
 from symflex.algebra.ring import TERM_LIMIT
 from symflex.budget import spend
-from symflex.equations import radicals_of
+from symflex.equations import Equations, radicals_of
+from symflex.equations.elimination import Closure
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.model.along import COORDINATE, is_tapered
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Radicals
-    from symflex.equations import Equations
-    from symflex.equations.elimination import Closure
 
 KERNEL_TERMS = 50_000
 """Terms of a quotient in kernels up to which it is reduced: four beams that differ in all have 29,000, which

@@ -11,26 +11,19 @@ polynomials coprime. The images of determinants come from the images of their en
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from random import Random
-from typing import TYPE_CHECKING
 
-from flint import nmod_poly
+from flint import fmpz_mpoly, nmod_poly
 
-from symflex.algebra import LAPLACE, Factored, PolynomialMemo, Ring, degree_in
+from symflex.algebra import LAPLACE, Factored, PolynomialMemo, Radicals, Ring, degree_in
+from symflex.algebra.radicals import Point
 from symflex.budget import spend
+from symflex.equations.elimination import Determinants
 from symflex.equations.elimination.determinants import DegreeBounds, Minors
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Radicals
-    from symflex.algebra.radicals import Point
-    from symflex.equations.elimination import Determinants
 
 
 def cancel(

@@ -16,19 +16,15 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
-from symflex.expressions import Name, Negative, Number, Product, Quotient, Sum, names
+from symflex.equations import Equations
+from symflex.expressions import Equation, Expression, Name, Negative, Number, Product, Quotient, Sum, names
 from symflex.library.elements.line import LineElement
 from symflex.library.fields import text
+from symflex.model import FieldProblem, Model, PlacedElement
 from symflex.model.boundary import depends_on_s, varying_constants
 from symflex.model.model import Definition
 from symflex.transfer.expansion import Expansion
-
-if TYPE_CHECKING:
-    from symflex.equations import Equations
-    from symflex.expressions import Equation, Expression
-    from symflex.model import FieldProblem, Model, PlacedElement
 
 
 @dataclass

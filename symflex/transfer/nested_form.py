@@ -16,6 +16,7 @@ functions are evaluated at points.
 from __future__ import annotations
 
 from cmath import isfinite
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -28,9 +29,10 @@ from flint import acb, acb_series
 
 from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable
 from symflex.algebra.straight_line import Operation, Step, StraightLine
-from symflex.balls import UndecidedError, ball, expansion, precision, precisions, raised
+from symflex.balls import Arithmetic, UndecidedError, Value, ball, expansion, precision, precisions, raised
 from symflex.budget import spend, uncollected
-from symflex.model import ExactValue
+from symflex.equations import ConstantFunction, Equations
+from symflex.model import ExactValue, Input, Model, ModelParameter, Output
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
 from symflex.transfer.bind import Given, bind, values_for
 from symflex.transfer.bound import BoundTransferFunction
@@ -46,16 +48,11 @@ from symflex.transfer.transfer_function import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     import numpy as np
     import numpy.typing as npt
 
-    from symflex.balls import Arithmetic, Value
-    from symflex.equations import ConstantFunction, Equations
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
-    from symflex.model import Input, Model, ModelParameter, Output
     from symflex.transfer.equations_at import EquationsAt
 
 CONSTANT_BITS = 256

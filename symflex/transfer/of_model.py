@@ -7,33 +7,31 @@ would explode.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 from symflex import equations as equations_room
-from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra import LAPLACE, KernelTable, terms_of
 from symflex.budget import spend, uncollected
+from symflex.equations import Equations
 from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.library.elements import LineElement
-from symflex.model import with_numbers
+from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
 from symflex.transfer import nested_form
 from symflex.transfer.bind import LOSSY_TAPER, bind, is_degenerate
+from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.derive import Terms, nested_transfer
 from symflex.transfer.derive import derive_all as derive_from
-from symflex.transfer.nested_form import bind_nested
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.algebra import KernelTable
-    from symflex.equations import Equations
-    from symflex.model import Model
-    from symflex.transfer.bound import BoundTransferFunction
-    from symflex.transfer.nested_form import AnyBoundFunction, AnyTransferFunction, NestedTransferFunction
-    from symflex.transfer.transfer_function import TransferFunction
+from symflex.transfer.nested_form import (
+    AnyBoundFunction,
+    AnyTransferFunction,
+    NestedTransferFunction,
+    bind_nested,
+)
+from symflex.transfer.transfer_function import TransferFunction
 
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""

@@ -14,6 +14,7 @@ put into polynomials, as :func:`symflex.transfer.bind` puts them: nothing cancel
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -21,7 +22,7 @@ from math import sqrt, tau
 from random import Random
 from typing import TYPE_CHECKING, Final, Literal
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, PolynomialMemo, evaluated
 from symflex.balls import at_centre, ball, current_bits, plan, precision
@@ -30,16 +31,10 @@ from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
 from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.enclose import enclosure, later, principal_values
-from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
+from symflex.transfer.nested_form import AnyTransferFunction, BoundNested, NestedTransferFunction
+from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.transfer.nested_form import AnyTransferFunction
-    from symflex.transfer.transfer_function import TransferFunction
-
     Kind = Literal["drawn", "declared", "solved"]
     Directions = tuple[tuple[str, str], ...]
     Values = Mapping[str, ExactValue]

@@ -5,25 +5,21 @@ What it is called follows from the dimensions of its ends.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, degree_in
-from symflex.equations import radicals_of
+from flint import acb, fmpz_mpoly
+
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, Ring, degree_in
+from symflex.equations import ConstantFunction, radicals_of
+from symflex.equations.elimination import Closure
 from symflex.expressions import Name, names
-from symflex.quantities import unit_of
+from symflex.model import Input, Model, ModelParameter, Output
+from symflex.quantities import Dimension, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence, Set
-
-    from flint import acb, fmpz_mpoly
-
-    from symflex.algebra import Factored, Radicals, Ring
-    from symflex.equations import ConstantFunction
-    from symflex.equations.elimination import Closure
-    from symflex.model import Input, Model, ModelParameter, Output
-    from symflex.quantities import Dimension
     from symflex.transfer.against_equations import ModelSolve
     from symflex.transfer.expansion import Opening
 

@@ -14,21 +14,17 @@ Functions of a member are independent names here: what holds of these holds of t
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, PRIME, Factored, random_point, residue
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.analysis.explanation.parts import Relation, opened, same_generators, varying
+from symflex.equations import Equations
 from symflex.equations.elimination.singular import matrix_of
+from symflex.library.elements import LinearForm, Variable
 from symflex.transfer.equations_at import EquationsAt
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.equations import Equations
-    from symflex.library.elements import LinearForm, Variable
 
 MOST_ORDER = 4
 """Highest power of s, and of a delay, that is looked for in a quotient."""

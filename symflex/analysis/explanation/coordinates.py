@@ -9,11 +9,12 @@ two fields, with the force a jump of the shear in a condition of ``w_2``, the ou
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
+from symflex.equations import Equations
 from symflex.expressions import (
     Attribute,
     Call,
@@ -30,16 +31,10 @@ from symflex.expressions import (
 )
 from symflex.library.elements import COMPONENTS, Domain, LinearForm, LineElement, Variable
 from symflex.library.elements.lumped import CurrentSource, ForceSource, TorqueSource, VoltageSource
+from symflex.model import Input, Model, PlacedElement
 from symflex.model.model import INPUT_KINDS, NetworkNode, NodeReference
 from symflex.model.network import variable_of
 from symflex.model.signs import Line
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterator, Mapping
-
-    from symflex.equations import Equations
-    from symflex.model import Input, Model, PlacedElement
-
 
 Coordinates = tuple[tuple[Variable, int], ...]
 """One coordinate, or two with opposite signs; the first counts once."""

@@ -9,11 +9,13 @@ nonpropagating bending (Miu 1991).
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
 from symflex.analysis.explanation.coordinates import acting, holds, measured
 from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of, opened
+from symflex.equations import Equations
 from symflex.expressions import (
     Call,
     Derivative,
@@ -27,14 +29,7 @@ from symflex.expressions import (
 from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.library.elements.line import Beam
 from symflex.library.elements.rigid import MasslessBeam
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from symflex.algebra import Factored
-    from symflex.equations import Equations
-    from symflex.model import FieldProblem, Input, Model, NodeReference, Output, PlacedElement
-
+from symflex.model import FieldProblem, Input, Model, NodeReference, Output, PlacedElement
 
 BENDING = {(True, True): "clamped", (True, False): "pinned", (False, True): "sliding", (False, False): "free"}
 """Names of ends by whether deflection and slope are held."""

@@ -10,27 +10,22 @@ ring of the equations.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.analysis.explanation.coordinates import collected
+from symflex.equations import Equations
 from symflex.equations.elimination import Determinants
 from symflex.library.elements import COMPONENTS, EquationRow, LinearForm, Variable
 from symflex.library.elements.rigid import Fixed, Pin, Slider
+from symflex.model import Model, PlacedElement
 from symflex.model.network import variable_of
 from symflex.transfer.expansion import compose_rational
 from symflex.transfer.lowest_terms import cancel
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.equations import Equations
-    from symflex.model import Model, PlacedElement
-
 
 SUPPORTS = (Fixed, Pin, Slider)
 

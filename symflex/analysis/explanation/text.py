@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from symflex.print.text import Passage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from symflex.analysis.explanation.ends import Bending
     from symflex.analysis.explanation.parts import ConstrainedPart
     from symflex.roots import Root

@@ -7,23 +7,18 @@ Example: ``[1 -2; -2 4]`` takes (2, 1) to zero. Theorem: see :func:`null_space`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.algebra import LAPLACE
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
 from symflex.balls import balancing, binary_exponent, current_bits
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.equations import Continuum
-    from symflex.library.elements import Variable
-    from symflex.transfer.equations_at import NamedValues
-
+from symflex.equations import Continuum
+from symflex.library.elements import Variable
+from symflex.transfer.equations_at import NamedValues
 
 SEED = 7
 PASSES = 2

@@ -6,10 +6,10 @@ Input: :class:`symflex.transfer.BoundTransferFunction` and the number of a mode,
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
@@ -19,23 +19,17 @@ from symflex.balls import precision
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
+from symflex.library.elements import Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
 from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
-from symflex.transfer import nested_transfer
+from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.transfer import AnyBoundFunction, nested_transfer
 from symflex.transfer.bind import read_values
-from symflex.transfer.equations_at import EquationsAt
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.library.elements import Variable
-    from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import AnyBoundFunction
-    from symflex.transfer.equations_at import NamedValues
+from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 DIGITS = 15
 SPARE_DIGITS = 15

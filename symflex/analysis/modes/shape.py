@@ -5,24 +5,19 @@ Amplitudes are found up to a factor and divided by the largest displacement.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, log2, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
+from symflex.along.law import BoundLaw
 from symflex.balls import current_bits, precision
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.library.elements import Variable
 from symflex.roots import Root
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from symflex.along.law import BoundLaw
-    from symflex.library.elements import Variable
-
 
 SQUARINGS = 7
 """The 128th root of the 128th power of a matrix is near its spectral radius, whatever its size."""

@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import takewhile
-from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
@@ -32,11 +31,8 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import as_quotient, locate
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, modes_of
+from symflex.transfer import AnyBoundFunction
 from symflex.transfer.bound import EnclosedTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.transfer import AnyBoundFunction
-
 
 FURTHER = (1, 4)
 """Modes beyond those kept that are looked for: a double root counts as two and is not divided."""

@@ -9,6 +9,7 @@ compares residues and stays finite, and is taken for the error at the pole.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import inf, isfinite, pi
@@ -23,20 +24,18 @@ from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
 from symflex.print.text import Passage, passages_text
+from symflex.roots import PoleZeroMap, Root
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import BoundState, BoundStateSpace
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
     import numpy.typing as npt
     import sympy
 
     from symflex.analysis.rational.laurent import PrincipalPart
-    from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 DIP = 0.1

@@ -14,12 +14,11 @@ Residues, how much of each mode a transfer function holds, are the first coeffic
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
@@ -56,14 +55,9 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import GUARD_BITS
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 from symflex.transfer.double_value import DOUBLE_BITS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
-    from symflex.transfer.enclose_kernels import KernelValues
-
+from symflex.transfer.enclose_kernels import KernelValues
 
 FINER = (1, 2, 4)
 """Times the digits asked for, to which the determinants of a network are known."""

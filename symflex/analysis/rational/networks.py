@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 from flint import acb
 
@@ -22,10 +21,8 @@ from symflex.roots.locate import equations_of
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import SERIES_BITS, DiscSearch, DiscSide
 from symflex.roots.networks.disc_series import DiscSeries, ball_about_zero
+from symflex.transfer import BoundNested
 from symflex.transfer.equations_at import EssentialSingularityError
-
-if TYPE_CHECKING:
-    from symflex.transfer import BoundNested
 
 Taylor = Callable[[acb, int], list[acb] | None]
 """The Taylor coefficients of a function at a point, as many as are wanted."""

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import warnings
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import tau
 from typing import TYPE_CHECKING
@@ -31,14 +32,11 @@ from symflex.roots.locate import locate
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
 from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space
 from symflex.state_space.popov import FieldElement
+from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
+from symflex.transfer.bound import Enclosed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     import numpy.typing as npt
-
-    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
-    from symflex.transfer.bound import Enclosed
 
 TRANSFER_FUNCTION, STATE_SPACE, ZEROS_POLES_GAIN = "transfer-function", "state-space", "zeros-poles-gain"
 CONTROL_FORMS = (TRANSFER_FUNCTION, STATE_SPACE)

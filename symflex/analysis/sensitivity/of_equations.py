@@ -15,26 +15,20 @@ keeps it (Moore 1966), and its derivative is that of the implicit function.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored
 from symflex.analysis.modes.bound_equations import BESIDE, SingularPair, singular_pair
 from symflex.balls import bits_for_digits, precision, precisions
 from symflex.budget import spend
+from symflex.roots import Root
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
-from symflex.transfer.equations_at import holds
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.roots import Root
-    from symflex.transfer.equations_at import EquationsAt
+from symflex.transfer.equations_at import EquationsAt, holds
 
 MOST_TIMES = 8
 """Largest factor on the first precision; what is not enclosed then is not for want of bits."""

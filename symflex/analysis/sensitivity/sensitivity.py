@@ -11,15 +11,18 @@ the coefficients of the dispersion relations, wavenumbers and lengths, to the ke
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from flint import acb, acb_mat, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import (
     LAPLACE,
     NO_KERNELS,
+    Dispersion,
     Factored,
     PolynomialMemo,
     Ring,
@@ -47,20 +50,13 @@ from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
+from symflex.roots import PoleZeroMap, Root
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction, real_json
+from symflex.transfer import AnyBoundFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order, later
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.equations_at import EquationsAt
 from symflex.transfer.of_model import NEVER_LARGE, assemble_sparse, derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from fractions import Fraction
-
-    from symflex.algebra import Dispersion
-    from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import AnyBoundFunction, TransferFunction
-
 
 Kind = Literal["pole", "zero"]
 Status = Literal["certified", "multiple", "undecided"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -9,13 +10,11 @@ import sympy
 from flint import arb
 
 from symflex.balls import precision
+from symflex.roots import Root
 from symflex.roots.root import NEARLY_ZERO, decimals, figure
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.analysis.sensitivity import RootDerivative
-    from symflex.roots import Root
 
 
 WIDTH = 80

@@ -18,20 +18,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import isqrt, lcm, prod
-from typing import TYPE_CHECKING
 
-from flint import acb, arb, arb_poly
+from flint import acb, arb, arb_poly, fmpz_mpoly
 
-from symflex.algebra import Factored, Ring, degree_in
+from symflex.algebra import Dispersion, Factored, Ring, degree_in
 from symflex.algebra.exponential_sum import Argument, Exponent, arguments_of, exponential_sum
 from symflex.balls import at_centre, ball
 from symflex.roots.problem import PolynomialInS, RealConstant
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 Delay = tuple[tuple[int, Fraction], ...]
 """Positions of independent durations, ascending, and what each is multiplied with; not zero."""

@@ -16,6 +16,7 @@ off, and the loop need not be stable.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
@@ -41,14 +42,12 @@ from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots import Root
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
 
 
 class TooManyEchoesError(Exception):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from operator import sub
@@ -15,8 +16,6 @@ from symflex.print.text import aligned, broken
 from symflex.roots.root import RootDecimals, decimals, figure
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
 
     from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum

@@ -7,34 +7,30 @@ then. Nothing of that is proved.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.rational.laurent import expand_at_zero, residues_at
+from symflex.analysis.rational.laurent import PrincipalPart, expand_at_zero, residues_at
 from symflex.analysis.time_response.effort import EFFORT
-from symflex.analysis.time_response.function_size import ring_about
+from symflex.analysis.time_response.function_size import Annulus, ring_about
 from symflex.analysis.time_response.modal import BITS, at_origin, term_of
-from symflex.analysis.time_response.partial_fractions import values_of
+from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
 from symflex.analysis.time_response.sampled import PartialSum, Sampled
 from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots import Root
 from symflex.roots.distributed.proof import holes_about
 from symflex.roots.distributed.side import accumulation_points
 from symflex.roots.locate import locate
 from symflex.roots.region import Modes
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.analysis.rational.laurent import PrincipalPart
-    from symflex.analysis.time_response.function_size import Annulus
-    from symflex.analysis.time_response.partial_fractions import ExponentialTerm
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.transfer import AnyBoundFunction
 
 
 def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> Sampled:

@@ -12,6 +12,7 @@ All times are whole multiples of one duration, so the sum is a product of polyno
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise, zip_longest
@@ -29,15 +30,13 @@ from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.options import exact
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
 
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response.enclosed_response import EnclosedResponse
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 MORE_DIGITS = 10
 """Digits of the ramp's response beyond those printed: after many bends large terms cancel each other."""

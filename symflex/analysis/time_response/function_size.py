@@ -7,6 +7,7 @@ poles that a sum over modes leaves out may add to a response. What knows that is
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -16,24 +17,21 @@ from typing import TYPE_CHECKING, ClassVar
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra.exponential_sum import REAL
+from symflex.algebra.exponential_sum import REAL, Exponent
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
 from symflex.analysis.time_response.sampled import ZERO
 from symflex.balls import UndecidedError, at_centre, ball, covered, precision
 from symflex.budget import spend
+from symflex.roots import Root
 from symflex.roots.counting.argument_principle import LogarithmicLine
+from symflex.roots.counting.winding import Cell
 from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.algebra.exponential_sum import Exponent
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.roots.counting.winding import Cell
-    from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

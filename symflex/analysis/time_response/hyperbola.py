@@ -17,19 +17,15 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from math import acosh, ceil, log, pi, sin
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb
 
 from symflex.algebra import degree_in
-from symflex.analysis.time_response.sampled import Sampled, is_precise
+from symflex.analysis.time_response.sampled import Asked, Sampled, is_precise
 from symflex.balls import ball, bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sampled import Asked
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi
 """Angle a of the path, how far the outermost hyperbolas are turned from it, and more than arg z on them."""

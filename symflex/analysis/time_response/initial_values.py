@@ -9,35 +9,31 @@ a function of s whose impulse response is the motion. States that are not named 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from operator import add
 from typing import TYPE_CHECKING
 
-from symflex.analysis.time_response.enclosed_response import FREE
+from symflex.analysis.time_response.enclosed_response import FREE, EnclosedResponse
 from symflex.analysis.time_response.find import time_response
 from symflex.balls import precision
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Source, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression, quotient
-from symflex.model import Output, load_with, with_numbers
+from symflex.model import Model, Output, load_with, with_numbers
 from symflex.print.forms.arrange import Arranger
 from symflex.quantities import parse_quantity, unit_of
-from symflex.state_space.realise import derivative, quantity_of, realise, unit_of_quantity
+from symflex.state_space.popov import FieldElement
+from symflex.state_space.realise import StateSpace, derivative, quantity_of, realise, unit_of_quantity
+from symflex.transfer import AnyBoundFunction
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.of_model import derive_bound
 from symflex.transfer.transfer_function import unit_of_response
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symflex.analysis.input_shaping import InputShaper
-    from symflex.analysis.time_response.enclosed_response import EnclosedResponse
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.model import Model
-    from symflex.state_space.popov import FieldElement
-    from symflex.state_space.realise import StateSpace
-    from symflex.transfer import AnyBoundFunction
 
 BITS = 256
 """Precision of sums: rounding adds nothing to the balls of their terms."""

@@ -14,6 +14,7 @@ force moves where nothing else supplies energy, see :mod:`~symflex.analysis.time
 from __future__ import annotations
 
 from cmath import sqrt as csqrt
+from collections.abc import Callable, Mapping
 from math import log, pi
 from typing import TYPE_CHECKING
 
@@ -28,8 +29,9 @@ from symflex.analysis.time_response.passive_modes import passive_bound
 from symflex.analysis.time_response.sampled import PartialSum, Refused
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
+from symflex.roots import Root
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.degenerate import degenerate_points
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
@@ -37,15 +39,11 @@ from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Modes
 from symflex.roots.root import overlap
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from symflex.analysis.time_response.function_size import Annulus, ModesBound, Ring
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.roots.counting.winding import Cell
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 SEARCHED_TOO_LONG = "SF505"
 """The code of a search that ends by itself, next to roots that accumulate; the user's own budgets end all."""

@@ -14,6 +14,7 @@ large coefficients of opposite sign; the digits that these lose are made up for 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
@@ -24,14 +25,12 @@ from flint import acb, acb_poly, acb_series, arb, arb_mat
 
 from symflex.analysis.rational.laurent import principal_part
 from symflex.balls import raised, series_quotient, series_terms
+from symflex.roots import Root
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.bound import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,7 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.analysis.explanation.coordinates import (
     PAIR,
+    Coordinates,
     acting,
     driven_source,
     in_one_way,
@@ -47,20 +48,18 @@ from symflex.analysis.time_response.function_size import BoundBySize, Rest, Size
 from symflex.analysis.time_response.sampled import Refused
 from symflex.balls import ball, precision
 from symflex.expressions import Attribute, Expression, Name, Negative, Number, Sum, substitute
-from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
+from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, Variable
+from symflex.model import Model
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import line_of, value_along
+from symflex.roots import Root
 from symflex.roots.passivity import energy_proof
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
 
 if TYPE_CHECKING:
-    from symflex.analysis.explanation.coordinates import Coordinates
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.library.elements import Variable
-    from symflex.model import Model
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
 
 STEP, RAMP = 1, 2
 """Impulses, integrated so often."""

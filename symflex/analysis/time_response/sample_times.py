@@ -23,12 +23,11 @@ from symflex.analysis.response import real_numbers, roots_if_found
 from symflex.balls import at_centre, ball
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
+from symflex.roots import PoleZeroMap
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction
 
 MOST_TIMES = 1_000_000
 """As many lines as a file of measured data may have."""

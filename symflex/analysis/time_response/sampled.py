@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -9,13 +10,11 @@ from typing import TYPE_CHECKING, Final
 from flint import arb
 
 from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from symflex.analysis.time_response.partial_fractions import ExponentialTerm
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.transfer import BoundTransferFunction
 
 
 ZERO: Final = arb(0)

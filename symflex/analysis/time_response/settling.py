@@ -14,34 +14,30 @@ through, such as 1 in ``s/(s + e^(-s))``, is left out of the integral: after tha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
 
-from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
+from symflex.analysis.time_response.delayed_terms import NO_DELAY, Amplitude, Delay, DelayedQuotient, later
 from symflex.analysis.time_response.echoes import earliest, echoed, echoes, terms_of_echo
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.modal import proved_at_origin, term_at
-from symflex.analysis.time_response.partial_fractions import values_of
+from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
 from symflex.analysis.time_response.sampled import Sampled
 from symflex.balls import UndecidedError, bits_for_digits, covered, precision
 from symflex.budget import spend
-from symflex.roots import Modes
+from symflex.roots import Modes, Root
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.analysis.time_response.delayed_terms import Amplitude, Delay, DelayedQuotient
-    from symflex.analysis.time_response.partial_fractions import ExponentialTerm
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

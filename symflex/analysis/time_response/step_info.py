@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -40,12 +41,10 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import figure, real_json
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.analysis.time_response.sampled import PartialSum
-    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RISE = (0.1, 0.9)
 """Shares of the final value between which the rise time is counted."""

@@ -18,13 +18,14 @@ place of series. Nothing is known or asked of poles, and loops need not be stabl
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, acb_series, arb, arb_poly, arb_series
 
-from symflex.algebra import Factored, degree_in
+from symflex.algebra import Dispersion, Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayReader, later, sum_of
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
@@ -34,13 +35,10 @@ from symflex.balls import Value, at_centre, ball, bits_for_digits, precision, se
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.problem import polynomial_in_s
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Dispersion
     from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, eq=False)

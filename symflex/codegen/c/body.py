@@ -12,19 +12,16 @@ axis powers of s are real or imaginary, and so is most of what they are multipli
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from itertools import count
-from typing import TYPE_CHECKING
 
 from symflex.codegen.export import parts_of
 from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
 
 FEW, DEEPEST = 3, 3
 """Powers up to which are products, and calls nested in each other from which a variable is made."""

@@ -9,9 +9,9 @@ compilers make it work on several values at once: in lanes.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import (
     AXIS_LANE,
@@ -30,9 +30,6 @@ from symflex.codegen.c.body import (
     quotient,
 )
 from symflex.codegen.program import nodes as tree
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ Output: the texts of both files.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import count
-from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
 from symflex.codegen.c.functions import Functions, fits_lanes
-from symflex.codegen.export import Export, Language, Outline, called_parts
+from symflex.codegen.export import Contents, Export, Language, Outline, called_parts
 from symflex.codegen.module_text import (
     BlockComment,
     default_value,
@@ -22,11 +22,6 @@ from symflex.codegen.module_text import (
     wrapped,
 )
 from symflex.errors import Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.codegen.export import Contents
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 

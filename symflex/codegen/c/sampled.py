@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symflex.codegen.c.body import KEYWORDS, RESERVED, WIDTH
 from symflex.codegen.c.module import COMMENT, prefix_of, source_and_header
-from symflex.codegen.sampled import SampledLanguage
-
-if TYPE_CHECKING:
-    from symflex.codegen.export import Export
-    from symflex.codegen.sampled import StepFile, StepFunction
+from symflex.codegen.export import Export
+from symflex.codegen.sampled import SampledLanguage, StepFile, StepFunction
 
 ROOM = WIDTH - 3
 """Columns of a comment."""

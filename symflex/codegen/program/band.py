@@ -24,33 +24,26 @@ is driven. Up to 3 rad/s, with the poles at ``j pi/2`` and, beyond, at ``3 j pi/
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from math import inf, log2, prod, sqrt, tau
-from typing import TYPE_CHECKING
 
 from flint import acb, arb, fmpq
 
 from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
-from symflex.codegen.program.nodes import Laplace, RootFactor, Within
+from symflex.codegen.program.nodes import Laplace, Piecewise, RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
+from symflex.roots import PoleZeroMap, Root
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
 from symflex.roots.root import groups, modes_of
-from symflex.transfer import BoundNested
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested, BoundTransferFunction
+from symflex.transfer.bound import Enclosed
 from symflex.transfer.nested_form import EnclosedNested
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.codegen.program.nodes import Piecewise
-    from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundTransferFunction
-    from symflex.transfer.bound import Enclosed
-
 
 CLOSED_TERMS = 60
 """Terms with kernels up to which a formula is short: twice as many are some hundred kilobytes of code."""

@@ -12,15 +12,18 @@ second or so, nor a product of many impedances, so nothing overflows long before
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
-from symflex.codegen.program.nodes import ParameterValue, Solve
+from symflex.codegen.program.nodes import ParameterValue, Piecewise, Solve
 from symflex.codegen.program.polynomials import (
     RingValues,
     degree_of,
@@ -28,23 +31,17 @@ from symflex.codegen.program.polynomials import (
     express,
     plan_recurrences,
 )
+from symflex.equations import ConstantFunction
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import Expression, Name, fold
+from symflex.model import Model
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
 from symflex.print.forms.nested import step_names
+from symflex.transfer import NestedTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Ring
-    from symflex.codegen.program.nodes import Piecewise
-    from symflex.equations import ConstantFunction
     from symflex.equations.line_network import LineNetwork
-    from symflex.model import Model
-    from symflex.transfer import NestedTransferFunction, TransferFunction
 
 
 TERM_LIMIT = 20_000

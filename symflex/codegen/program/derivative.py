@@ -12,14 +12,11 @@ of the operations (Griewank and Walther, Evaluating Derivatives, 2008, chapter 3
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce
-from typing import TYPE_CHECKING
 
 from symflex.codegen.program import nodes as tree
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _TWO = tree.RealNumber(Fraction(2))
 

@@ -9,19 +9,24 @@ kernels that cancel each other do so before anything is rounded.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
 from math import gcd, prod
 from operator import mul
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from symflex.algebra import LAPLACE, Factored, degree_in
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in
 from symflex.algebra.normal_form import NormalForm
 from symflex.balls import value_at
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT, forge_of
 from symflex.codegen.program.exponents import (
+    KernelSum,
+    Key,
     RealAxis,
     derivative_at_zero,
     expand,
@@ -30,7 +35,7 @@ from symflex.codegen.program.exponents import (
     in_other_lengths,
 )
 from symflex.codegen.program.forge import Forge, straight
-from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
+from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise, Straight
 from symflex.codegen.program.series import (
     SERIES_ERROR,
     LocalBasis,
@@ -39,21 +44,11 @@ from symflex.codegen.program.series import (
     taylor_term,
     wave_basis,
 )
-from symflex.codegen.program.site import Site
+from symflex.codegen.program.site import Scales, Site
 from symflex.codegen.program.varying import build_varying
 from symflex.errors import BudgetError, Diagnostic
+from symflex.transfer import TransferFunction
 from symflex.transfer.lowest_terms import cancel
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, Ring
-    from symflex.codegen.program.exponents import KernelSum, Key
-    from symflex.codegen.program.nodes import Straight
-    from symflex.codegen.program.site import Scales
-    from symflex.transfer import TransferFunction
 
 REACHES = (3.0, 2.0, 4.5)
 """Sizes of the largest exponent below which series are used; which serves best is measured."""

@@ -6,6 +6,7 @@ numpy and each other, and nothing else.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial, reduce
 from math import isfinite
@@ -23,8 +24,6 @@ from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from numpy.typing import ArrayLike, NDArray
 
 

@@ -13,24 +13,19 @@ transfer function is real up to a power of j: a :class:`RealSum` in the angular 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, reduce
 from itertools import product
 from math import gcd, lcm, prod
 from operator import mul
-from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored
+from flint import fmpz_mpoly
+
+from symflex.algebra import Dispersion, Factored, KernelTable, Ring
 from symflex.algebra.exponential_sum import expanded, power, times
 from symflex.algebra.ring import coefficients_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, KernelTable, Ring
 
 Term = tuple[tuple[tuple[int, int], ...], int]
 """Pairs ``(a_i, b_i)``, one per length, and 0 for the cosine or 1 for the sine; the first b that is not zero

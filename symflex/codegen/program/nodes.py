@@ -12,6 +12,7 @@ where ``m`` is ``ParameterValue("m")``.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from itertools import islice
@@ -19,8 +20,6 @@ from math import inf
 from typing import TYPE_CHECKING, ClassVar, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
     from symflex.equations.line_network import Table
 
 

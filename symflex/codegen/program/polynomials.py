@@ -12,23 +12,21 @@ expanded polynomial cancels.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import gcd
 from typing import TYPE_CHECKING
 
 import numpy as np
+from flint import fmpz_mpoly
 
-from symflex.algebra import irreducible_factors
+from symflex.algebra import Ring, irreducible_factors
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
     from numpy.typing import NDArray
 
-    from symflex.algebra import Ring
     from symflex.codegen.program.forge import Forge
 
 

@@ -8,18 +8,14 @@ that cancel for small x.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial, inf, lgamma, log, prod
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra.ring import Ring, by_powers
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
 
 SERIES_ERROR = log(1e-19)
 """Logarithm of the first term left out, over the largest."""

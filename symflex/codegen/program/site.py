@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
-from symflex.algebra import LAPLACE
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel
 from symflex.codegen.program.build import Generators
+from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.nodes import LargerRoot
 from symflex.codegen.program.polynomials import evaluate_polynomial
-from symflex.codegen.program.series import series_length
+from symflex.codegen.program.series import LocalBasis, series_length
+from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, Factored, Kernel
     from symflex.codegen.program.exponents import Family, Key, RealAxis, RealKey, RealSum, RealTerm, Term
-    from symflex.codegen.program.forge import Forge
-    from symflex.codegen.program.series import LocalBasis
-    from symflex.transfer import TransferFunction
 
 MINUS_J = (0, -1)
 

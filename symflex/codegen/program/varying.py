@@ -9,30 +9,24 @@ each over its largest term; what follows the matrices along x is a function of t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import Factored
-from symflex.along.law import PartedLaw
-from symflex.along.minors import MinorSums
+from symflex.algebra.dispersion import SingularStart
+from symflex.along.law import PartedLaw, Summand
+from symflex.along.minors import Minor, MinorSums
 from symflex.codegen.program.build import Generators
 from symflex.codegen.program.forge import Forge, straight
 from symflex.codegen.program.nodes import CodePiece, FundamentalMinors, Piecewise, ScaledSum, Tip
 from symflex.codegen.program.site import Site
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import varies_along_x
+from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import followed_along_x
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import SingularStart
-    from symflex.along.law import Summand
-    from symflex.along.minors import Minor
-    from symflex.transfer import TransferFunction
 
 
 def build_varying(tf: TransferFunction) -> Piecewise:

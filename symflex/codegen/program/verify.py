@@ -6,14 +6,16 @@ Output: a :class:`Verification`, a bound that holds at every sample.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from math import inf, isfinite, tau
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from flint import acb, arb
+from numpy.typing import NDArray
 
 from symflex.balls import precision
 from symflex.budget import spend
@@ -21,20 +23,13 @@ from symflex.codegen.program.band import FIRST_BITS, BandForm, EnclosedValues, b
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
+from symflex.codegen.program.nodes import Piecewise
 from symflex.errors import BudgetError, Diagnostic, ModelError
+from symflex.model import ExactValue
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.transfer import bind_any
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction, bind_any
 from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from symflex.codegen.program.nodes import Piecewise
-    from symflex.model import ExactValue
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""

@@ -9,17 +9,14 @@ from __future__ import annotations
 import inspect
 import keyword
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
 
 from symflex.algebra import line_networks
 from symflex.along import doubles
 from symflex.codegen.export import called_parts, parts_of
 from symflex.codegen.program import evaluate
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 COPIED = (
     evaluate.complex_exp,

@@ -7,11 +7,11 @@ model stands in them only as inert strings, whatever it says.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
-from symflex.codegen.export import Export, Language, Outline
+from symflex.codegen.export import Contents, Export, Language, Member, Outline
 from symflex.codegen.module_text import (
     FOLLOWED,
     default_value,
@@ -21,18 +21,10 @@ from symflex.codegen.module_text import (
     origin_lines,
     wrapped,
 )
-from symflex.codegen.program.verify import double_of
+from symflex.codegen.program.verify import Verification, double_of
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT, Dialect
-from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, in_pieces, statement
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.verify import Verification
-    from symflex.codegen.python.pieces import PrivateText
-    from symflex.model import Model, ModelParameter
-
+from symflex.codegen.python.pieces import WIDTH, BlockText, PrivateText, TracedText, in_pieces, statement
+from symflex.model import Model, ModelParameter
 
 LINTS = {
     "numpy in pieces": "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100, "

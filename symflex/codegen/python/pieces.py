@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from cmath import isfinite
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -22,8 +23,6 @@ from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from numpy.typing import NDArray
 
     from symflex.codegen.python.dialects import Dialect

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symflex.codegen.export import Export
 from symflex.codegen.module_text import BlockComment
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.module import docstring
 from symflex.codegen.python.pieces import WIDTH
-from symflex.codegen.sampled import SampledLanguage
-
-if TYPE_CHECKING:
-    from symflex.codegen.sampled import StepFile, StepFunction
+from symflex.codegen.sampled import SampledLanguage, StepFile, StepFunction
 
 
 def python_steps(file: StepFile) -> Export:

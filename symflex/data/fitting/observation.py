@@ -22,16 +22,13 @@ makes leakage harmless to natural frequencies: errors that noise would leave ind
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
 from symflex.data.fitting.resonances import Complex, Real, Values, Whole
-
-if TYPE_CHECKING:
-    from symflex.data.measurement import MeasuredResponse
+from symflex.data.measurement import MeasuredResponse
 
 Places = npt.NDArray[np.intp]
 

@@ -17,18 +17,16 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Callable, Mapping
 from io import BytesIO
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from symflex.data.measurement.array_files import DEEPEST, VARIABLES_LIMIT, Arrays, read_archive, require
 from symflex.data.measurement.text_table import MAX_CELLS
 from symflex.errors.optional import installed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 SECONDS: Final = 60
 MEMORY: Final = 2**31

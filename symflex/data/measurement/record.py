@@ -16,24 +16,20 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.arrays import arrays_in, format_of, largest_matrix
+from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, largest_matrix
 from symflex.data.measurement.columns import meaning_of
 from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few, listed_names
 from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
 from symflex.errors import DataError, Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence, Set
-
-    from symflex.data.measurement.arrays import Arrays
 
 Real = npt.NDArray[np.float64]
 

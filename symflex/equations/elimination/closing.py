@@ -8,23 +8,22 @@ Unknowns whose pivot is plus or minus one are eliminated first, which keeps rows
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from flint import fmpz_mpoly
+
 from symflex.algebra import LAPLACE, Factored, Ring, expanded_length
 from symflex.budget import spend
 from symflex.expressions import Name, format_expression
 from symflex.expressions import names as names_in
+from symflex.library.elements import LinearForm, Variable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from flint import fmpz_mpoly
-
     from symflex.equations import Equations
-    from symflex.library.elements import LinearForm, Variable
 
 
 SparseRow = dict[int, "fmpz_mpoly"]

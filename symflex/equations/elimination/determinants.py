@@ -22,11 +22,12 @@ Example: a mass on a spring and a damper, pushed by F and read at its node.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf, log
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from symflex.algebra import LAPLACE, Ring, terms_of
+from symflex.algebra import LAPLACE, Factored, Ring, terms_of
 from symflex.algebra.straight_line import Step
 from symflex.budget import spend
 from symflex.equations.elimination.closing import ClosedSystem, ReducedSystem, close, eliminate_unit_pivots
@@ -34,11 +35,8 @@ from symflex.equations.elimination.singular import explain_singular
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Factored
     from symflex.equations import Equations
     from symflex.equations.elimination.closing import SparseRow
     from symflex.equations.elimination.star_mesh import Elimination

@@ -7,30 +7,24 @@ zero vanishes.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from random import Random
 from typing import TYPE_CHECKING
 
-from flint import nmod_mat
+from flint import nmod_mat, nmod_poly
 
-from symflex.algebra import LAPLACE, PRIME, random_point, residue
-from symflex.errors import Diagnostic, ModelError
+from symflex.algebra import LAPLACE, PRIME, Factored, random_point, residue
+from symflex.errors import Diagnostic, ModelError, Span
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, format_expression, names
-from symflex.library.elements import CIRCUITS, COMPONENTS, LineElement, Variable
+from symflex.library.elements import CIRCUITS, COMPONENTS, EquationRow, LinearForm, LineElement, Variable
+from symflex.model import Model, PlacedElement
 from symflex.model.network import domain_of, variable_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import nmod_poly
-
-    from symflex.algebra import Factored
     from symflex.algebra.propagators import Propagation
     from symflex.algebra.vanishing import TaylorField
     from symflex.equations import Equations
-    from symflex.errors import Span
-    from symflex.library.elements import EquationRow, LinearForm
-    from symflex.model import Model, PlacedElement
 
 
 SHOWN = 6

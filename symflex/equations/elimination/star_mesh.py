@@ -27,6 +27,7 @@ No difference is taken: every entry is made by adding, multiplying and dividing.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
@@ -35,13 +36,11 @@ from symflex.algebra.straight_line import ONE, ZERO, Step, StraightLine, Workben
 from symflex.budget import spend, uncollected
 from symflex.equations.elimination.singular import explain_singular
 from symflex.errors import Diagnostic, ModelError
+from symflex.library.elements import LinearForm, Variable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from symflex.algebra.propagators import Propagation, Propagator
     from symflex.equations import Equations
-    from symflex.library.elements import LinearForm, Variable
 
 KEPT_LAST = 8
 """Rows an input may act on and be eliminated last; one that acts on more acts everywhere."""

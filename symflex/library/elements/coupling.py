@@ -5,6 +5,7 @@ Coupled inductors, operational amplifiers and controlled sources couple those of
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.library import ParameterPort
@@ -28,8 +29,6 @@ from symflex.library.elements.element import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symflex.algebra import Factored
     from symflex.library.elements.element import Placing, Variable
 

@@ -7,14 +7,13 @@ Output: a :class:`Stamp`, pure data.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
 from symflex.library import ParameterPort, Stateless
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
     from symflex.algebra import Factored
 
 Domain = Literal["translation", "rotation", "electrical", "acoustic", "thermal"]

@@ -5,6 +5,7 @@ Rods in tension, shafts in torsion, stretched strings, beams in bending, and mem
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Final
 
@@ -23,8 +24,6 @@ from symflex.library.elements.element import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symflex.algebra import Factored
     from symflex.library.elements.element import PortTerminal, Variable
 

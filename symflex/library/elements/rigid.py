@@ -5,6 +5,7 @@ Reactions of supports are unknowns that the elimination removes first.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from symflex.library import ParameterPort
@@ -24,8 +25,6 @@ from symflex.library.elements.element import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symflex.algebra import Factored
     from symflex.library.elements.element import Placing, Variable
 

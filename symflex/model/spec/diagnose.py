@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from symflex.errors import Diagnostic, Source, Span
 from symflex.model.spec.scan import KEY, Scan, Statement
 from symflex.quantities import name_hint
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _TWICE = ("Cannot declare", "Cannot mutate", "Cannot overwrite", "Duplicate")
 _ASSIGNMENT = re.compile(rf"[ \t]*+({KEY})[ \t]*+(=|:|(?=[^\s]))")

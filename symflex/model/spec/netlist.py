@@ -19,15 +19,13 @@ short circuit, a current is open. 4k7 is 4.7k, as LTspice reads it; Berkeley's r
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 SUFFIXES: Final = {
     "meg": "e6", "mil": "*25.4e-6", "t": "e12", "g": "e9", "k": "e3", "m": "e-3", "u": "e-6", "µ": "e-6",

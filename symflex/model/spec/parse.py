@@ -10,15 +10,12 @@ import re
 import tomllib
 from bisect import bisect_right
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from symflex.errors import Diagnostic, Span, SpecError
+from symflex.errors import Diagnostic, Source, Span, SpecError
 from symflex.model.spec.positions import Document, Literal, Spec, decode_key, locate
 from symflex.model.spec.read import MAX_ERRORS
 from symflex.model.spec.scan import KEY, KEY_PART, Scan, Statement, scan
-
-if TYPE_CHECKING:
-    from symflex.errors import Source
 
 _PLACE = r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)"
 _HEADER_PATH = rf"\[{{0,2}}[ \t]*+({KEY})"

@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import datetime
 import tomllib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import tree_sitter_toml
 from tree_sitter import Language, Node, Parser
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text
 from symflex.model.spec.scan import quote_width
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 _TOML = Language(tree_sitter_toml.language())
 

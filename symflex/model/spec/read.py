@@ -5,14 +5,12 @@ from __future__ import annotations
 import os
 import re
 import stat
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.files.examples import example_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 DATA: Final = (
     ".csv", ".tsv", ".frd", ".zma", ".s1p", ".s2p", ".uff", ".unv", ".npz", ".npy", ".mat", ".h5", ".hdf5",

@@ -5,6 +5,7 @@ Numerator and denominator are products of such sums, each in the arrangement tha
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property, partial
@@ -12,6 +13,8 @@ from itertools import accumulate, islice, product
 from math import gcd, isqrt
 from operator import add, neg, sub
 from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import (
     LAPLACE,
@@ -47,10 +50,6 @@ from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
     from symflex.print.forms.kept import KeptDefinitions
 
 

@@ -26,9 +26,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import factorial, prod
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from symflex.algebra import Factored, composed, degree_in
+from symflex.algebra import Dispersion, Factored, composed, degree_in
 from symflex.expressions import (
     Bessel,
     Call,
@@ -46,13 +46,9 @@ from symflex.expressions import (
 )
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
-from symflex.print.forms.arrange import Sides, length_sides
-
-if TYPE_CHECKING:
-    from symflex.algebra import Dispersion
-    from symflex.print.forms.arrange import ProductPrinter
-    from symflex.print.forms.naming import Naming
-    from symflex.transfer import TransferFunction
+from symflex.print.forms.arrange import ProductPrinter, Sides, length_sides
+from symflex.print.forms.naming import Naming
+from symflex.transfer import TransferFunction
 
 Line = tuple[Expression, Expression]
 """What is defined, and what it is."""

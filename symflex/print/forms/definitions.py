@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import partial
 from math import gcd
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, degree_in
+from symflex.equations.elimination import Closure
 from symflex.expressions import Expression, Name, Product, Sum, fold, names, nodes, power, product_of, sum_of
 from symflex.print.forms.arrange import Arranger, length, power_of_s, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
@@ -15,14 +18,7 @@ from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import S, of_powers, powers_of, rebuilt
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from flint import fmpz_mpoly
-
-    from symflex.equations.elimination import Closure
-    from symflex.transfer import ClosedForm, TransferFunction
+from symflex.transfer import ClosedForm, TransferFunction
 
 SMALL = 200
 """Number of terms up to which every arrangement is tried."""

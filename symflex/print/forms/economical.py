@@ -8,26 +8,21 @@ that is cut at a node has kernels of ``a`` and ``l - a``. With those of the whol
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations, product
 from math import prod
 from operator import add
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Kernel, KernelTable, Ring, composed
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.arrange import with_squares
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
-from symflex.print.forms.notation import angles_of
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.print.forms.notation import Angle
-    from symflex.transfer import TransferFunction
+from symflex.print.forms.notation import Angle, angles_of
+from symflex.transfer import TransferFunction
 
 DOUBLINGS = 8
 """Halvings that are undone at most."""

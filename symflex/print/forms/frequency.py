@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, KernelTable, Ring
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
 from symflex.algebra.normal_form import with_image
 from symflex.algebra.ring import by_powers
 from symflex.expressions import (
@@ -30,6 +31,7 @@ from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_func
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
+    Angle,
     Line,
     angles_of,
     constant_symbols,
@@ -40,13 +42,7 @@ from symflex.print.forms.notation import (
     wave_times_length,
 )
 from symflex.print.forms.printed import PrintedForm, lacks
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, Kernel
-    from symflex.print.forms.notation import Angle
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 LONGEST_ARGUMENT = 10
 """Characters of what is printed within cosh, sinh, cos and sin: ``beta_2*l_2``, ``beta*l/2``."""

@@ -9,28 +9,23 @@ Output: the cancelled factors:
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.algebra import KernelTable
 from symflex.errors import InternalError
-from symflex.expressions import Name, format_expression, number, product_of, quotient, substitute
+from symflex.expressions import Expression, Name, format_expression, number, product_of, quotient, substitute
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.naming import Naming
-from symflex.print.forms.notation import Notation, angles_of, constant_symbols, notation_of, reachable
+from symflex.print.forms.notation import Line, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm, in_roots
 from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from symflex.expressions import Expression
-    from symflex.print.forms.notation import Line
-    from symflex.transfer import AnyTransferFunction, TransferFunction
+from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Hidden = tuple[tuple["Expression", int], ...]
 

@@ -8,26 +8,22 @@ solved.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, KernelTable, Ring, degree_in
+from flint import fmpz_mpoly
+
+from symflex.algebra import Dispersion, Factored, KernelTable, Ring, degree_in
 from symflex.algebra.exponential_sum import power, spread, times
 from symflex.algebra.normal_form import NormalForm, with_image
 from symflex.algebra.ring import by_powers
-from symflex.print.forms.notation import angles_of, coefficient_name
+from symflex.print.forms.notation import Angle, angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion
-    from symflex.print.forms.notation import Angle
-
     Groups = Sequence[tuple[int, tuple[Angle, ...]]]
     """Angles of one dispersion, by the number of their argument."""
     Step = tuple[fmpz_mpoly, Factored] | None

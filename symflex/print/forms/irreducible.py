@@ -7,16 +7,12 @@ tangents, where polynomials factor in one way only, and those of even degree are
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, irreducible_factors
+from flint import fmpz_mpoly
+
+from symflex.algebra import Factored, KernelTable, irreducible_factors
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import KernelTable
 
 
 def irreducible_kernels(value: Factored, table: KernelTable) -> Factored:

@@ -10,20 +10,15 @@ Output: the same ring with a generator per definition, and polynomials of fewer 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Ring
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.expressions import Name
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 REWRITE_LIMIT = 5_000
 """Number of terms up to which a polynomial is rewritten in definitions."""

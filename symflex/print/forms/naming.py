@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Sequence
 from itertools import count, islice
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import FUNCTIONS
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
-
-    from symflex.model import Model
-    from symflex.transfer import TransferFunction
+from symflex.model import Model
+from symflex.transfer import TransferFunction
 
 
 class Naming:

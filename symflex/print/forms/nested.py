@@ -10,6 +10,7 @@ law.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import count
@@ -44,12 +45,10 @@ from symflex.print.forms.naming import Naming, names_of
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
     from symflex.equations.elimination.star_mesh import Waves
-    from symflex.transfer import NestedTransferFunction
 
 DEEPEST = 8
 """Levels of an expression from which it gets a name."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
 from symflex.expressions import (
     Call,
     Derivative,
@@ -25,14 +26,10 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-
-    from symflex.algebra import Ring
-    from symflex.expressions import Expression
     from symflex.print.forms.naming import Naming
-    from symflex.transfer import TransferFunction
 
 
 Line = tuple[str, Expression]

@@ -10,17 +10,19 @@ Numbers and powers are those of values at test points. As all prints are read ba
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from itertools import combinations, product
 from math import prod
 from random import Random
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb, fmpq
 
 from symflex.budget import spend
 from symflex.expressions import (
     FUNCTIONS,
+    Expression,
     Name,
     Sum,
     format_expression,
@@ -35,13 +37,8 @@ from symflex.print.forms.notation import reachable
 from symflex.print.forms.polynomial import factored_form
 from symflex.print.forms.printed import PrintedForm, S
 from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.transfer import TransferFunction
 from symflex.transfer.enclose import principal_values
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from symflex.expressions import Expression
-    from symflex.transfer import TransferFunction
 
 POINTS: Final = 3
 EXPONENTS: Final = (1, 2, -1, -2)

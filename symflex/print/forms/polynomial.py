@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
@@ -19,14 +21,7 @@ from symflex.print.forms.notation import (
     wavenumber_laws,
 )
 from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 
 def polynomial_form(tf: TransferFunction) -> PrintedForm:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import (
     FUNCTIONS,
     Bessel,
     Call,
+    Equation,
     Expression,
     Name,
     Number,
@@ -26,14 +27,12 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
+from symflex.model.model import RootOfS
+from symflex.transfer import TransferFunction
 from symflex.transfer.transfer_function import degree
 
 if TYPE_CHECKING:
-    from symflex.algebra import Factored
-    from symflex.expressions import Equation
-    from symflex.model.model import RootOfS
     from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import TransferFunction
 
 
 S: Final = Name(LAPLACE)

@@ -15,6 +15,7 @@ is turned, and its minus sign travels outwards. A wrong choice here is only ugly
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -47,14 +48,12 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.expressions.format import number_text
+from symflex.model import Model
 from symflex.model.model import IMAGINARY
 from symflex.print.forms.arrange import length
 from symflex.transfer.enclose import enclosure, principal_values
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-
-    from symflex.model import Model
     from symflex.print.forms.printed import PrintedForm
 
 LARGEST: Final = 4000

@@ -8,12 +8,14 @@ Models", after Vaughan).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring
 from symflex.expressions import (
     Call,
     Expression,
@@ -30,6 +32,7 @@ from symflex.print.forms.arrange import Arranged, Arranger, Sides, length
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
+    Angle,
     Line,
     angles_of,
     constant_symbols,
@@ -43,16 +46,7 @@ from symflex.print.forms.notation import (
     wavenumber_laws,
 )
 from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion
-    from symflex.print.forms.notation import Angle
-    from symflex.transfer import TransferFunction
-
+from symflex.transfer import TransferFunction
 
 TRADE = 4
 """Characters that writing c_0 for a power of the wavenumber must save."""

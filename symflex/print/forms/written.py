@@ -10,8 +10,6 @@ Over one denominator the numerator of such a modal sum grows with the square of 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.equations.evaluate import transfer_of
 from symflex.expressions import (
@@ -27,13 +25,11 @@ from symflex.expressions import (
     product_of,
     substitute,
 )
+from symflex.model import PlacedBlock
 from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, plain, powers_of
-
-if TYPE_CHECKING:
-    from symflex.model import PlacedBlock
-    from symflex.transfer import TransferFunction
+from symflex.transfer import TransferFunction
 
 
 def written_form(tf: TransferFunction) -> PrintedForm | None:

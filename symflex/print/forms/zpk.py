@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import arb, fmpz
 
@@ -13,14 +13,9 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.printed import PrintedForm
+from symflex.roots import Root
 from symflex.roots.locate import locate
-from symflex.transfer import EnclosedTransferFunction, bind
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction, TransferFunction, bind
 
 GUARD_DIGITS = 10
 BITS_PER_DIGIT = 4

@@ -7,13 +7,16 @@ Documents compile with pdflatex and lualatex and only amsmath, array, booktabs, 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
+from symflex.expressions import Expression
 from symflex.files.write import free_name
-from symflex.print.forms import counts_of, with_hidden
+from symflex.model import Model
+from symflex.print.forms import PrintedForm, counts_of, with_hidden
 from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.latex.page import COLUMNS_MM, preamble
@@ -22,15 +25,10 @@ from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
 from symflex.print.roots import KINDS, region_text, roots_of
 from symflex.print.width import EM_MM
+from symflex.transfer import AnyTransferFunction, HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.print.forms import PrintedForm
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyTransferFunction, HiddenFactor, TransferFunction
 
 TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
 """Width of the text of the document, and of fragments unless asked otherwise."""

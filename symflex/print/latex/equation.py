@@ -7,23 +7,20 @@ Output: ``equation`` and ``align`` environments; they need amsmath and nothing e
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, NamedTuple
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
+from symflex.model import Input, Model, Output
+from symflex.print.forms import PrintedForm
 from symflex.print.forms.printed import functions_in
 from symflex.print.label import labels_of, symbol
 from symflex.print.latex.expression import Writer, break_lines
 from symflex.print.latex.page import NARROWEST_MM
 from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.print.writer import ExpressionWriter, Style, Written
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from symflex.model import Input, Model, Output
-    from symflex.print.forms import PrintedForm
-    from symflex.transfer import AnyTransferFunction
+from symflex.transfer import AnyTransferFunction
 
 _OVER: Final = "_over_"
 

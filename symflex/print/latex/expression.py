@@ -8,7 +8,8 @@ factors of a term that stands in a sum.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final, NamedTuple
 
 from symflex.algebra.ring import FUNCTIONS
 from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
@@ -42,12 +43,6 @@ from symflex.print.writer import (
     operator_size,
     parts_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.print.writer import Written
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:

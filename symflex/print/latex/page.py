@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 from symflex.errors import Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
 
 COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}
 """A column of IEEE journals (252 points) and the text of a page of A4 with margins of 20 mm [mm]."""

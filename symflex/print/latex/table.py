@@ -7,6 +7,7 @@ become several with the same head, so that pages, and the columns of a page, may
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
@@ -22,8 +23,6 @@ from symflex.print.roots import MODE_COLUMNS, PAPER_COLUMNS, columns_for, one_of
 from symflex.print.width import CDOT, DIGIT, EM_MM, MINUS, OPERATOR, SCRIPT, THIN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from symflex.model import ExactValue, Model, ModelParameter
     from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.roots import PoleZeroMap

@@ -12,24 +12,20 @@ precision come close, and :mod:`symflex.balls.interval_newton` proves them.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import frexp, inf, isfinite, prod, sqrt
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 import numpy.typing as npt
 from flint import arb
 
+from symflex.algebra.exponential_sum import AxisWave, Monomial, Multiples, Polynomial
 from symflex.balls import bits_for_digits, precision, stays_inside
 from symflex.budget import spend
 from symflex.roots.root import GUARD_BITS
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.algebra.exponential_sum import AxisWave, Monomial, Multiples, Polynomial
-
 
 FLOAT_BITS = 64
 """Precision of signs and counts: a few bits more than doubles have."""

@@ -14,13 +14,23 @@ followed in steps.
 from __future__ import annotations
 
 from cmath import phase, rect
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, inf, isfinite, log, pi, sqrt
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.algebra import Factored
+from symflex.algebra.exponential_sum import (
+    Amplitude,
+    Argument,
+    Exponent,
+    ExponentialSum,
+    Gaussian,
+    Monomial,
+    Multiples,
+)
 from symflex.balls import Value, at_centre, precision
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
@@ -32,24 +42,8 @@ from symflex.roots.axes.axis_function import (
     Enclosures,
 )
 from symflex.roots.counting.winding import SPREAD, WIDENED, total_turn
-from symflex.roots.functions.kernel_function import ROOM, deviation
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.algebra.exponential_sum import (
-        Amplitude,
-        Argument,
-        Exponent,
-        ExponentialSum,
-        Gaussian,
-        Monomial,
-        Multiples,
-    )
-    from symflex.roots.functions.kernel_function import KernelFunction
-    from symflex.transfer import BoundTransferFunction
-
+from symflex.roots.functions.kernel_function import ROOM, KernelFunction, deviation
+from symflex.transfer import BoundTransferFunction
 
 EIGHTH = pi / 4
 BESIDE = 0.3

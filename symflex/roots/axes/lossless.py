@@ -8,6 +8,7 @@ circles, aimed at by the largest terms and counted: nothing grows with the numbe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle, islice
 from math import exp, inf, log, pi
@@ -33,8 +34,6 @@ from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.root import Root
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.roots.functions.kernel_function import KernelFunction
 
 GRID = 0.8

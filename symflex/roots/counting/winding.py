@@ -8,24 +8,18 @@ proved, :func:`total_turn` chooses steps as long as their proofs allow.
 from __future__ import annotations
 
 from cmath import pi
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, exp, inf, log
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from flint import arb
 
 from symflex.balls import UndecidedError, covered
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.functions.entire import Followed
+from symflex.roots.functions.entire import Followed, Sample
 from symflex.roots.functions.kernel_function import ROOM
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.roots.functions.entire import Sample
-
 
 RING = log(2)
 LARGEST_RING = 120

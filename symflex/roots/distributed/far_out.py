@@ -10,11 +10,11 @@ is at most one: ``R^2 > R + 3`` from R = 2.31 on.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from math import gcd, inf, sqrt
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, fmpz_mpoly
 
@@ -26,11 +26,7 @@ from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.transfer.enclose_kernels import KernelValues
+from symflex.transfer.enclose_kernels import KernelValues
 
 BITS = 64
 """Precision of bounds, which need few digits."""

@@ -17,22 +17,18 @@ from cmath import phase
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.algebra import Factored
 from symflex.balls import precision
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import FLOAT_BITS, TOUCHING, Root, are_apart, count_roots, root_at_zero
-
-if TYPE_CHECKING:
-    from symflex.algebra import Factored
-    from symflex.roots.axes.lossless import LosslessSearch
-    from symflex.roots.functions.kernel_function import KernelFunction
-
 
 UNPROVED = "the number of roots could not be proved"
 

@@ -7,27 +7,22 @@ are searched.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb
 
+from symflex.algebra import Factored
 from symflex.errors import BudgetError
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import axis_tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.pole_zero_map import count_right, is_right
-from symflex.roots.region import Band, Rectangle
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.roots.region import Region
-    from symflex.roots.root import Root
-    from symflex.transfer import BoundTransferFunction
+from symflex.roots.region import Band, Rectangle, Region
+from symflex.roots.root import Root
+from symflex.transfer import BoundTransferFunction
 
 ACCUMULATING = "poles accumulate in the right half plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"

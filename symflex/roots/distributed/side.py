@@ -6,14 +6,14 @@ shows that none is missing. Where that fails, the subdivision is repeated with e
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import exp, inf, pi
-from typing import TYPE_CHECKING
 
 from flint import acb
 
-from symflex.algebra import Factored
+from symflex.algebra import Dispersion, Factored
 from symflex.balls import precision
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.axes.lossless import LosslessSearch
@@ -44,12 +44,7 @@ from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.problem import is_complex, problem_of
 from symflex.roots.region import Modes, Region
 from symflex.roots.root import TOUCHING, Root, are_apart, count_roots, groups, mirror_images, overlap
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from symflex.algebra import Dispersion
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 ACCUMULATION_DIGITS = 20
 """Digits of points that are only avoided."""

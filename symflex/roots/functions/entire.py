@@ -11,13 +11,12 @@ quarter of a circle says how many it holds. With a loss factor, cosh(s/sqrt(1 + 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-if TYPE_CHECKING:
-    from flint import acb, arb
+from flint import acb, arb
 
-    FactorBall = tuple[acb, acb, int]
-    """Value and derivative of a factor, and its exponent."""
+FactorBall = tuple[acb, acb, int]
+"""Value and derivative of a factor, and its exponent."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,12 @@ about 2 is seen from 0 at 30 degrees on both sides of its middle.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import asin, exp, inf, lcm, pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
@@ -23,7 +24,7 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.roots.functions.entire import Sample
+from symflex.roots.functions.entire import FactorBall, Sample
 from symflex.roots.functions.exponential_values import (
     ExponentialValues,
     Place,
@@ -31,14 +32,8 @@ from symflex.roots.functions.exponential_values import (
     exponential_sums,
 )
 from symflex.roots.problem import is_complex
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from symflex.roots.functions.entire import FactorBall
-    from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.enclose_kernels import KernelValues
-
+from symflex.transfer import BoundTransferFunction
+from symflex.transfer.enclose_kernels import KernelValues
 
 FIRST_BITS = 64
 """First precision of values; more if it does not suffice."""

@@ -5,19 +5,15 @@ It is evaluated at points, where it is right to the last bit; balls about them l
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly
 
 from symflex.balls import precision, precisions
 from symflex.roots.functions.entire import Sample
+from symflex.transfer import BoundNested
 from symflex.transfer.double_value import FIRST_BITS, LAST_BITS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from symflex.transfer import BoundNested
 
 SETTLED_BITS = 30
 """Precision of a value and its slope: more than a step along a path needs."""

@@ -12,9 +12,8 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import prod
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import (
     LAPLACE,
@@ -26,19 +25,14 @@ from symflex.algebra import (
     square_free_factors,
     terms_of,
 )
+from symflex.algebra.dispersion import Kernel
 from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
 from symflex.balls import at_centre
 from symflex.errors import Diagnostic, ModelError
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor
-
-if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.dispersion import Kernel
-    from symflex.transfer import BoundTransferFunction
-
 
 EVEN = ("cosh", "cos", "exp")
 

@@ -9,19 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, partial
 from math import hypot, pi
-from typing import TYPE_CHECKING
 
 from symflex.budget import entered_budget
 from symflex.model.loss_factors import has_loss_factors
 from symflex.roots.networks.blocks import most_zeros
+from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import DiscSearch, DiscSide
 from symflex.roots.pole_zero_map import search_modes, take_out_shared
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import LossyRoot, Root, count_modes, overlap, root_at_zero
-
-if TYPE_CHECKING:
-    from symflex.roots.networks.cramer import CramerEquations
 
 CRAMER = "cramer"
 """What stands in a certificate: the determinants of Cramer's rule, in discs."""

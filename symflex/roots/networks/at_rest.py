@@ -7,20 +7,19 @@ vanishes to some order there does not vanish to a lower one by chance but with o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
+
+from flint import nmod_poly
 
 from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
 from symflex.balls import columns_of
+from symflex.expressions import Expression
 from symflex.transfer.enclose import rational_value
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import nmod_poly
-
-    from symflex.expressions import Expression
     from symflex.roots.networks.cramer import CramerEquations
 
 

@@ -11,18 +11,16 @@ the state from one end of a member to the other.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
     from symflex.roots.networks.cramer import CramerEquations
 
 NONE = -1e6

@@ -7,24 +7,18 @@ counts the zeros of that input's own motion.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
+from symflex.algebra import Factored
 from symflex.balls import current_bits, precision, settled
-from symflex.balls.inertia import elimination_order, pivots
+from symflex.balls.inertia import Rows, elimination_order, pivots
 from symflex.budget import spend
 from symflex.roots.networks.members import MemberBalls, Stiffness
-from symflex.roots.networks.network import PolynomialValues
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.balls.inertia import Rows
-    from symflex.roots.networks.network import Network, NetworkMember
+from symflex.roots.networks.network import Network, NetworkMember, PolynomialValues
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,30 +9,23 @@ where a ball is wide that leads to none, so what is said of a whole disc comes f
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import acb, arb
 
-from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.algebra.factored import least_common_multiple
-from symflex.balls import UndecidedError, current_bits, eliminate, precision, settled
+from symflex.balls import Eliminated, UndecidedError, current_bits, eliminate, precision, settled
 from symflex.budget import spend
-from symflex.library.elements import LinearForm
+from symflex.equations import Equations
+from symflex.library.elements import LinearForm, Variable
+from symflex.model import ExactValue
 from symflex.model.model import IMAGINARY
 from symflex.transfer.equations_at import EquationsAt, Majorants, NamedValues
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
-    from symflex.balls import Eliminated
-    from symflex.equations import Equations
-    from symflex.library.elements import Variable
-    from symflex.model import ExactValue
 
 MOST_LOST = 16
 """Bits that elimination may lose per equation; chains of beams lose about one."""

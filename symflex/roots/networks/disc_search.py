@@ -7,10 +7,10 @@ and proved.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import ceil, exp, inf, log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -21,10 +21,6 @@ from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValu
 from symflex.roots.networks.disc_series import GUARD_BITS, DiscSeries, RootNearCircleError, points_needed
 from symflex.roots.root import Root, mirror_images
 from symflex.transfer.equations_at import EssentialSingularityError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
 
 RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)
 """Radius of the circle where a bound is taken over that where values are."""

@@ -11,19 +11,16 @@ narrowed by values at points.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from math import ceil, exp, log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb
 
 from symflex.balls import ball, precision, series_terms, stays_inside
 from symflex.budget import spend
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from fractions import Fraction
 
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8

@@ -16,18 +16,15 @@ takes, ``-C_ii`` times the integral of ``u_i^2``, is less than P if ``h^2 sum_ij
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import frexp, ldexp, log2
-from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
 from symflex.along.growth import balanced
 from symflex.balls import UndecidedError
 from symflex.balls.inertia import pivots
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 HALF = 0.5
 """What the bound on a piece's energy must stay below; 1 would do, and the rest is for rounding in doubles."""

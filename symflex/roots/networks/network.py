@@ -11,23 +11,18 @@ number of negative pivots of the whole never falls as lambda rises.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from flint import acb_poly, arb
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.balls import precision
-from symflex.library.elements import LinearForm, put_in
+from symflex.balls import Arithmetic, precision
+from symflex.equations import Equations
+from symflex.library.elements import LinearForm, Terms, Variable, put_in
 from symflex.transfer.equations_at import EquationsAt, NamedValues
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.balls import Arithmetic
-    from symflex.equations import Equations
-    from symflex.library.elements import Terms, Variable
 
 ONE_WAY = "forces and motions are coupled in one direction only, as in a loop"
 LOSES = "something in it loses or supplies energy"

@@ -14,17 +14,15 @@ of their law, their lengths and shifts are.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.roots.networks.blocks import blocks_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.algebra import Factored
     from symflex.roots.networks.cramer import CramerEquations
 
 

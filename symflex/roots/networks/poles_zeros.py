@@ -7,6 +7,7 @@ receptance at the input are the eigenvalues of the network held there.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -17,12 +18,13 @@ from flint import arb
 
 from symflex.balls import UndecidedError, opposite, precision
 from symflex.budget import entered_budget
+from symflex.equations import Equations
 from symflex.errors import BudgetError
 from symflex.roots.networks.anywhere import CRAMER, roots_in_disc, wanted_modes
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.cramer import CramerEquations, is_zero
-from symflex.roots.networks.network import OtherNetworkError, network_of
+from symflex.roots.networks.network import Network, OtherNetworkError, network_of
 from symflex.roots.networks.parity import mirrored
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
 from symflex.roots.pole_zero_map import (
@@ -41,10 +43,6 @@ from symflex.roots.root import TOUCHING, Root, count_modes, root_at_zero
 from symflex.transfer.equations_at import EssentialSingularityError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.equations import Equations
-    from symflex.roots.networks.network import Network
     from symflex.roots.passivity import EnergyProof
 
 WITTRICK_WILLIAMS = "wittrick-williams"

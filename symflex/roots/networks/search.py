@@ -10,6 +10,7 @@ What is proved is the counts alone: whatever secants do, no eigenvalue is missed
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -19,8 +20,6 @@ from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
 from symflex.budget import spend
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from symflex.roots.networks.counting import Counter, NetworkSample
 
 GUARD_BITS = 64

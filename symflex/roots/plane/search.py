@@ -7,6 +7,7 @@ numerical, which makes guesses, or proved, which leaves none out; every root fou
 from __future__ import annotations
 
 from cmath import exp, pi
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
@@ -21,8 +22,6 @@ from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_tog
 from symflex.roots.root import Root, count_modes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.roots.functions.entire import Entire
 
 

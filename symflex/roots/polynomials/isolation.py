@@ -7,6 +7,7 @@ as one disc with its count.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -25,8 +26,6 @@ from symflex.roots.polynomials.discs import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
     from symflex.roots.problem import PolynomialInS
 
     Goal = Callable[[acb], arb]
