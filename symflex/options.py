@@ -480,7 +480,7 @@ class PlotOptions:
     kind: str = option("")
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS, help="Draw this transfer function; may be repeated.")
     gain: str | None = option(
-        None, "--gain", metavar="K", help="Parameter that is the loop's gain, for a locus or a Nyquist plot."
+        None, "--gain", metavar="K", help="Parameter that is the loop's gain, for figures of a loop."
     )
     band: Ends | None = option(None, "--band", **TWO, help='Frequencies shown: 0.1 1000, "1 kHz".')
     xlim: Ends | None = option(
@@ -511,6 +511,7 @@ class PlotOptions:
     asymptotes: bool = option(
         False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
     )
+    verdict: bool = option(False, "--verdict", help="Write above the figure whether it is stable.")
 
     @property
     def stability(self) -> StabilityOptions:

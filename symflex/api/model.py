@@ -554,6 +554,7 @@ class Model:
         ylim: Ends | None = None,
         width: float | str | None = None,
         font: str | None = None,
+        verdict: bool = False,
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
@@ -571,6 +572,8 @@ class Model:
             The figure ends where the band ends [Hz].
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
+        verdict : bool
+            Say above the figure at which gains the loop is stable.
         width, font, ax : optional
             As for :meth:`BoundTransferFunction.bode`; one axes.
         **values : number or str
@@ -595,14 +598,17 @@ class Model:
         """
         given = PlotOptions(
             "locus",
-            gain=gain,
-            band=band,
-            xlim=xlim,
-            ylim=ylim,
-            limits=limits,
+            (),
+            gain,
+            band,
+            xlim,
+            ylim,
+            None,
+            limits,
             modes=modes,
             width=width,
             font=font,
+            verdict=verdict,
         )
         return plot_loop(given, self.resolved, values, ax)
 
@@ -615,23 +621,75 @@ class Model:
         ylim: Ends | None = None,
         width: float | str | None = None,
         font: str | None = None,
+        verdict: bool = False,
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
         """Return the Nyquist plot of the loop that a gain closes, about the point -1.
 
-        The heading says how many poles of the open loop lie in the right half plane, and whether the closed
-        loop is stable. Parameters and errors are those of :meth:`locus`; ``band`` gives the frequencies [Hz].
+        Parameters and errors are those of :meth:`locus`; ``band`` gives the frequencies [Hz]. The verdict
+        says how many poles of the open loop are in the right half plane, and whether the closed loop is
+        stable.
 
         Examples
         --------
         >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
         >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
-        >>> print(model.nyquist("K").legends[0].get_title().get_text())
+        >>> print(model.nyquist("K", verdict=True).legends[0].get_title().get_text())
         open loop: no pole in the right half plane
         closed loop stable
         """
-        given = PlotOptions("nyquist", gain=gain, band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        given = PlotOptions("nyquist", (), gain, band, xlim, ylim, width=width, font=font, verdict=verdict)
+        return plot_loop(given, self.resolved, values, ax)
+
+    def nichols(
+        self,
+        gain: str,
+        *,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        verdict: bool = False,
+        ax: AxesGiven | None = None,
+        **values: Number,
+    ) -> Figure:
+        """Return the Nichols chart of the loop gain, as :meth:`nyquist` its values; axes in degrees and dB.
+
+        Examples
+        --------
+        >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
+        >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
+        >>> model.nichols("K", xlim=(-270, 0)).axes[0].get_xlabel()
+        'Phase [deg]'
+        """
+        given = PlotOptions("nichols", (), gain, band, xlim, ylim, width=width, font=font, verdict=verdict)
+        return plot_loop(given, self.resolved, values, ax)
+
+    def sensitivity_plot(
+        self,
+        gain: str,
+        *,
+        band: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+        **values: Number,
+    ) -> Figure:
+        """Return S = 1/(1 + L) and T = L/(1 + L) of the loop gain L over frequency, with their proved peaks.
+
+        Parameters are those of :meth:`nyquist`.
+
+        Examples
+        --------
+        >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
+        >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
+        >>> [text.get_text() for text in model.sensitivity_plot("K").axes[0].get_legend().get_texts()]
+        ['$|S|$, $M_S = 1.568$', '$|T|$, $M_T = 1.113$']
+        """
+        given = PlotOptions("sensitivity", (), gain, band, ylim=ylim, width=width, font=font)
         return plot_loop(given, self.resolved, values, ax)
 
     def peak(self, output: str, input: str, *, digits: int = 12, band: Ends | None = None) -> Peak:

@@ -122,6 +122,7 @@ class Plotted:
         ylim: Ends | None = None,
         width: float | str | None = None,
         font: str | None = None,
+        verdict: bool = False,
         ax: AxesGiven | None = None,
     ) -> Figure:
         r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
@@ -138,6 +139,8 @@ class Plotted:
             The figure ends where the band ends [Hz].
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
+        verdict : bool
+            Say above the panels whether the functions are stable.
 
         Examples
         --------
@@ -148,7 +151,7 @@ class Plotted:
         (True, '$y/u$')
         """
         given = PlotOptions(
-            "poles_zeros", band=band, xlim=xlim, ylim=ylim, modes=modes, width=width, font=font
+            "poles_zeros", (), None, band, xlim, ylim, modes=modes, width=width, font=font, verdict=verdict
         )
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
@@ -162,7 +165,7 @@ class Plotted:
         font: str | None = None,
         ax: AxesGiven | None = None,
     ) -> Figure:
-        r"""Return the values on the imaginary axis as a curve, with the number of unstable poles.
+        r"""Return the values on the imaginary axis as a curve; the legend says how many poles are unstable.
 
         :meth:`Model.nyquist` draws the gain of a loop that is closed in the model.
 
@@ -180,10 +183,24 @@ class Plotted:
         >>> from symflex import loads
         >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s - 1)*(s + 3))"')
         >>> figure = loop.transfer_function("y", "u").bind().nyquist()
-        >>> figure.legends[0].get_title().get_text()
-        '1 pole in the right half plane'
+        >>> [text.get_text() for text in figure.legends[0].get_texts()]
+        ['$y/u$, $P = 1$']
         """
         given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
+
+    def nichols(
+        self,
+        *others: Plotted,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        """Return magnitudes [dB] over phases [deg], with contours of the closed loop, as :meth:`nyquist`."""
+        given = PlotOptions("nichols", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
 

@@ -53,12 +53,12 @@ def draw(spec: Specification, given: DrawOptions) -> int:
 def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND, or a figure that SPEC defines in [figures].
 
-    Kinds are bode, impulse, locus, modes, nyquist, poles_zeros, stability and step.
+    Kinds are bode, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability and step.
 
     modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
     --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; for a
-    distributed system, those of the lowest modes. nyquist draws a transfer function, or with --gain K the
-    loop gain.
+    distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
+    --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their proved peaks.
 
     stability --over T draws the number of unstable poles over a parameter; with two, as --over K --over T, a
     chart with regions, boundaries and the values of SPEC. Ranges are as for 'symflex stability'.
@@ -66,7 +66,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
 
-    --band sets the frequencies of bode and nyquist curves, and which modes are drawn. Figures in the s plane
+    --band sets the frequencies of curves, and which modes are drawn. Figures in the s plane
     show everything up to the end of the band. --xlim, --ylim and --phase set the ends of axes. Frequencies
     and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim
     [s], by default until the slowest motion has died away. step --record FILE drives the model with the
@@ -79,7 +79,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     it.
     """
     from symflex import pipeline
-    from symflex.figures import LOOP_FIGURES, checked_font, draw, draw_loop, part_shown, save
+    from symflex.figures import FIGURES, LOOP_FIGURES, checked_font, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
     from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
@@ -102,7 +102,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     font = checked_font(given.font, path)
     gain = given.gain or (figure.gain if figure else "")
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
-        message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
+        message = f"--gain and --range are for {', '.join(LOOP_FIGURES)}, not for '{drawn}'"
         raise UsageError(Diagnostic("SF902", message))
     band, frame = part_shown(drawn, given)
     shown = band or (figure.band if figure else None)
@@ -113,9 +113,11 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             message = f"--until is for {' and '.join(IN_TIME)}, in place of --xlim"
             raise UsageError(Diagnostic("SF902", message))
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
-    if drawn == "locus" and not gain:
+    if drawn not in FIGURES and not gain:
         hint = "name its gain: --gain K, or gain in [figures]"
-        raise UsageError(Diagnostic("SF902", "a locus needs the gain of a loop", None, hint))
+        raise UsageError(
+            Diagnostic("SF902", f"a figure of kind '{drawn}' needs the gain of a loop", None, hint)
+        )
     title = figure.title or None if figure else None
     if gain:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
@@ -214,7 +216,7 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
 
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *LOOP_FIGURES):
-        names = [*FIGURES, "locus", STABILITY, *(f.name for f in model.figures)]
+        names = [*FIGURES, "locus", "sensitivity", STABILITY, *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     return figure, figure.kind if figure else kind

@@ -26,7 +26,12 @@ if TYPE_CHECKING:
 ROOT_DIGITS = 15
 """Digits to which roots are found for a table; it prints fewer."""
 
-LOOP_TITLES = {"locus": "Root locus", "nyquist": "Nyquist plot of the loop gain"}
+LOOP_TITLES = {
+    "locus": "Root locus",
+    "nichols": "Nichols chart of the loop gain",
+    "nyquist": "Nyquist plot of the loop gain",
+    "sensitivity": "Sensitivities of the loop",
+}
 
 DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
 """Figures of kinds that the model asks for none of."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import log10
 from typing import TYPE_CHECKING, Final
 
@@ -31,8 +31,11 @@ from symflex.figures.style import (
 )
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from matplotlib.figure import Figure
     from matplotlib.legend import Legend
+    from matplotlib.lines import Line2D
 
     from symflex.model import Model
     from symflex.roots import Root
@@ -51,20 +54,21 @@ RIGHT_HALF_PLANE: Final = "#FBEDE4"
 # ------------------------------------------------------------------------------------ magnitude over phase
 
 
-def magnitude_over_phase(width: float, height: float, ratio: float) -> tuple[Axes, Axes]:
-    """Return axes of a new figure [inches]: for magnitudes, ``ratio`` times as high as those for phases."""
+def magnitude_over_phase(width: float, height: float, ratio: float, units: int = 1) -> tuple[Axes, ...]:
+    """Return axes of a new figure [inches]: for magnitudes of each unit, ``ratio`` times those for phases."""
     figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[ratio, 1])
-    for axes in (top, bottom):
+    panels = tuple(figure.subplots(units + 1, 1, sharex=True, height_ratios=[ratio] * units + [1]))
+    for axes in panels:
         axes.grid(visible=True)
-    return top, bottom
+    return panels
 
 
-def label_magnitudes(axes: Axes, unit: str) -> None:
+def label_magnitudes(axes: Axes, unit: str, *, is_short: bool = False) -> None:
     """Label an axis of magnitudes over one of a unit."""
-    label = label_of_unit(unit)
-    axes.set_ylabel(f"Magnitude [dB, 0 dB = 1 {label}]" if label else "Magnitude [dB]")
+    label = label_of_unit(unit) or "1" * is_short
+    said = f"dB re {label}" if is_short else f"Magnitude [dB, 0 dB = 1 {label}]"
+    axes.set_ylabel(said if label else "Magnitude [dB]")
 
 
 def set_magnitude_ticks(axes: Axes) -> None:
@@ -88,9 +92,17 @@ def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def add_legend_above(axes: Axes, columns: int, title: str | None = None, *, is_tight: bool = False) -> None:
+def add_legend_above(
+    axes: Axes,
+    columns: int,
+    title: str | None = None,
+    *,
+    is_tight: bool = False,
+    handles: Sequence[Line2D] | None = None,
+) -> None:
     """Put a legend over a panel; a tight one has shorter lines and gaps."""
     legend = axes.legend(
+        handles=handles,
         title=title,
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
@@ -196,6 +208,7 @@ class AxisLimits:
     y: Limits | None = None
     phase: Limits | None = None  # of a Bode plot [deg]
     has_asymptotes: bool = False  # of a Bode plot
+    has_verdict: bool = field(default=False, compare=False)  # says whether what is drawn is stable
 
     def __post_init__(self) -> None:
         for ends in (self.x, self.y, self.phase):
@@ -240,6 +253,8 @@ class Canvas:
     title: str | None = None  # printed as it is
     width: float | None = None  # [inches]; by default what suits the figure
     axes: tuple[Axes, ...] = ()  # to draw on, in place of those of a new figure
+    gains: tuple[Fraction | None, Fraction | None] | None = None  # first and last one of a locus
+    modes: int | None = None  # traced in the locus of a loop with kernels
 
     def own_axes(self, *counts: int) -> tuple[Axes, ...]:
         """Return the axes to draw on, if there are as many as a figure has panels; UsageError: SF902."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import cycle, islice
-from math import ceil, tau
+from math import ceil, inf, tau
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -53,6 +53,8 @@ if TYPE_CHECKING:
 
 HEIGHT_INCHES: Final = 3.2
 LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2
+UNIT_INCHES: Final = 1.05
+"""Height of the panel of every unit but the first."""
 RATIO: Final = 1.25
 """Height of the panel of magnitudes over that of phases."""
 PHASE_MARGIN: Final = 1.12
@@ -72,6 +74,7 @@ UNDAMPED_MARGIN_DB: Final = 15.0
 def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
 
+    Magnitudes of each unit have a panel, except on the user's axes.
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
     plane, or may lie there, the legend says so.
     """
@@ -90,37 +93,50 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     shaky = [m for m in maps if m.verdict.word in ("unstable", "unknown") and m.verdict != NO_STABILITY]
     lines = [line for one in (canvas.title, *map(_said_of_grid, maps)) for line in title_lines(one, width)]
     said = stability_lines(shaky, width)
-    units = {response.unit for response in responses}
-    legend_columns = min(len(bounds), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
+    units = list(dict.fromkeys(response.unit for response in responses))
+    is_mixed = len(units) > 1
+    has_units = is_mixed and bool(canvas.axes)  # in the legend: the user's first axes show all magnitudes
+    legend_columns = min(len(bounds), LEGEND_COLUMNS_WITH_UNITS if has_units else LEGEND_COLUMNS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(bounds) / legend_columns))
-    top, *below = canvas.own_axes(1, 2) if canvas.axes else magnitude_over_phase(width, height, RATIO)
-    limits = canvas.frame.y or _magnitude_limits(responses, maps)
+    height += UNIT_INCHES * (len(units) - 1)
+    if canvas.axes:
+        top, *below = canvas.own_axes(1, 2)
+        tops = dict.fromkeys(units, top)
+    else:
+        panels = magnitude_over_phase(width, height, 1.0 if is_mixed else RATIO, len(units))
+        top, below, tops = panels[0], [panels[-1]], dict(zip(units, panels, strict=False))
     drawn = len(top.get_lines())  # on the user's axes
-    if drawn and canvas.frame.y is None:
-        limits = min(limits[0], top.get_ylim()[0]), max(limits[1], top.get_ylim()[1])
+    limits: dict[Axes, tuple[float, float]] = {}
+    for axes in tops.values():
+        shown = [(r, m) for r, m in zip(responses, maps, strict=True) if tops[r.unit] is axes]
+        limits[axes] = canvas.frame.y or _magnitude_limits(shown, axes)
+    handles = []
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
     for bound, response, located, (colour, dash) in zip(
         bounds, responses, maps, islice(looks, drawn, None), strict=False
     ):
         label = label_of_tf(bound.source)
-        if len(units) > 1 and (unit := label_of_unit(response.unit)):
-            label = f"{label} [{unit}]"
-        top.plot(*_magnitude_curve(response, located, limits), color=colour, linestyle=dash, label=label)
+        label += f" [{label_of_unit(response.unit)}]" if has_units and response.unit not in ("", "1") else ""
+        level = tops[response.unit]
+        curve = _magnitude_curve(response, located, limits[level])
+        handles += level.plot(*curve, color=colour, linestyle=dash, label=label)
         for axes in below:
             axes.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
         for row in limits_of(bound.source).rows if canvas.frame.has_asymptotes and bound.is_rational else ():
             if row.value and row.power is not None:
                 ends = np.array([low, high])
-                level = 20 * np.log10(abs(row.value) * (tau * ends) ** float(row.power))
-                top.plot(ends, level, color=colour, linewidth=ASYMPTOTE)
-    top.set_ylim(*limits)
-    set_magnitude_ticks(top)
-    label_magnitudes(top, units.pop() if len(units) == 1 else "")
+                size = 20 * np.log10(abs(row.value) * (tau * ends) ** float(row.power))
+                level.plot(ends, size, color=colour, linewidth=ASYMPTOTE)
+    for unit, axes in tops.items():
+        axes.set_ylim(*limits[axes])
+        set_magnitude_ticks(axes)
+        label_magnitudes(axes, "" if has_units else unit, is_short=is_mixed and not has_units)
     for axes in below:
         _set_phase_axis(axes, responses, canvas.frame.phase)
-    set_frequency_axes((top, *below), low, high)
+    set_frequency_axes((*dict.fromkeys(tops.values()), *below), low, high)
     figure = root_figure(top)
-    add_legend_above(top, legend_columns, "\n".join((*lines, *said) if canvas.axes else said) or None)
+    heading = "\n".join((*lines, *said) if canvas.axes else said) or None
+    add_legend_above(top, legend_columns, heading, handles=None if canvas.axes else handles)
     if not canvas.axes:
         write_title(figure, lines)
     return figure
@@ -173,18 +189,17 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
     return figure
 
 
-def _magnitude_limits(
-    responses: Sequence[SampledResponse], maps: Sequence[PoleZeroMap]
-) -> tuple[float, float]:
-    """Return limits [dB] that hold every damped peak, and undamped ones cut off."""
-    damped = [r.magnitude_db[~_undamped(r, m)] for r, m in zip(responses, maps, strict=True)]
-    shown = [(level, r) for level, r in zip(damped, responses, strict=True) if level.size]
+def _magnitude_limits(drawn: Sequence[tuple[SampledResponse, PoleZeroMap]], axes: Axes) -> Limits:
+    """Return limits [dB] that hold every damped peak, undamped ones cut off, and what axes show already."""
+    before = axes.get_ylim() if axes.get_lines() else (inf, -inf)
+    damped = [(response.magnitude_db[~_undamped(response, located)], response) for response, located in drawn]
+    shown = [(level, response) for level, response in damped if level.size]
     if not shown:
-        return -1.0, 1.0
+        return min(-1.0, before[0]), max(1.0, before[1])
     lowest, highest = (float(end(np.concatenate([level for level, _ in shown]))) for end in (np.min, np.max))
     is_cut = any(level.size < r.omega.size for level, r in shown)
     margin = UNDAMPED_MARGIN_DB if is_cut else max(0.05 * (highest - lowest), 1.0)
-    return lowest - margin, highest + margin
+    return min(lowest - margin, before[0]), max(highest + margin, before[1])
 
 
 def _magnitude_curve(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,11 +17,12 @@ from symflex.figures.files import MM_PER_INCH
 from symflex.figures.in_time import draw_responses
 from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
 from symflex.figures.modes import draw_modes, draw_shapes
+from symflex.figures.nichols import draw_loop_phase, draw_nichols
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.runs import panels_of
+from symflex.figures.sensitivity import draw_sensitivity
 from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
-from symflex.loops import require_arrival, trace_locus
 from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
@@ -44,12 +46,18 @@ FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
     "impulse": partial(draw_responses, "impulse"),
     "modes": draw_modes,
+    "nichols": draw_nichols,
     "nyquist": draw_nyquist,
     "poles_zeros": draw_poles_zeros,
     "step": partial(draw_responses, "step"),
 }
 
-LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
+LOOP_FIGURES: dict[str, Callable[[AnyLoop, Canvas], Figure]] = {
+    "locus": draw_locus,
+    "nichols": draw_loop_phase,
+    "nyquist": draw_loop_gain,
+    "sensitivity": draw_sensitivity,
+}
 """Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
 
 
@@ -142,8 +150,9 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
         axis_ends(given.phase, "--phase"),
         given.asymptotes,
+        given.verdict,
     )
-    is_logarithmic = kind in ("bode", "nyquist")  # without 0
+    is_logarithmic = kind in ("bode", "nichols", "nyquist", "sensitivity")  # without 0
     return None if band is None else band_ends(band, above_zero=is_logarithmic), frame
 
 
@@ -198,11 +207,11 @@ def draw_loop(
     font: str = DEFAULT_FONT,
     ax: AxesGiven | None = None,
 ) -> Figure:
-    """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
+    """Draw a root locus, or the loop gain ``K B/A`` or its sensitivities along the imaginary axis.
 
-    ``kind`` is ``locus`` or ``nyquist``. ``limits`` are the first and last gain of a locus, by default from 0
-    to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default those in
-    the band, or the lowest five. ``band_hz`` are frequencies of a Nyquist plot [Hz]; a locus is shown up to
+    ``kind`` is a key of :data:`LOOP_FIGURES`. ``limits`` are the first and last gain of a locus, by default
+    from 0 to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default
+    those in the band, or the lowest five. ``band_hz`` are frequencies [Hz]; a locus is shown up to
     its end. The rest is as for :func:`draw`. Raises UsageError: SF208 an unknown kind, SF804 no range, SF806
     no straight line in the gain; UncertifiedError: SF807 the curves do not end in proved poles.
     """
@@ -211,15 +220,8 @@ def draw_loop(
         raise UsageError(Diagnostic("SF208", f"a loop has no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
-
-    def drawing() -> Figure:
-        if kind == "nyquist":
-            return draw_loop_gain(loop, canvas)
-        locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
-        require_arrival(locus)
-        return draw_locus(locus, canvas)
-
-    return _styled(font, canvas, drawing)
+    canvas = replace(canvas, gains=limits, modes=modes)
+    return _styled(font, canvas, lambda: LOOP_FIGURES[kind](loop, canvas))
 
 
 def draw_over(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import cycle
+from itertools import cycle, pairwise
 from math import pi
 from typing import TYPE_CHECKING, Final
 
@@ -26,6 +26,7 @@ from symflex.figures.axes import (
     write_title,
 )
 from symflex.figures.s_plane import (
+    GAP_RATIO,
     POINTS_PER_INCH,
     Kind,
     Panel,
@@ -49,11 +50,23 @@ from symflex.figures.style import (
     size_of_text,
     title_lines,
 )
-from symflex.loops import NetworkLoop, closed_loop, closed_loop_roots, loop_gain, nominal_gain, poles_apart
+from symflex.loops import (
+    Loop,
+    NetworkLoop,
+    closed_loop,
+    closed_loop_roots,
+    find_stable_gains,
+    loop_gain,
+    nominal_gain,
+    poles_apart,
+    require_arrival,
+    trace_locus,
+)
 from symflex.roots import Band
+from symflex.roots.root import hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import numpy.typing as npt
     from matplotlib.axes import Axes
@@ -73,24 +86,32 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
     "pole": ("x", COLOURS[1], 5),
     "nominal": ("*", "black", 6),
     "last": ("s", COLOURS[0], 3.4),
-    "zero": ("o", COLOURS[2], 5),
+    "zero": ("o", COLOURS[2], 6.5),
 }
 """Shape, colour and size of marks."""
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 CLOSE: Final = 0.3
 """Narrowest width shown, over the height."""
+FAR_OUT, ZEROS_OUT, AGREE = 2.0, 1.3, 1.001
+"""Over the curves shown: poles that hardly move are left out, zeros shown, proved poles theirs."""
+POINTED: Final = 0.06
+"""Length of a curve over the height shown from which on it has an arrow."""
 
 
-def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
+def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     """Draw a root locus, of what lies up to the end of a band, or within limits.
 
     Crosses are the poles at the first gain, squares those at the last, stars those at the gain's own
     value, circles the zeros; all of them are proved. The lines between are traced numerically: solid from
-    poles at the first gain, dashed from where none is marked, such as infinity. The roots that belong
-    together are shown; the legend says how many of each lie outside, and arrows at the border where. Grey
-    circles surround points at which poles accumulate. Right of the imaginary axis the ground is tinted, and
-    the title says at each of these gains whether the loop is stable.
+    poles at the first gain, dashed from where none is marked, such as infinity. Arrows
+    point to growing gains, and where poles cross the imaginary axis the proved gain and frequency
+    are noted. The curves that belong together are shown; the legend says how many of each lie
+    outside, and arrows at the border where. Grey circles surround points at which poles accumulate. Right of
+    the imaginary axis the ground is tinted. A verdict asked for says at each gain whether the loop is stable.
     """
+    locus = trace_locus(loop, canvas.gains, canvas.modes, band_hz=canvas.band_hz)
+    require_arrival(locus)
+    boundaries = find_stable_gains(loop, locus.limits).boundaries if isinstance(loop, Loop) else ()
     width = canvas.width or COLUMN_INCHES
     lines = title_lines(canvas.title, width)
     stages = _stages(locus)
@@ -100,12 +121,19 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     heads = [replace(verdict, hidden="").headline for verdict in verdicts]
     said = [f"${name} = {stage.gain}$, {head}" for stage, head in zip(stages, heads, strict=True)]
     said += dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden)
+    said = said if canvas.frame.has_verdict else []
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + 1))
     marks = [
         *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
         *(RootMark("zero", point_of(root)) for root in locus.start.zeros),
     ]
-    view = _view(locus, marks, canvas)
+    crossings = {
+        complex(0, float(omega.mid())): f"${name} = {number_label(float(boundary.gain.mid()))}$"
+        + (f", {number_label(float(hertz(omega).mid()))} Hz" if omega > 0 else "")
+        for boundary in boundaries
+        for omega in boundary.frequencies
+    }
+    view = _view(locus, marks, canvas, max(map(abs, crossings), default=0.0))
     axes.set_xlim(*view.re)
     axes.set_ylim(*view.im)
     seen = float(np.max(np.abs([view.re, view.im])))
@@ -129,6 +157,9 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
             s = drawable(np.array(branch), seen)
             entry = said_of if said_of and not i else None
             axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=entry)
+            point_along(axes, s, COLOURS[0], POINTED * (view.im[1] - view.im[0]))
+    for place in crossings:
+        axes.plot([0, 0], [place.imag, -place.imag], "o", color="black", markersize=2.6, zorder=4)
     _draw_holes(axes, locus)
     label_s_plane(axes)
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
@@ -147,7 +178,8 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         figure.draw_without_rendering()  # what is above takes its room
     if canvas.frame == FREE:
         named = [mark for mark in marks if mark.kind != ZERO or not locus.start.is_infinite]
-        write_notes(axes, named, Panel.of(view, *inches_of(axes), marks), COLOUR_OF)
+        seen_there = {s: text for s, text in crossings.items() if _is_seen(axes, s)}
+        write_notes(axes, named, Panel.of(view, *inches_of(axes), marks), COLOUR_OF, said=seen_there)
     return figure
 
 
@@ -171,10 +203,10 @@ def _stages(locus: RootLocus) -> list[Stage]:
     return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in stages]
 
 
-def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
+def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas, crossing: float) -> View:
     """Return what is shown: the roots that belong together, and the curves between them."""
     high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
-    view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
+    view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _chosen(locus, marks, crossing))
     size = max(map(abs, view.shown), default=0.0)
     curves = [ROOM * s for branch in locus.branches for s in branch if abs(s) <= 1.6 * size]
     reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
@@ -185,16 +217,23 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
     return View(canvas.frame.x or re, canvas.frame.y or im, shown)
 
 
-def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
-    """Return the poles that no gap parts from the smallest ones, and zeros up to twice as far out.
+def _chosen(locus: RootLocus, marks: Sequence[RootMark], crossing: float) -> set[complex]:
+    """Return the roots near the curves to be shown: from the innermost on, past the last crossing [rad/s].
 
-    Where these are the smaller part of all, those behind the gap are shown as well.
+    Without a crossing they are at least half of all. They end at a gap, or at poles further out that hardly
+    move.
     """
-    poles = [abs(m.s) for m in marks if m.kind != ZERO and m.s]
-    radius = first_run(poles) or first_run(abs(m.s) for m in marks if m.s)
-    while 2 * sum(size > radius for size in poles) > len(poles):
-        radius = first_run(size for size in poles if size > radius)
-    return {m.s for m in marks if abs(m.s) <= radius * (2.0 if m.kind == ZERO else 1.0)}
+    traced = [(max(map(abs, b)), sum(abs(t - s) for s, t in pairwise(b))) for b in locus.branches]
+    traced += [(abs(branch[-1]), abs(branch[-1])) for branch in locus.entering]
+    traced = sorted(one for one in traced if one[0])
+    radius = longest = 0.0
+    for i, (size, length) in enumerate(traced):
+        is_apart = size > GAP_RATIO * radius or (size > FAR_OUT * radius and length < longest / 2)
+        if radius and is_apart and (0 < crossing <= radius or 2 * i >= len(traced)):
+            break
+        radius, longest = size, max(longest, length)
+    radius = radius or first_run(abs(m.s) for m in marks if m.s)
+    return {m.s for m in marks if abs(m.s) <= radius * (ZEROS_OUT if m.kind == ZERO else AGREE)}
 
 
 def _is_seen(axes: Axes, s: complex) -> bool:
@@ -230,49 +269,76 @@ WITHIN: Final = 0.9
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
-    Where no band is asked for, the curve of a rational function goes on until it is next to where it ends,
-    mostly the origin. Arrows point to growing frequency. The title says how many poles of what is drawn lie
-    in the right half plane, P of them: a closed loop is stable if the curve winds P times counterclockwise
-    about -1.
+    Where no band is asked for, the curve of a rational function begins at 0, unless there is a pole, and goes
+    on until it is next to where it ends, mostly the origin. Arrows point to growing frequency. The legend
+    says how many poles lie in the right half plane where there are any, P of them: a closed loop is stable if
+    the curve winds P times counterclockwise about -1.
     """
-    labels = [label_of_tf(bound.source) for bound in bounds]
-    return _draw_curves([_curve(bound, canvas) for bound in bounds], labels, canvas)
+    return draw_curves(bounds, canvas, _draw_about_one)
 
 
 def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
-    """Draw a loop gain as :func:`draw_nyquist` draws others, and say whether the closed loop is stable.
+    """Draw a loop gain as :func:`draw_nyquist` draws others; a verdict asked for is of the closed loop.
 
     The part of the plane about -1 is shown; where the curve leaves it, it goes on outside.
     """
-    gain = nominal_gain(loop)
-    label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(gain))}$"
-    if isinstance(loop, NetworkLoop):
-        curve, closed = _network_curve(loop, gain, canvas), closed_loop_roots(loop, gain)
-    else:
-        curve, closed = _curve(loop_gain(loop), canvas), roots_if_found(closed_loop(loop))
-        apart = poles_apart(loop.bound, loop.factors)
-        closed = replace(closed, verdict=closed.verdict.beside(apart.verdict))
-    return _draw_curves([curve], [label], canvas, f"closed loop {closed.verdict.headline}")
+    return draw_curves(loop, canvas, _draw_about_one)
 
 
-def _draw_curves(
-    followed: Sequence[Curve], labels: Sequence[str], canvas: Canvas, verdict: str | None = None
+def draw_curves(
+    drawn: Sequence[AnyBoundFunction] | AnyLoop,
+    canvas: Canvas,
+    drawing: Callable[[Axes, list[npt.NDArray[np.complex128]], list[str], Canvas, bool], None],
 ) -> Figure:
-    """Draw curves with their labels; with a verdict, of a closed loop, these are loop gains."""
-    width = canvas.width or COLUMN_INCHES
-    is_loop = verdict is not None
-    if len(followed) > 1:
-        pairs = zip(labels, followed, strict=True)
-        labels = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in pairs]
+    """Draw functions or a loop gain along the imaginary axis, each with its label."""
+    width, verdict = canvas.width or COLUMN_INCHES, None
+    if is_loop := isinstance(drawn, Loop | NetworkLoop):
+        gain = nominal_gain(drawn)
+        labels = [f"loop gain, ${label_of_name(drawn.gain.name)} = {number_label(float(gain))}$"]
+        if isinstance(drawn, NetworkLoop):
+            followed = [_network_curve(drawn, gain, canvas)]
+        else:
+            followed = [_curve(loop_gain(drawn), canvas)]
+        if canvas.frame.has_verdict:
+            verdict = f"closed loop {verdict_of_closed(drawn, gain).headline}"
+    else:
+        followed = [_curve(bound, canvas) for bound in drawn]
+        labels = [label_of_tf(bound.source) for bound in drawn]
+    curves, poles = [list(one) for one in zip(*followed, strict=True)]
+    labels = [f"{a}, {_open_poles(b)}" if b.right != 0 else a for a, b in zip(labels, poles, strict=True)]
     columns = _columns(labels, width)
-    counted = _sentence_of_poles([poles for _, poles in followed], is_loop=is_loop)
+    counted = _sentence_of_poles(poles, is_loop=is_loop) if canvas.frame.has_verdict else None
     lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
-    rows = -(-len(labels) // columns)
-    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + rows))
+    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) - (-len(labels) // columns)))
+    drawing(axes, curves, labels, canvas, is_loop)
+    axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
+    # A title of the figure would stand over a legend outside of the axes.
+    legend = canvas.legend(axes, ncols=columns, frameon=False, title="\n".join(lines))
+    legend.get_title().set(
+        fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False, multialignment="center"
+    )
+    return root_figure(axes)
+
+
+def verdict_of_closed(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
+    """Return what is known of the stability of a closed loop at a gain."""
+    if isinstance(loop, NetworkLoop):
+        return closed_loop_roots(loop, gain).verdict
+    closed, apart = roots_if_found(closed_loop(loop, gain)), poles_apart(loop.bound, loop.factors)
+    return closed.verdict.beside(apart.verdict)
+
+
+def _draw_about_one(
+    axes: Axes,
+    curves: list[npt.NDArray[np.complex128]],
+    labels: list[str],
+    canvas: Canvas,
+    is_loop: bool,
+) -> None:
+    """Draw curves in the plane of their values, with the point -1 and the unit circle."""
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    curves = [curve for curve, _ in followed]
     reach = _reach(np.concatenate(curves), is_loop=is_loop)
     across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
@@ -287,17 +353,10 @@ def _draw_curves(
     if 1 / OBLONG < (across[1] - across[0]) / (upwards[1] - upwards[0]) < OBLONG:
         axes.set_aspect("equal", adjustable="box")
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
-        _point_along(axes, values, colour)
+        point_along(axes, values, colour)
     set_round_ticks(axes, 5, 5)
-    axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
-    # A title of the figure would stand over a legend outside of the axes.
-    legend = canvas.legend(axes, ncols=columns, frameon=False, title="\n".join(lines))
-    legend.get_title().set(
-        fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False, multialignment="center"
-    )
-    return root_figure(axes)
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
@@ -354,6 +413,12 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
     return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
 
 
+def _inwards(bound: AnyBoundFunction, low: float) -> npt.NDArray[np.complex128]:
+    """Return values of a function without a pole at 0 from there up to a frequency [Hz]."""
+    steps = (0.0, *np.geomspace(1e-3 * low, low, 60)[:-1].tolist())
+    return np.array([bound(2j * pi * f) for f in steps], dtype=np.complex128)
+
+
 def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
     band, judged = canvas.band_of(bound.source.model), None
@@ -367,6 +432,8 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and bound.is_rational:
         values = np.concatenate((values, _onwards(bound, high)))
+        if not any(root.is_zero for root in located.poles):
+            values = np.concatenate((_inwards(bound, low), values))
     return values[np.isfinite(values)], located.verdict
 
 
@@ -391,20 +458,20 @@ def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
     return 1.1 * float(np.quantile(np.abs(values), 0.9)) or 1.0
 
 
-def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) -> None:
-    """Draw an arrow halfway along the part of a curve that is shown."""
+def point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str, least: float = 0.0) -> None:
+    """Draw an arrow halfway along the part of a curve that is shown, if that is long enough."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     half_width, half_height = (right - left) / 2, (high - low) / 2
     across = np.abs(values.real - (left + right) / 2) / half_width
     upwards = np.abs(values.imag - (low + high) / 2) / half_height
     shown = np.flatnonzero(np.maximum(across, upwards) < WITHIN)
     steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004 (two steps at least)
-    if not steps.size or not float(steps.sum()) > 0:
+    if not steps.size or not float(steps.sum()) > least:
         return
     middle = int(np.searchsorted(np.cumsum(steps), 0.4 * float(steps.sum())))
     i = int(shown[min(middle, shown.size - 2)])
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
     b = a + 0.01 * min(half_width, half_height) * step / abs(step)
-    look = {"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour}
+    look = {"arrowstyle": "-|>", "mutation_scale": 12, "linewidth": 0, "color": colour}
     axes.annotate("", (b.real, b.imag), (a.real, a.imag), arrowprops=look)

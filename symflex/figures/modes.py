@@ -73,10 +73,9 @@ def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
     As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
-    plane. Rigid-body motions at 0 are left out. The title says whether the model is stable. The part in phase
-    with the largest displacement is drawn in full, what moves in quadrature dashed. See
-    :func:`symflex.figures.draw`. Raises ModelError: SF402 when there is no mode other than at 0; UsageError:
-    SF902 when the panels have no room in the width asked for.
+    plane. Rigid-body motions at 0 are left out. The part in phase with the largest displacement is drawn in
+    full, what moves in quadrature dashed. See :func:`symflex.figures.draw`. Raises ModelError: SF402 when
+    there is no mode other than at 0; UsageError: SF902 when the panels have no room in the width asked for.
     """
     model, band_hz = bounds[0].source.model, canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
@@ -87,7 +86,7 @@ def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
         raise ModelError(Diagnostic("SF402", message))
-    return draw_shapes(model, shapes, canvas, verdict.headline)
+    return draw_shapes(model, shapes, canvas, verdict.headline if canvas.frame.has_verdict else None)
 
 
 def draw_shapes(
@@ -103,7 +102,7 @@ def draw_shapes(
     lines = [line for group in titles for line in group]
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
-    labels = [names[_unit_of(panel)] for panel in panels]
+    labels = ["" if isinstance(panel, Plan) else names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
     columns = _widths(panels, width - RIGHT - sum(gaps))
     own = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
@@ -389,7 +388,7 @@ def _label_columns(
     left, before = 0.0, ""
     for label, room, gap in zip(labels, columns, gaps, strict=True):
         left += gap
-        if label != before:
+        if label not in (before, ""):
             place, text = (left - LABEL_OFFSET) / width, label[0].upper() + label[1:]
             figure.text(place, middle, text, rotation=90, ha="center", va="center", fontsize=8)
         left, before = left + room, label

@@ -8,11 +8,22 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.figures.axes import FREE, draw_points, draw_zero_lines, root_figure, set_round_ticks
 from symflex.figures.figure import new_figure
-from symflex.figures.s_plane import GLYPHS, Panel, View, choose_view, inches_of, marks_of, write_notes
+from symflex.figures.s_plane import (
+    GLYPHS,
+    POINTS_PER_INCH,
+    Panel,
+    View,
+    choose_view,
+    crowded,
+    inches_of,
+    marks_of,
+    write_notes,
+)
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     LINE_INCHES,
+    NOTE_POINTS,
     PAGE_INCHES,
     label_of_tf,
     stability_lines,
@@ -29,7 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.figures.axes import Canvas
-    from symflex.figures.s_plane import Kind, RootMark
+    from symflex.figures.s_plane import Box, Kind, RootMark
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
@@ -38,6 +49,8 @@ PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
 LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
 NARROWEST, WIDEST = 0.6, 1.25
+INSET, PAD, ROOM_POINTS = 0.3, 24.0, 110.0
+"""Share of a panel that an inset takes, room for its numbers, and the least side of a panel with one [pt]."""
 TALLEST_INCHES: Final = 2.6
 LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
     "zero": ("o", COLOURS[0], 4.6),
@@ -50,11 +63,12 @@ COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw poles (crosses) and zeros (circles); see :func:`symflex.figures.draw`.
 
-    All panels show the same part of the s plane. A root outside it is named at the border where the ray from
+    All panels show the same part of the s plane; an inset those roots of a wide one that lie close to the
+    origin. A root outside it is named at the border where the ray from
     the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
     default modes are shown, as far up as the highest pole, or those up to the end of a band, and all poles in
     the right half plane. Within limits asked for, scales may differ, and the title counts what is outside.
-    What it says of stability holds for all poles, drawn or not.
+    A verdict asked for holds for all poles, drawn or not.
     """
     band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
@@ -81,7 +95,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     outside = [_said_of_rest(located, view) for located in maps] if is_asked else []
     titles = (
         title_lines(canvas.title, width),
-        stability_lines(maps, width),
+        stability_lines(maps, width) if frame.has_verdict else [],
         [line for said in outside if said for line in title_lines(said, width)],
     )
     lines = [line for group in titles for line in group]
@@ -102,7 +116,8 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         if is_asked:
             axes.set_aspect("auto")
         panel = Panel.of(view, panel_width, panel_height, marks)
-        write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks)
+        inset = () if is_asked else _draw_inset(axes, marks, panel)
+        write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks, inset)
         axes.set_title(label_of_tf(bound.source), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0 or own:
@@ -133,6 +148,24 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     inside = [mark for mark in marks if view.shows(mark)]
     for kind, look in LOOKS.items():
         draw_points(axes, [mark.s for mark in inside if mark.kind == kind], look, is_cut=False)
+
+
+def _draw_inset(axes: Axes, marks: Sequence[RootMark], panel: Panel) -> tuple[Box, ...]:
+    """Draw the roots close to the origin where no root is, and return what it covers [points]."""
+    near, (wide, high) = crowded(panel.view), panel.size
+    across, upwards = INSET * wide, INSET * high
+    if not near or min(wide, high) < ROOM_POINTS:
+        return ()
+    x, y = (1.1 * PAD, wide - across - PAD / 4), (high - upwards - PAD / 4, 0.6 * PAD, high / 2 + 0.75 * PAD)
+    boxes = [(a - PAD, b - PAD / 2, a + across, b + upwards) for b in y for a in x]
+    box = boxes[panel.clearest(boxes)]
+    if panel.cost(box, (), ()):
+        return ()
+    inset = axes.inset_axes(((box[0] + PAD) / wide, (box[1] + PAD / 2) / high, INSET, INSET))
+    view = choose_view([m for m in marks if m.s in near], None, (across / upwards,) * 2, near)
+    _draw_panel(inset, marks, view, across / POINTS_PER_INCH, upwards / POINTS_PER_INCH)
+    inset.tick_params(labelsize=NOTE_POINTS, pad=2)
+    return (box,)
 
 
 def _said_of_rest(located: PoleZeroMap, view: View) -> str:

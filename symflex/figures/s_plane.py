@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 GAP_RATIO: Final = 5.0
 """Neighbouring natural frequencies further apart than this do not belong together."""
+DECADES: Final = 100.0
+"""Resonances are shown up to so many times the lowest."""
+CROWDED: Final = 0.15
+"""Roots nearer to the origin than this share of those shown are one blot: an inset shows them."""
 REAL_REACH: Final = 2.5
 """Real roots are shown up to so many times the highest resonance shown."""
 UNSTABLE_REACH: Final = 10.0
@@ -127,7 +131,7 @@ def choose_view(
     """Choose the part of the s plane to show.
 
     It shows the roots up to the natural frequency ``high_hz`` [Hz]; without it, those ``chosen``, or the
-    resonances from the lowest on, as far as no gap separates them, and the real roots of their size.
+    resonances up to a hundred times the lowest, and the real roots of their size.
     ``ratios`` are the smallest and the largest width over height.
 
     Examples
@@ -181,9 +185,17 @@ def leaving(marks: Iterable[RootMark], view: View) -> list[list[RootMark]]:
 
 def _belonging_together(points: set[complex]) -> set[complex]:
     resonant = [s for s in points if s.imag]
-    radius = first_run([abs(s) for s in resonant or points if s])
+    sizes = [abs(s) for s in resonant or points if s]
+    radius = max((size for size in sizes if size < DECADES * min(sizes)), default=0.0)
     reach = REAL_REACH * radius if resonant else radius
     return {s for s in points if abs(s) <= (radius if s.imag else reach)}
+
+
+def crowded(view: View) -> set[complex]:
+    """Return the roots before the first gap, two or more, where a view shows them as one blot."""
+    radius = first_run(abs(s) for s in view.shown if s)
+    near = {s for s in view.shown if abs(s) <= radius}
+    return near if len(near) > 1 and radius < CROWDED * max(map(abs, view.shown)) else set()
 
 
 def first_run(sizes: Iterable[float]) -> float:
@@ -211,8 +223,8 @@ PAD_POINTS: Final = 1.5
 """Space between a note and the frame."""
 LISTED: Final = 5
 """Roots that are named at one arrow; of the others their number is told."""
-NOTE_LINE_POINTS: Final = 7.5
-LEAST_NOTE_POINTS: Final = 4.5
+NOTE_LINE_POINTS: Final = 8.5
+LEAST_NOTE_POINTS: Final = 6.0
 ARROW: Final = 0.13
 """Length of an arrow over the smaller side of its panel."""
 SHIFTS: Final = 8
@@ -330,18 +342,23 @@ def write_notes(
     panel: Panel,
     colours: Mapping[Kind, str],
     numbered: Sequence[RootMark] = (),
+    taken: Sequence[Box] = (),
+    said: Mapping[complex, str] | None = None,
 ) -> None:
     """Draw arrows to roots outside the view, name those of the upper half plane, number multiple roots.
 
     Those of ``marks`` outside the view are named; those of ``numbered`` in it bear their multiplicity. No
-    text covers another one as long as there is room.
+    text covers another one, or what is ``taken``, as long as there is room. What is
+    ``said`` of points stands beside them.
     """
     groups = leaving((mark for mark in marks if mark.kind in GLYPHS), panel.view)
     shafts = [_draw_arrow(axes, group[0].s, panel) for group in groups]
-    notes = _Notes(axes, panel, colours, [_around(*shaft) for shaft in shafts])
+    notes = _Notes(axes, panel, colours, [_around(*shaft) for shaft in shafts], list(taken))
     for mark in numbered:
         if mark.multiplicity > 1 and panel.view.shows(mark):
-            notes.number(mark)
+            notes.number(mark.s, str(mark.multiplicity), colours[mark.kind])
+    for s, text in (said or {}).items():
+        notes.number(s, text, "black")
     for group, shaft in zip(groups, shafts, strict=True):
         if not group[0].s.imag < 0:
             notes.name(group, shaft)
@@ -377,19 +394,19 @@ class _Notes:
     arrows: Sequence[Box]
     taken: list[Box] = field(default_factory=list)  # by notes
 
-    def number(self, mark: RootMark) -> None:
-        """Write a multiplicity beside its mark, at a corner where it covers nothing if there is one."""
-        x, y = self.panel.at(mark.s)
-        wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), NOTE_LINE_POINTS
-        others = replace(self.panel, roots=tuple(s for s in self.panel.roots if s != mark.s))
+    def number(self, at: complex, text: str, colour: str) -> None:
+        """Write a multiplicity or a gain beside its mark, where it covers nothing if there is a place."""
+        x, y = self.panel.at(at)
+        wide, high = text_width(text, NOTE_POINTS), NOTE_LINE_POINTS
+        others = replace(self.panel, roots=tuple(s for s in self.panel.roots if s != at))
         boxes = [
             (x + dx, y + dy, x + dx + wide, y + dy + high)
-            for away in (0.0, wide, 2 * wide)
+            for away in (0.0, high / 2, high, 2 * high)
             for dy in (1.5 + away, -1.5 - high - away, -high / 2)
             for dx in (3.6 + away, -3.6 - wide - away)
         ]
         chosen = boxes[others.clearest(boxes, self.taken, self.arrows, SHIFT_COST)]
-        self._write(str(mark.multiplicity), chosen, NOTE_POINTS, self.colours[mark.kind])
+        self._write(text, chosen, NOTE_POINTS, colour)
         self.taken.append(chosen)
 
     def _write(self, text: str, box: Box, size: float, colour: str) -> None:
@@ -409,7 +426,7 @@ class _Notes:
         wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
         largest = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
         found: list[tuple[float, float, Box]] = []
-        for step, share in enumerate((1.0, 0.9, 0.8, 0.7)):  # of its type, where it has little room
+        for step, share in enumerate((1.0, 0.9)):  # of its type, where it has little room
             size = largest * share
             scale = size / NOTE_POINTS
             across, high = wide * scale, NOTE_LINE_POINTS * scale * len(notes)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 COLUMN_INCHES: Final = 3.5
 PAGE_INCHES: Final = 7.16
 """A column and the text of a page in journals of the IEEE."""
-NOTE_POINTS: Final = 6.0
+NOTE_POINTS: Final = 7.0
 TITLE_POINTS: Final = 8.0
 LINE_INCHES: Final = 0.13
 """Height of a line of a title."""

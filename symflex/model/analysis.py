@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "data", "title", "doc")
-FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "stability", "modes", "step", "impulse")
-OF_A_LOOP = ("nyquist", "locus")
+OF_A_LOOP = ("nyquist", "nichols", "sensitivity", "locus")
+FIGURE_KINDS = ("bode", "poles_zeros", *OF_A_LOOP, "stability", "modes", "step", "impulse")
 IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000

@@ -47,7 +47,12 @@ WORDS: Final = {
 }
 
 
-LOOP_WORDS: Final = {"locus": "Root locus for the gain", "nyquist": "Nyquist plot of the loop with the gain"}
+LOOP_WORDS: Final = {
+    "locus": "Root locus for the gain",
+    "nichols": "Nichols chart of the loop with the gain",
+    "nyquist": "Nyquist plot of the loop with the gain",
+    "sensitivity": "Sensitivities of the loop with the gain",
+}
 
 
 def drawing_section(study: Study) -> ChapterPart:

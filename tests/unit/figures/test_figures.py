@@ -236,10 +236,13 @@ def test_a_unit_becomes_a_label():
 # ------------------------------------------------------------------------------------------------ bode
 
 
-def test_the_level_is_relative_to_the_unit_and_different_units_stand_in_the_legend(tfs):
+def test_the_level_is_relative_to_the_unit_and_each_unit_has_a_panel(tfs):
     assert drawn("bode", tfs[:1]).axes[0].get_ylabel() == r"Magnitude [dB, 0 dB = 1 $\mathrm{m/N}$]"
-    labels = [text.get_text() for text in drawn("bode", tfs).axes[0].get_legend().get_texts()]
-    assert labels == [r"$X_{\mathrm{tip}}/F$ [$\mathrm{m/N}$]", r"$V_{\mathrm{act}}/F$ [$\mathrm{m/(N\,s)}$]"]
+    panels = drawn("bode", tfs).axes
+    said = [r"dB re $\mathrm{m/N}$", r"dB re $\mathrm{m/(N\,s)}$", "Phase [deg]"]
+    assert [panel.get_ylabel() for panel in panels] == said
+    labels = [text.get_text() for text in panels[0].get_legend().get_texts()]
+    assert labels == [r"$X_{\mathrm{tip}}/F$", r"$V_{\mathrm{act}}/F$"]
 
 
 @pytest.mark.slow
@@ -264,7 +267,7 @@ def test_limits_of_an_axis_that_are_none_are_refused():
 
 def test_a_bode_plot_has_the_limits_asked_for(undamped):
     frame = AxisLimits(y=(-60.0, 40.0), phase=(-200.0, 20.0))
-    top, bottom = drawn("bode", undamped, frame=frame).axes
+    top, _, bottom = drawn("bode", undamped, frame=frame).axes
     assert top.get_ylim() == (-60, 40)
     assert bottom.get_ylim() == (-200, 20)
     # An undamped peak still runs to the frame.
@@ -292,7 +295,8 @@ def test_one_axis_may_be_left_as_it_is(tfs):
 
 def test_roots_outside_the_limits_asked_for_are_counted():
     # (s - 30) is unstable and outside: the title says both.
-    figure = drawn_rational("poles_zeros", "(s + 5)/((s^2 + 1*s + 1)*(s - 30))", frame=AxisLimits(x=(-2, 1)))
+    frame = AxisLimits(x=(-2, 1), has_verdict=True)
+    figure = drawn_rational("poles_zeros", "(s + 5)/((s^2 + 1*s + 1)*(s - 30))", frame=frame)
     said = [text.get_text() for text in figure.texts]
     assert "unstable: 1 pole in the right half plane" in said
     assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
@@ -378,7 +382,7 @@ def test_phase_ticks_are_multiples_of_45_degrees():
 
 
 def test_curves_differ_in_colour_and_in_dashes(undamped):
-    first, second = drawn("bode", undamped).axes[0].lines
+    first, second = (line for axes in drawn("bode", undamped).axes[:2] for line in axes.lines)
     assert first.get_color() != second.get_color()
     assert first.get_linestyle() != second.get_linestyle()
 
@@ -435,9 +439,10 @@ def test_neighbouring_resonances_are_shown_and_not_squashed_by_what_is_far():
     assert seen([*RESONANT, RootMark("pole", -5000 + 0j)]) == near
     assert seen([*RESONANT, RootMark("zero", 400 + 0j)]) == [*near, 400]
     assert seen([*RESONANT, *FAR]) == near
+    assert seen([*RESONANT, RootMark("pole", 6000j)]) == [*near, 6000j]  # within two decades of 70
     assert seen([*RESONANT, *FAR], high_hz=5000) == [*near, *(mark.s for mark in FAR)]
     # Real roots alone are shown from the lowest.
-    assert seen([RootMark("pole", -50 + 0j), RootMark("pole", -5000 + 0j)]) == [-50]
+    assert seen([RootMark("pole", complex(s)) for s in (-50, -4000, -9000)]) == [-50, -4000]
 
 
 def test_the_view_has_the_shape_asked_for():

@@ -2,11 +2,12 @@
 
 import random
 
+import numpy as np
 import pytest
 
 import symflex
 from symflex import pipeline
-from symflex.figures import draw, draw_loop
+from symflex.figures import LOOP_FIGURES, draw, draw_loop
 from symflex.loops.of_model import characteristic_loop
 from tests.house.repository import ROOT
 from tests.unit.figures.texts import faults
@@ -41,7 +42,7 @@ def test_texts_of_a_figure_keep_apart(name, kinds):
 @pytest.mark.slow
 def test_texts_of_a_figure_of_a_loop_keep_apart():
     model = pipeline.load(MODELS / "eppinger1988/loops/lumped_bending_beam_position.toml")
-    for kind in ("locus", "nyquist"):
+    for kind in LOOP_FIGURES:
         assert not faults(draw_loop(kind, characteristic_loop(model, "K"))), kind
 
 
@@ -106,15 +107,48 @@ def test_a_locus_marks_the_gain_s_own_value():
     assert sorted(map(complex, *stars.get_data()), key=lambda s: s.imag) == [-1 - 2j, -1 + 2j]
 
 
+def test_a_locus_notes_the_gain_and_frequency_at_which_poles_cross_the_axis():
+    # s^3 + 3 s^2 + 2 s + K: Routh's array has a zero row at K = 6, where s^2 = -2.
+    (axes,) = loop("1/(s*(s + 1)*(s + 2))").locus("K", (0, 20)).axes
+    assert "$K = 6$, 0.2251 Hz" in [text.get_text() for text in axes.texts]
+
+
+def test_a_nichols_chart_shows_phase_and_level_and_passes_beside_its_critical_points():
+    (axes,) = loop("1/(s*(s + 1))", K=1).nichols("K").axes
+    (curve,) = (line for line in axes.lines if line.get_label().startswith("loop gain"))
+    phases, levels = (np.asarray(data, float) for data in curve.get_data())
+    # At 1 rad/s |L| is 1/sqrt(2), and the phase -135 degrees.
+    assert np.interp(-135, phases[::-1], levels[::-1]) == pytest.approx(-10 * np.log10(2), abs=0.01)
+    assert {float(x) for line in axes.lines if line.get_marker() == "+" for x in line.get_xdata()} >= {-180.0}
+
+
+def test_a_sensitivity_marks_its_peak_where_a_grid_has_its_largest_value():
+    (axes,) = loop("1/(s*(s + 1)*(s + 2))").sensitivity_plot("K").axes
+    marks = [(line.get_xdata()[0], line.get_ydata()[0]) for line in axes.lines if line.get_marker() == "o"]
+    s = 1j * np.linspace(0.01, 5, 200_001)
+    gain = 1 / (s * (s + 1) * (s + 2))
+    for (frequency, level), size in zip(marks, (abs(1 / (1 + gain)), abs(gain / (1 + gain))), strict=True):
+        assert frequency == pytest.approx(abs(s[size.argmax()]) / (2 * np.pi), rel=1e-3)
+        assert level == pytest.approx(20 * np.log10(size.max()), abs=1e-6)
+
+
+def test_roots_near_the_origin_of_a_wide_plane_have_an_inset():
+    expression = "1/((s + 2)*(s^2 + 2*s + 4)*(s^2 + 20*s + 10000))"
+    panel = loop(expression).transfer_function("Y", "r").bind().pole_zero_plot().axes[0]
+    (inset,) = panel.child_axes
+    assert -10 < inset.get_xlim()[0] < inset.get_xlim()[1] < 10
+
+
 def test_a_locus_beyond_the_gain_s_own_value_marks_none():
     (axes,) = loop("1/(s*(s + 2))", K=5).locus("K", (6, 10)).axes
     assert "*" not in {line.get_marker() for line in axes.get_lines()}
 
 
 def test_a_nyquist_plot_says_how_many_poles_are_in_the_right_half_plane():
-    for expression, said in (("1/(s - 1)", "1 pole"), ("1/(s + 1)", "no pole")):
-        title = loop(expression).nyquist("K").legends[0].get_title().get_text()
-        assert title.startswith(f"open loop: {said} in the right half plane"), (expression, said)
+    for expression, said, label in (("1/(s - 1)", "1 pole", ", $P = 1$"), ("1/(s + 1)", "no pole", "")):
+        (legend,) = loop(expression).nyquist("K", verdict=True).legends
+        assert legend.get_title().get_text().startswith(f"open loop: {said} in the right half plane")
+        assert legend.get_texts()[0].get_text() == f"loop gain, $K = 1${label}"
 
 
 def test_a_nyquist_plot_reaches_the_origin_beyond_the_model_s_band():
