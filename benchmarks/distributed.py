@@ -2,7 +2,7 @@
 
 The function is V_act/F of the sliding-free beam (derivations/eppinger1988). All ways run in one process and
 take turns; each counts with its fastest run, in processor time. Code by hand is what a careful person would
-write: two complex exponentials that decay, the same for both half planes, and a series near s = 0.
+write: two complex exponentials that decay, the same for both half-planes, and a series near s = 0.
 ``sympy.lambdify`` gets the hyperbolic closed form that symflex prints, with its definitions put in; it
 overflows above some 10 kHz, and the band stops before.
 """

@@ -233,7 +233,7 @@ def chain_poles(*, damped: bool) -> list[mpc]:
 
 
 def numpy_in_the_wrong_half_plane() -> int:
-    """Return how many poles of the damped chain ``numpy.roots`` puts into the right half plane."""
+    """Return how many poles of the damped chain ``numpy.roots`` puts into the right half-plane."""
     import numpy as np  # slow to import; only here
 
     before, now = np.array([Fraction(1)]), np.array([Fraction(1), LOSS, Fraction(1)])  # one mass, descending
@@ -329,7 +329,7 @@ def measure(extent: Extent) -> Measured:
         claims.append(Claim(f"{task} [s]", ceiling, taken, larger_is_better=False, is_ratio=False))
     claims.append(
         Claim(
-            f"damped chain of {MASSES} masses: poles that `numpy.roots` puts into the right half plane",
+            f"damped chain of {MASSES} masses: poles that `numpy.roots` puts into the right half-plane",
             1.0,
             numpy_in_the_wrong_half_plane(),
             is_ratio=False,

@@ -425,7 +425,7 @@ class StabilityOptions:
         "--over",
         multiple=True,
         metavar="P",
-        help="Any parameter in place of a gain, a dead time or a length; twice: a chart. For "
+        help="Any parameter in place of a gain, a delay or a length; twice: a chart. For "
         "a chart --range takes the name first: --range T 0 '5 ms'.",
     )
     ranges: Sequence[tuple[str, Stated, Stated]] = option(
@@ -597,7 +597,7 @@ class FitOptions:
     is_gain_free: bool = option(False, "--gain", help="Fit a gain on the base, too.")
     is_lag_free: bool = option(False, "--lag", help="Fit a sensor lag, 1/(1 + T s).")
     is_lag_signed: bool = option(False, "--signed-lag", help="Like --lag, but T may be negative (a lead).")
-    is_delay_free: bool = option(False, "--delay", help="Fit a dead time, exp(-T s), T not negative.")
+    is_delay_free: bool = option(False, "--delay", help="Fit a delay, exp(-T s), T not negative.")
     slope: int | None = option(
         None, "--slope", least=-6, most=6, help="Without --base: power of s.  [default: chosen by the fit]"
     )

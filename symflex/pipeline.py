@@ -46,7 +46,7 @@ def load(
 ) -> Model:
     """Read a specification file and resolve it, with the given values in place of declared ones.
 
-    Its ``model`` blocks read files at and below its folder, and at and below those of ``allow_outside``.
+    Its ``model`` blocks read files in its folder, in those of ``allow_outside``, and in their subfolders.
 
     Raises
     ------

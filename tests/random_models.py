@@ -6,7 +6,7 @@ by hypothesis gives smaller ones where a test fails, one of bytes is what a fuzz
 `networks`, `passive_networks`, `reciprocal_networks`
     Lumped elements, signals and blocks. A network is built as a tree from ground, so that every coordinate
     has a path of its own; couplings, supports and voltage sources are added on top only while the constraints
-    they impose stay independent. Such a network is nonsingular at every s in the right half plane unless a
+    they impose stay independent. Such a network is nonsingular at every s in the right half-plane unless a
     signal loop happens to have a pole there.
 `random_members`
     A connected graph of beams, rods, shafts or strings with lumped elements, and now and then a loop with a
@@ -15,7 +15,7 @@ by hypothesis gives smaller ones where a test fails, one of bytes is what a fuzz
     The text of parts, fields, blocks and signals put together without regard to what is sound, and those
     models among them that are.
 `random_loop`
-    Loops around plants, dead times or a beam with functions of a gain in them.
+    Loops around plants, delays or a beam with functions of a gain in them.
 """
 
 from __future__ import annotations
@@ -1132,7 +1132,7 @@ def function_of_gain(random, names):
 
 
 def _polynomial(random, degree, lowest=-0.2):
-    """Return descending coefficients, most of whose roots lie left of the axis."""
+    """Return descending coefficients, most of whose roots lie in the left half-plane."""
     found = np.ones(1)
     while len(found) <= degree:
         a, b = random.uniform(lowest, 3), random.uniform(0.2, 4)
@@ -1141,11 +1141,11 @@ def _polynomial(random, degree, lowest=-0.2):
 
 
 def random_loop(seed, kind):
-    """Return the text of a loop, and of a gain the polynomials without and with a dead time of 0.3 s."""
+    """Return the text of a loop, and of a gain the polynomials without and with a delay of 0.3 s."""
     random, names, places = Random(f"{kind} {seed}"), {}, []
-    for _ in range(2 if kind == "two places" or (kind == "dead time" and seed % 3 == 0) else 1):
+    for _ in range(2 if kind == "two places" or (kind == "delay" and seed % 3 == 0) else 1):
         degree = random.randint(*((2, 5) if kind == "lumped" else (1, 3)))
-        zeros = random.randint(0, max(0, degree - random.choice((1, 2, 2, int(kind == "dead time")))))
+        zeros = random.randint(0, max(0, degree - random.choice((1, 2, 2, int(kind == "delay")))))
         b = random.choice((1, 4)) * _polynomial(random, zeros, -1)
         places.append((*function_of_gain(random, names), _polynomial(random, degree), b))
     sign = "real" if kind == "lumped" and seed % 4 == 0 else "positive"
@@ -1161,7 +1161,7 @@ def random_loop(seed, kind):
         f"/({'+'.join(f'({c:g})*s^{len(a) - 1 - i}' for i, c in enumerate(a))})"
         for f, _, a, b in places
     ]
-    paths[0] += "*exp(-0.3*s)*(r - y)" if kind == "dead time" else "*(r - y)"
+    paths[0] += "*exp(-0.3*s)*(r - y)" if kind == "delay" else "*(r - y)"
     one, other = places[0], places[-1] if len(places) > 1 else ("", lambda _: 0, np.ones(1), np.ones(1))
 
     def characteristic(gain):

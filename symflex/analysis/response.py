@@ -5,7 +5,7 @@ Input: a :class:`BoundTransferFunction` and frequencies. Output: a :class:`Sampl
 The phase is known from poles and zeros. G(j omega) = K (j omega)^n prod(1 - j omega/z) / prod(1 - j omega/p):
 along omega each factor runs on a ray from 1 that never meets the negative real axis, so the principal value
 of its argument is its continuous phase. The exception, a root j b on the axis, is taken as the limit from the
-left half plane: beyond b a zero gives +pi, a pole -pi.
+left half-plane: beyond b a zero gives +pi, a pole -pi.
 
 Of a distributed system there are infinitely many poles and zeros to sum over. So the argument is followed
 from a small positive s on a quarter circle to the imaginary axis and along it, in steps that are halved until

@@ -1,6 +1,6 @@
 """A transfer function from one sample to the next: its poles and zeros in z, and its difference equation.
 
-Input: a bound transfer function that is rational but for dead times, a sampling time h, a method.
+Input: a bound transfer function that is rational but for delays, a sampling time h, a method.
 Output: a :class:`SampledTransferFunction`, everything in balls.
 
     1/(s + 2), h = 0.1    zoh        0.0906 /(z - e^(-0.2))          its step response is that of 1/(s + 2)
@@ -9,7 +9,7 @@ Output: a :class:`SampledTransferFunction`, everything in balls.
 
 ``zoh`` is what a plant does whose input a computer holds between samples; ``tustin`` and ``matched`` make
 difference equations of controllers and filters that were designed in s (Franklin, Powell and Workman 1998,
-Digital Control of Dynamic Systems, chapter 6). A dead time of any fraction of samples is exact with ``zoh``:
+Digital Control of Dynamic Systems, chapter 6). A delay of any fraction of samples is exact with ``zoh``:
 
     g(k h - T), the step response at samples, less itself one sample before, is the impulse response, and that
     times the denominator is the numerator: n + 1 numbers, whatever the multiplicities of the poles.
@@ -73,7 +73,7 @@ class SampledTransferFunction:
 
     tf: str  # ``"OUT/IN"``
     sampling: Sampling
-    late: int  # whole samples of dead time
+    late: int  # whole samples of delay
     numerator: tuple[arb, ...]  # in descending powers of z, as many as the denominator has
     denominator: tuple[arb, ...]  # monic
     poles: tuple[acb, ...]  # as often as their multiplicities say, without those of ``late``
@@ -102,7 +102,7 @@ class SampledTransferFunction:
         return above / below / z**self.late
 
     def coefficients(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Return numerator and denominator in descending powers of z, dead time included, as doubles.
+        """Return numerator and denominator in descending powers of z, delay included, as doubles.
 
         They lose digits where poles lie close together; second-order sections, as of exported code, do not.
         """
@@ -122,10 +122,10 @@ class SampledTransferFunction:
 
 @dataclass(frozen=True, eq=False)
 class _Delayed:
-    """A quotient of polynomials times a dead time."""
+    """A quotient of polynomials times a delay."""
 
     numerator: acb_poly
-    late: arb  # the dead time [s]
+    late: arb  # the delay [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +148,14 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
     Parameters
     ----------
     bound : BoundTransferFunction
-        Rational, but for dead times outside of loops.
+        Rational, but for delays outside of loops.
     sampling : Sampling
         How often, and by which method.
 
     Raises
     ------
     UsageError
-        SF902 for a dead time of too many samples, or with another method than ``zoh`` of no whole number,
+        SF902 for a delay of too many samples, or with another method than ``zoh`` of no whole number,
         and for a pole that ``tustin`` takes to infinity.
     ModelError
         SF235 for beams, and for delays in loops; SF236 for a function that grows with s.
@@ -222,7 +222,7 @@ def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Contin
         _check_order(bound, num, den)
         if late < 0:
             message = f"{bound.name} looks ahead: its output would come before its input"
-            raise ModelError(Diagnostic("SF235", message, None, "make every dead time zero or positive"))
+            raise ModelError(Diagnostic("SF235", message, None, "make every delay zero or positive"))
         terms.append(_Delayed(num, late))
     exact = [durations.exact(p) for p in (below, *quotient.above.values())]
     roots = [find_polynomial_roots(RootProblem(((p, 1),)), digits) if p.degree > 0 else () for p in exact[:2]]
@@ -237,7 +237,7 @@ def _check_order(bound: BoundTransferFunction, num: acb_poly, den: acb_poly) -> 
 
 
 Found = tuple["list[arb]", "list[arb]", "tuple[acb, ...]", "tuple[acb, ...] | None", int, arb]
-"""Numerator, denominator, poles, zeros where they are known, whole samples of dead time, and a size beside
+"""Numerator, denominator, poles, zeros where they are known, whole samples of delay, and a size beside
 which a coefficient of the numerator may be nothing."""
 
 
@@ -350,19 +350,19 @@ MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found]]
 """One for every method of :class:`Sampling`."""
 
 
-def dead_time(bound: BoundTransferFunction, sampling: Sampling) -> Fraction:
-    """Return the dead time [s] of a function that is rational otherwise; errors as of sampling it."""
+def delay_of(bound: BoundTransferFunction, sampling: Sampling) -> Fraction:
+    """Return the delay [s] of a function that is rational otherwise; errors as of sampling it."""
     bits = 2 * bits_for_digits(FIRST_DIGITS)
     with precision(bits):
         given = _continuous(without_lengths_of_zero(bound), FIRST_DIGITS, bits)
         if len(given.terms) > 1:
-            message = f"{bound.name} is a sum of dead times: its state equations are not those of the model"
+            message = f"{bound.name} is a sum of delays: its state equations are not those of the model"
             raise ModelError(Diagnostic("SF235", message, None, "export code with --to c or numpy"))
         return _delay(given.terms[0].late, sampling)
 
 
 def _delay(late: arb, sampling: Sampling) -> Fraction:
-    """Return a dead time as a number; one that no precision tells from whole samples is so many."""
+    """Return a delay as a number; one that no precision tells from whole samples is so many."""
     ratio = late / sampling.seconds
     near = round(float(ratio.mid()))
     delay = near * sampling.sample if ratio.contains(near) else exact_fraction(late.mid())
@@ -372,7 +372,7 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
 
 def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
     if len(given.terms) > 1:
-        message = f"{bound.name} is a sum of dead times, which '{sampling.method}' cannot handle"
+        message = f"{bound.name} is a sum of delays, which '{sampling.method}' cannot handle"
         raise UsageError(Diagnostic("SF902", message, None, "take zoh"))
     return int(_delay(given.terms[0].late, sampling) / sampling.sample)
 

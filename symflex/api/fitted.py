@@ -186,7 +186,7 @@ def fit(
     lag : bool or "signed"
         Fit a lag of the sensor, 1/(1 + T s), with T not negative unless this is ``"signed"``.
     delay : bool
-        Fit a dead time, exp(-T s), which is not negative.
+        Fit a delay, exp(-T s), which is not negative.
     slope : int, optional
         Without a base: the power of s; by default the best.
     allow_outside : sequence of str or Path

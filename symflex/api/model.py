@@ -395,7 +395,7 @@ class Model:
         peaks: bool = False,
         **values: Number,
     ) -> Stability | StabilityChart | SpreadStability:
-        """Return the gains for which all closed-loop poles are in the open left half plane, proved.
+        """Return the gains for which all closed-loop poles are in the open left half-plane, proved.
 
         Parameters
         ----------
@@ -411,7 +411,7 @@ class Model:
         up_to_hz : float, optional
             If infinitely many poles lie along the axis: how far they are counted [Hz].
         over : str or pair of str, optional
-            Any parameter in place of a gain: a dead time, a length, a mass. Two of them make a chart.
+            Any parameter in place of a gain: a delay, a length, a mass. Two of them make a chart.
         ranges : mapping, optional
             Ranges of the parameters of a chart, in SI units. By default the ``range`` declared; else from 0,
             or half the value, to ten times or twice the value.
@@ -476,7 +476,7 @@ class Model:
     def conditions(
         self, of: str = "poles", tf: str | None = None, *, over: tuple[str, str] | None = None
     ) -> Conditions:
-        """Return inequalities that hold exactly where all poles, or zeros, lie left of the imaginary axis.
+        """Return inequalities that hold exactly where all poles, or zeros, lie in the left half-plane.
 
         Parameters
         ----------
@@ -628,7 +628,7 @@ class Model:
         """Return the Nyquist plot of the loop that a gain closes, about the point -1.
 
         Parameters and errors are those of :meth:`locus`; ``band`` gives the frequencies [Hz]. The verdict
-        says how many poles of the open loop are in the right half plane, and whether the closed loop is
+        says how many poles of the open loop are in the right half-plane, and whether the closed loop is
         stable.
 
         Examples
@@ -636,7 +636,7 @@ class Model:
         >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
         >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> print(model.nyquist("K", verdict=True).legends[0].get_title().get_text())
-        open loop: no pole in the right half plane
+        open loop: no pole in the right half-plane
         closed loop stable
         """
         given = PlotOptions("nyquist", (), gain, band, xlim, ylim, width=width, font=font, verdict=verdict)
@@ -1046,7 +1046,8 @@ def loads(
 ) -> Model:
     """Read a specification from a text; ``name`` is its name in messages, ``values`` are as in :func:`load`.
 
-    ``model`` blocks read files at and below the folder of ``name``, and those of ``allow_outside``.
+    ``model`` blocks read files in the folder of ``name``, in those of ``allow_outside``, and in their
+    subfolders.
 
     Examples
     --------

@@ -29,7 +29,7 @@ class StabilityBoundary:
     frequencies_hz : tuple of float
         At which poles are on the axis; empty where one passes through infinity.
     entering : int
-        By how many the poles in the right half plane grow in number, as the gain grows.
+        By how many the poles in the right half-plane grow in number, as the gain grows.
     """
 
     gain: mpmath.mpf
@@ -44,7 +44,7 @@ class StabilityBoundary:
 
 @dataclass(frozen=True)
 class Stability:
-    """The gains for which all closed-loop poles that input and output see lie in the open left half plane.
+    """The gains for which all controllable and observable closed-loop poles lie in the open left half-plane.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Stability:
 
     @property
     def counted_up_to_hz(self) -> float:
-        """Frequency up to which poles right of the axis are counted [Hz]; infinite if all are."""
+        """Frequency up to which poles in the right half-plane are counted [Hz]; infinite if all are."""
         end = self.proved.counted_up_to
         return float("inf") if end is None else end / (2 * float(mpmath.pi))
 

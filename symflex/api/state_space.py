@@ -172,7 +172,7 @@ class StateSpace:
         dt : float, Fraction or str
             The sampling time, [s] or with a unit, ``"1 ms"``.
         delay : float, Fraction or str
-            A dead time of all inputs [s], of any fraction of samples: past inputs become states.
+            A delay of all inputs [s], of any fraction of samples: past inputs become states.
         method : str
             ``zoh`` or ``tustin``.
         prewarp : float, Fraction or str, optional
@@ -198,7 +198,7 @@ class StateSpace:
         """
         from symflex.state_space.sampled import sampled_state_space, sampling_of  # numpy
 
-        what = "a dead time"
+        what = "a delay"
         sampling = sampling_of(dt, method, prewarp, "a sampling time")
         late = duration(delay, what, or_zero=True) if isinstance(delay, str) else finite(delay, what)
         return sampled_state_space(self.exact, self._known(values), sampling, late)

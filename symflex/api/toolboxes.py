@@ -108,7 +108,7 @@ class Toolboxes:
         dt : float, Fraction or str
             The sampling time, [s] or with a unit, ``"1 ms"``.
         method : str
-            ``zoh``, the exact step with the input held between samples, with dead times of any fraction.
+            ``zoh``, the exact step with the input held between samples, with delays of any fraction.
             For controllers: ``tustin``, the bilinear transformation, or ``matched``, where every root s
             becomes exp(s dt).
         prewarp : float, Fraction or str, optional

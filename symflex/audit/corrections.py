@@ -405,7 +405,7 @@ def _exchanged_names(reading: FormulaReading, numbers: Numbers) -> Iterator[Corr
 
 
 def _mended_calls(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
-    """Yield slips in the argument of a function, one function too many, and a dead time that is left out."""
+    """Yield slips in the argument of a function, one function too many, and a delay that is left out."""
     formula = reading.formula
     others = [Name(n) for n in (*sorted(formula.parameters), *reading.lines)]
     own = print_form(tf) if any(k.function == "exp" for k in tf.kernels.kernels) else None

@@ -50,7 +50,7 @@ def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple
     """Return every law that could be checked.
 
     ``reading`` holds both functions exactly, None when they could not be read; ``numbers`` both with the
-    model's own values, None if a parameter has none.
+    model's values, None if a parameter has none.
     """
     checks: list[LawCheck | None] = []
     if reading is not None:

@@ -36,7 +36,7 @@ UNBOUNDED = 180
 NEGLIGIBLE = 1e-9
 DEFAULT_BAND = (Fraction(1, 10), Fraction(1000))
 _DIRECTIONS = ((4, 3, 5), (3, -4, 5), (12, 5, 13), (5, 12, 13), (15, -8, 17), (8, 15, 17), (24, -7, 25))
-"""Pythagorean triples: exact points of the right half plane, where all roots are the principal ones."""
+"""Pythagorean triples: exact points of the right half-plane, where all roots are the principal ones."""
 
 
 @dataclass(frozen=True)

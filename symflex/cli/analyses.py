@@ -139,18 +139,18 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     """Print the values of a gain, or of any parameter, for which all poles of SPEC are stable.
 
     Close the loop in [signals]; K is one of [parameters]. Boundaries are enclosed, with the frequency at
-    which poles cross the imaginary axis. Poles right of the axis, hidden ones included, are counted between
-    boundaries. Gain and phase margins are those of the value that K has in SPEC.
+    which poles cross the imaginary axis. Poles in the right half-plane, hidden ones included, are counted
+    between boundaries. Gain and phase margins are those of the value that K has in SPEC.
 
-    --over takes any parameter: a dead time, a length, a mass. Two of them make a chart of boxes in which the
-    number of poles right of the axis is proved; boxes about a boundary stay undecided.
+    --over takes any parameter: a delay, a length, a mass. Two of them make a chart of boxes in which the
+    number of poles in the right half-plane is proved; boxes about a boundary stay undecided.
 
     --spread asks whether SPEC is stable for every combination of its values at once, each off by up to a
     share; or prints a combination for which it is proved not to be. Put it after SPEC, with or without a
     share.
 
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
-    zeros of a transfer function, lie left of the axis; with two of --over, the boundary as a curve.
+    zeros of a transfer function, lie in the left half-plane; with two of --over, the boundary as a curve.
 
     Exit code 4: something is not proved; the output says what. Structures without loss have poles all along
     the axis; these are counted up to a frequency, which is printed.

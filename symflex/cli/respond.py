@@ -42,7 +42,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     the measured output less that of the model is printed, and -o draws both. Values are in the model's units.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
-    from above.
+    from the right (t -> 0+).
 
     If no method proves the response, as for lossless beams with controllers, the lowest 25 modes are
     summed (12 in a large network whose higher modes are small) and the contribution of the others is

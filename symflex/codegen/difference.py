@@ -64,7 +64,7 @@ class FilterSection:
 
 @dataclass(frozen=True, eq=False)
 class DifferenceEquation:
-    """Sections that follow one another, after a dead time of whole samples."""
+    """Sections that follow one another, after a delay of whole samples."""
 
     sampled: SampledTransferFunction
     sections: tuple[FilterSection, ...]

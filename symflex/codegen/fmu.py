@@ -6,7 +6,7 @@ Input: a :class:`~symflex.codegen.sampled.StepFile`. Output: an :class:`Export` 
     sources/fmu.c, buildDescription.xml  the step functions of the C export, and the functions of FMI
     binaries/x86_64-linux/NAME.so        where a C compiler is there
 
-Inputs are held from one sample to the next; dead times are exact on the grid of samples. Values of parameters
+Inputs are held from one sample to the next; delays are exact on the grid of samples. Values of parameters
 are those of the file. Source: Modelica Association, Functional Mock-up Interface 3.0, 2022.
 """
 

@@ -428,7 +428,7 @@ class _File:
         rows = [f"[{', '.join(map(text, row))}]" for row in (system.num, system.den)]
         lines = [
             *continued(f"function [{', '.join(local)}] = {read}(varargin)", ""),
-            *_helped(f"{read.upper()}  Coefficients by descending powers of s, dead time [s]."),
+            *_helped(f"{read.upper()}  Coefficients by descending powers of s, delay [s]."),
             *_given(used),
             *(continued(f"[{', '.join(used)}] = given{{:}};", "  ") if used else ()),
         ]
@@ -465,7 +465,7 @@ MOST_COEFFICIENTS: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class RationalSystem:
-    """A quotient of polynomials in s, and a dead time."""
+    """A quotient of polynomials in s, and a delay."""
 
     tf: TransferFunction  # what it is
     # num and den: coefficients by descending powers of s.

@@ -57,7 +57,7 @@ class StepFunction:
 
     @property
     def late(self) -> int:
-        """The dead time in samples."""
+        """The delay in samples."""
         return self.equation.sampled.late
 
     def described(self, width: int) -> list[str]:
@@ -69,7 +69,7 @@ class StepFunction:
         if poles:
             lines += ["", *wrapped(f"Poles in z: {', '.join(poles[:SHOWN_POLES])}{more}.", width)]
         if self.late:
-            lines += wrapped(f"In addition, a dead time of {self.late} times the sampling time.", width)
+            lines += wrapped(f"In addition, a delay of {self.late} times the sampling time.", width)
         return [*lines, "", *wrapped(self.measured, width)]
 
 

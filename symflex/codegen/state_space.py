@@ -381,24 +381,24 @@ class StateSpaceExporter:
 def _without_delays(
     model: Model, tfs: Sequence[AnyTransferFunction], sampling: Sampling
 ) -> tuple[Model, Fraction]:
-    """Return the model with 1 in place of every dead time, and that which its functions have in common [s].
+    """Return the model with 1 in place of every delay, and that which its functions have in common [s].
 
     Each function was found to be exp(-s T) times a rational one, which 1 in place of exp(-s T) leaves.
 
-    Raises ModelError: SF235 for beams, delays in loops, and where dead times differ.
+    Raises ModelError: SF235 for beams, delays in loops, and where delays differ.
     """
-    from symflex.analysis.sampling import dead_time  # only sampled modules ask
+    from symflex.analysis.sampling import delay_of  # only sampled modules ask
 
     delays = {}
     for tf in tfs:
         if not tf.is_reduced:
             raise not_rational(tf.name)
-        delays[dead_time(bind(tf), sampling)] = tf.name
+        delays[delay_of(bind(tf), sampling)] = tf.name
     if len(delays) > 1:
         (one, first), (other, second), *_ = delays.items()
-        message = f"{first} has a dead time of {float(one):g} s, {second} one of {float(other):g} s"
+        message = f"{first} has a delay of {float(one):g} s, {second} one of {float(other):g} s"
         raise ModelError(
-            Diagnostic("SF235", message, None, "use --tf to choose functions with the same dead time")
+            Diagnostic("SF235", message, None, "use --tf to choose functions with the same delay")
         )
     unity = (("num", number(1)), ("den", number(1)))
     blocks = tuple(

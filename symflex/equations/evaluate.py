@@ -232,7 +232,7 @@ class ExactEvaluator:
     def _block(self, expression: Name | Attribute, name: str) -> Factored:
         if name not in self.blocks:
             # Only while kernels are surveyed: everywhere else every block has a value.
-            message = "a dead time inside a field's equation or a length is not available"
+            message = "a delay inside a field's equation or a length is not available"
             hint = "wavenumbers would depend on it; a delayed load may come from a signal: "
             hint += '[signals] load = "exp(-s*T)*..."'
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
@@ -285,7 +285,7 @@ class ExactEvaluator:
         inside = {n.name for n in names(opened) if isinstance(n, Name)}
         if LAPLACE in inside or inner.depends_on(LAPLACE):
             message = f"{name} of an expression in s is not available yet"
-            hint = "a dead time is a block of type delay; waves come with rods, beams and [fields]"
+            hint = "write a delay as a block of type delay; waves come with rods, beams and [fields]"
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         if block := next((n for n in self.blocks if n in inside), None):
             message = f"{name} of a block ('{block}') is not available yet"

@@ -271,7 +271,7 @@ def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
 
     Where no band is asked for, the curve of a rational function begins at 0, unless there is a pole, and goes
     on until it is next to where it ends, mostly the origin. Arrows point to growing frequency. The legend
-    says how many poles lie in the right half plane where there are any, P of them: a closed loop is stable if
+    says how many poles lie in the right half-plane where there are any, P of them: a closed loop is stable if
     the curve winds P times counterclockwise about -1.
     """
     return draw_curves(bounds, canvas, _draw_about_one)
@@ -360,7 +360,7 @@ def _draw_about_one(
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
-    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half plane.
+    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half-plane.
 
     Examples
     --------
@@ -380,17 +380,17 @@ def _sentence_of_poles(verdicts: Sequence[StabilityVerdict], *, is_loop: bool) -
     --------
     >>> from symflex.roots.pole_zero_map import StabilityVerdict
     >>> _sentence_of_poles([StabilityVerdict("unstable", 1, True, "", 1)], is_loop=True)
-    'open loop: 1 pole in the right half plane'
+    'open loop: 1 pole in the right half-plane'
     """
     if len(verdicts) > 1:
-        return "P: number of poles in the right half plane"
+        return "P: number of poles in the right half-plane"
     (verdict,) = verdicts
     if verdict.right is None:
         number = f"at least {verdict.found}" if verdict.found else "an unknown number of"
     else:
         number = str(verdict.right or "no")
     plural = "" if verdict.right in (0, 1) else "s"
-    return f"{'open loop: ' if is_loop else ''}{number} pole{plural} in the right half plane"
+    return f"{'open loop: ' if is_loop else ''}{number} pole{plural} in the right half-plane"
 
 
 def _columns(labels: Sequence[str], width: float) -> int:

@@ -67,7 +67,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     origin. A root outside it is named at the border where the ray from
     the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
     default modes are shown, as far up as the highest pole, or those up to the end of a band, and all poles in
-    the right half plane. Within limits asked for, scales may differ, and the title counts what is outside.
+    the right half-plane. Within limits asked for, scales may differ, and the title counts what is outside.
     A verdict asked for holds for all poles, drawn or not.
     """
     band_hz, frame = canvas.band_hz, canvas.frame
@@ -134,7 +134,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
 def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
     poles = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
-    # Poles in the right half plane are known wherever they lie; zeros and others only as far as the rest.
+    # Poles in the right half-plane are known wherever they lie; zeros and others only as far as the rest.
     poles = [root for root in poles if not root.re > 0] or poles
     return max((root.frequency_hz() for root in poles), default=None)
 

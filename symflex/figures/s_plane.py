@@ -36,7 +36,7 @@ CROWDED: Final = 0.15
 REAL_REACH: Final = 2.5
 """Real roots are shown up to so many times the highest resonance shown."""
 UNSTABLE_REACH: Final = 10.0
-"""Poles in the right half plane are shown up to so many times what else is; the others at the border."""
+"""Poles in the right half-plane are shown up to so many times what else is; the others at the border."""
 MARGIN: Final = 0.2
 """Room around the roots shown, over their size."""
 MARGIN_FOR_NOTES: Final = 0.5
@@ -58,7 +58,7 @@ Kind = Literal["pole", "zero", "nominal", "last"]
 class RootMark:
     """A pole or zero."""
 
-    # A pole, or in a locus one at the first gain; a zero; a pole at the gain's own value and at the last.
+    # A pole, or in a locus one at the first gain; a zero; a pole at the nominal gain and at the last.
     kind: Kind
     s: complex  # where [rad/s]
     multiplicity: int = 1
@@ -345,7 +345,7 @@ def write_notes(
     taken: Sequence[Box] = (),
     said: Mapping[complex, str] | None = None,
 ) -> None:
-    """Draw arrows to roots outside the view, name those of the upper half plane, number multiple roots.
+    """Draw arrows to roots outside the view, name those of the upper half-plane, number multiple roots.
 
     Those of ``marks`` outside the view are named; those of ``numbered`` in it bear their multiplicity. No
     text covers another one, or what is ``taken``, as long as there is room. What is

@@ -268,7 +268,7 @@ def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
 
 
 def _loci(sweep: Sweep, modes: int | None, line: Labelled | None, axes: Axes) -> None:
-    """Draw the roots in the upper half plane, coloured by the first parameter."""
+    """Draw the roots in the upper half-plane, coloured by the first parameter."""
     parameter = sweep.parameters[0]
     along = [-1 if dim == parameter.dims[0] else 1 for dim in _dims(sweep)]
     value = np.broadcast_to(parameter.values.reshape(along), sweep["point_status"].shape).reshape(-1)

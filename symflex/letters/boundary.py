@@ -1,12 +1,12 @@
 """The boundary of stability over two parameters, as a curve in the frequency at which poles meet the axis.
 
-Input: a model and two parameters in which its characteristic function is linear, or a gain and a dead time.
+Input: a model and two parameters in which its characteristic function is linear, or a gain and a delay.
 Output: :class:`Conditions`, the relations of the curve and those of the values for which a pole is at s = 0.
 
 Example: ``s + K exp(-s T)`` has poles at ``s = j omega`` where ``K = omega`` and ``omega T = pi/2 + 2 n pi``.
 
 On the axis ``A + K B + T C = 0`` are two linear equations, its real and its imaginary part (D-decomposition;
-Neimark 1949). With a dead time the magnitude of ``exp(-s T) = -A/(K B)``, which is one, gives K. The curve is
+Neimark 1949). With a delay the magnitude of ``exp(-s T) = -A/(K B)``, which is one, gives K. The curve is
 put into the characteristic function, in balls at random values, before it is printed.
 """
 
@@ -67,7 +67,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     ring = tf.ratio.ring
     whole = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
     shaped = [n for n in over for v in tf.kernels.values if v.depends_on(n)]
-    gain, other = sorted(over, key=shaped.count)  # a dead time comes last
+    gain, other = sorted(over, key=shaped.count)  # a delay comes last
     turn = Factored.generator(ring, LAPLACE) * Factored.generator(ring, other)  # of exp(-s*T)
     angles = {k.generator: k.dispersion.shift * k.length for k in tf.kernels.kernels if k.function == "exp"}
     delays = [name for name, angle in angles.items() if (angle / turn).is_one]
@@ -109,7 +109,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
 def _solved(
     tf: TransferFunction, whole: Factored, factor: fmpz_mpoly, over: Sequence[str], delays: Sequence[str]
 ) -> tuple[FrequencyPage, list[Factored]] | None:
-    """Return both parameters; or the square of a gain, and cosine and sine of frequency times dead time."""
+    """Return both parameters; or the square of a gain, and cosine and sine of frequency times delay."""
     ring, (gain, other) = tf.ratio.ring, over
     if delays:
         split = coefficients_of(ring, factor, [ring.index[n] for n in (*delays, gain, other)])

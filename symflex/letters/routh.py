@@ -1,15 +1,14 @@
-"""For which values of its parameters every pole, or every zero, of a lumped model lies left of the axis.
+"""For which values of its parameters all poles, or all zeros, of a lumped model lie in the left half-plane.
 
 Input: a characteristic polynomial, or a numerator, in s and letters. Output: :class:`Conditions`.
 
 Example: ``m s^3 + b s^2 + (k + K) s + K_i`` is stable exactly when ``b*(k + K) > m*K_i``.
 
-Coefficients ``a_0 s^n + ... + a_n`` with ``a_0 > 0`` have all roots left of the axis exactly when ``a_n``,
-``a_(n-2)``, ... are positive, or ``a_n``, ``a_(n-1)``, ``a_(n-3)``, ..., and so are the Hurwitz determinants
-``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmacher 1959, XV.13). A polynomial ``Q(s^2)``
-has simple roots on the axis and no others exactly when this holds for ``Q(s^2) + s Q'(s^2)`` (Hermite and
-Biehler).
-What follows from signs of parameters, or from other conditions, is left out.
+Coefficients ``a_0 s^n + ... + a_n`` with ``a_0 > 0`` have all roots in the left half-plane exactly when
+``a_n``, ``a_(n-2)``, ... are positive, or ``a_n``, ``a_(n-1)``, ``a_(n-3)``, ..., and so are the Hurwitz
+determinants ``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmacher 1959, XV.13). A polynomial
+``Q(s^2)`` has simple roots on the axis and no others exactly when this holds for ``Q(s^2) + s Q'(s^2)``
+(Hermite and Biehler). What follows from signs of parameters, or from other conditions, is left out.
 """
 
 from __future__ import annotations
@@ -59,7 +58,7 @@ POINTS: Final = 12
 BITS: Final = 192
 """Random values of all letters at which conditions are compared with roots, and precision of these."""
 POLES: Final = "poles"
-ALL_LEFT: Final = "all left of the imaginary axis"
+ALL_LEFT: Final = "all in the open left half-plane"
 Sign = Literal[">", "!=", "="]
 Factor = tuple["fmpz_mpoly", int]
 
@@ -114,7 +113,7 @@ class Conditions:
 
 
 def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditions:
-    """Return when all poles of a lumped model, or all zeros of a function, lie left of the imaginary axis.
+    """Return when all poles of a lumped model, or all zeros of a function, lie in the left half-plane.
 
     Raises ModelError: SF801 with beams, rods or delays; UsageError: SF902 for no such function; BudgetError:
     SF501, SF502 when the conditions are too large to be found.
@@ -134,7 +133,7 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
 
 
 def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) -> Conditions:
-    """Return when all roots of some polynomials of a transfer function's ring lie left of the axis."""
+    """Return when all roots of some polynomials of a transfer function's ring lie in the left half-plane."""
     signs = Signs.of(tf)
     arranger = Arranger.plain(signs.ring, constant_symbols(tf))
     every: dict[str, Factor] = {}
@@ -148,7 +147,7 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
         is_even = not any(m[0] % 2 for m in factor.monoms())
         if is_even or len(factor) == 1:
             on_axis.append((format_expression(arranger.collected(factor)), times))
-        # Energy keeps poles from the right of the axis: then poles that are their own mirror images lie on
+        # Energy keeps poles out of the right half-plane: then poles that are their own mirror images lie on
         # it, and others meet it only where the last determinant vanishes.
         if len(factor) > 1 and not (is_even and is_kept_left):
             moving.append((factor, 1 + is_even))
@@ -157,7 +156,8 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     found, is_never = [(f, relation_of(arranger, f, sign)) for f, sign in kept], signs.is_never(kept)
     _check(tf, signs, moving, found)
     stay = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in on_axis)
-    said = f"those of {stay} on the imaginary axis, all others left of it" if on_axis else ALL_LEFT
+    others = ALL_LEFT.replace("all", "all others")
+    said = f"those of {stay} on the imaginary axis, {others}" if on_axis else ALL_LEFT
     said = f"for no values {ALL_LEFT}, as then" if is_never else said + " exactly when" * bool(found)
     relations = tuple(relation for _, relation in found)
     return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
@@ -184,7 +184,7 @@ def is_passive(model: Model) -> bool:
 
 
 def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool) -> list[fmpz_mpoly]:
-    """Return what is positive exactly when all roots lie left of the axis, or on it and are simple.
+    """Return what is positive exactly when all roots lie in the left half-plane, or are simple on the axis.
 
     First come both ends of the polynomial and the largest determinant.
     """
@@ -328,7 +328,7 @@ def read(expression: Expression, known: Mapping[str, acb]) -> acb:
 
 
 def _is_placed(numbers: Sequence[acb], step: int) -> bool | None:
-    """Tell whether all roots lie left of the axis, squares on the negative one; None where one is close."""
+    """Tell whether all roots lie in the left half-plane, squares on the negative axis; None if close."""
     try:
         roots = acb_poly(numbers).roots()
     except ValueError:  # they are not simple

@@ -189,14 +189,14 @@ class Pid(Block):
 
 
 class Delay(Block):
-    """A dead time T [s], the factor ``exp(-s*T)``.
+    """A delay (dead time) T [s], the factor ``exp(-s*T)``.
 
     It is not rational: the equations see its ``kernel_time`` and carry it as a generator of its own.
     """
 
     type_name = "delay"
     formula = "exp(-s*T)"
-    parameters = (ParameterPort("T", "s", "a dead time"),)
+    parameters = (ParameterPort("T", "s", "a delay"),)
     kernel_time = "T"
 
 

@@ -398,7 +398,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
             drawn("path", { class: "axis", d: `M${zero} ${top}V${bottom}M${left} ${plot.py(0)}H${right}` })];
         if (beyond) parts.push(drawn("text", { x: left + 8, y: top + 16 }, `${beyond} zero${beyond > 1 ? "s" : ""} beyond`));
         for (const [, s, ghost] of sets) parts.push(...[s.zeros, s.poles].map((list, k) => plot.marks(list, k === 1, colour(focus) + ghost)));
-        plot.show(parts, `${state.poles.length} poles and ${state.zeros.length} zeros in the upper half plane and on the real axis; a table lists the poles.`);
+        plot.show(parts, `${state.poles.length} poles and ${state.zeros.length} zeros in the upper half-plane and on the real axis; a table lists the poles.`);
     };
 
     // A time in which the slowest motion shows: ten periods, or until it has decayed.
@@ -451,9 +451,9 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         const isMarginal = !f.infinite && state.certified.poles && state.poles.every((p) => (isOrigin(p) && !p.radius) || -p.re > p.radius);
         const word = state.stability !== "unknown" ? state.stability : known?.word ?? (isMarginal ? "marginal" : "unknown");
         const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && state.stability === "unknown" ? `${known.sentence}, proved at the declared values`
-            : word === "marginal" ? "marginal, proved at these values: poles at s = 0, all others in the left half plane"
+            : word === "marginal" ? "marginal, proved at these values: poles at s = 0, all others in the left half-plane"
             : word !== "unknown" ? `${word}, proved at these values`
-            : state.isPassive ? "no pole lies in the right half plane: nothing supplies energy, whatever the positive values"
+            : state.isPassive ? "no pole lies in the right half-plane: nothing supplies energy, whatever the positive values"
             : `neither stability nor instability is proved here${state.poles.length ? `: the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : ""}`;
         for (const kind of ["stable", "unstable"]) line.classList.toggle(kind, word === kind);
         const text = `${sentence[0].toUpperCase()}${sentence.slice(1)}.`;

@@ -185,7 +185,7 @@ def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
 
 
 def _upper(roots: Iterable[Root]) -> list[list[float]]:
-    """Return real and imaginary parts and multiplicities of roots of the closed upper half plane."""
+    """Return real and imaginary parts and multiplicities of roots of the closed upper half-plane."""
     points = ((complex(root), root) for root in roots)
     return [
         [0.0 if r.on_imaginary_axis else z.real, 0.0 if r.is_real else z.imag, r.multiplicity]

@@ -102,7 +102,7 @@ function approached(f, z, known) {
     return null;
 }
 
-// Roots in the upper half plane or on the real axis, each once, of points that may be null.
+// Roots in the upper half-plane or on the real axis, each once, of points that may be null.
 function distinct(f, points) {
     const roots = [];
     for (const z of points.filter(Boolean)) {
@@ -299,7 +299,7 @@ function proverOf(tape) {
         }
         const isLeft = isLumped && next.certified.poles && next.poles.every((z) => -z.re > z.radius * UP);
         const isRight = next.poles.some((z) => z.proved && z.re > z.radius * UP);
-        const isPassive = tape.passive && values.every((v) => v > 0.0);  // then no pole is right of the axis
+        const isPassive = tape.passive && values.every((v) => v > 0.0);  // then no pole is in the right half-plane
         return { ...next, isPassive, stability: isRight ? "unstable" : isLeft ? "stable" : "unknown" };
     }
 

@@ -1,4 +1,4 @@
-"""Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
+"""Stable gains of feedback loops, proved: poles in the right half-plane counted, none missing."""
 
 from symflex.loops.apart import poles_apart
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation

@@ -4,7 +4,7 @@ Input: a loop. Output: where these poles lie, and what they say of stability. A 
 
     J s^2 phi = K (w - s phi)    has the poles 0 and -K/J, and s phi/w = K/(J s + K) shows -K/J alone
 
-so the shaft's angle, which may rest anywhere, is no matter of the gain.
+so the shaft's angle, which is arbitrary at rest, does not depend on the gain.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class PolesApart:
     """Poles that do not depend on a gain."""
 
     verdict: StabilityVerdict = NONE
-    right: int = 0  # right of the imaginary axis, hidden ones among them
-    axis: int = 0  # on the axis, those that input and output see
+    right: int = 0  # in the right half-plane, hidden ones among them
+    axis: int = 0  # on the axis, controllable and observable
 
 
 def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial]) -> PolesApart:

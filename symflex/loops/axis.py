@@ -304,7 +304,7 @@ def loop_at_origin(
 
 
 def _ratio_at_zero(bound: BoundTransferFunction, a: fmpz_mpoly, b: fmpz_mpoly) -> Fraction | None:
-    """Return A/B at s = 0 of a loop with dead time and no waves, None if it is not known."""
+    """Return A/B at s = 0 of a loop with delay and no waves, None if it is not known."""
     ring, kernels = bound.ratio.ring, bound.kernels.kernels
     if any(k.function != "exp" or not k.dispersion.shift.exponent_of(ring.context.gen(0)) for k in kernels):
         return None

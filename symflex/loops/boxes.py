@@ -1,13 +1,13 @@
 """A characteristic function whose parameters lie anywhere in a box: where no root meets the imaginary axis.
 
 Input: a model and the names of parameters. Output: a :class:`CharacteristicFunction`; for a box of these,
-pieces of the axis on which it may vanish, and a radius beyond which no root lies right of the axis.
+pieces of the axis on which it may vanish, and a radius beyond which no root lies in the right half-plane.
 
 Example: ``m s^2 + b s + k + K k exp(-s T)`` with K in [0, 0.2] and T in [0, 5 ms]. Where it differs from 0 on
-the whole axis for all of them, and beyond a radius in the right half plane, no root passes the axis: the
-number of roots right of it is the same in the whole box (boundary crossing theorem; Bhattacharyya, Chapellat
-and Keel 1995, theorem 1.4). Boxes on which this is not proved are halved; pieces of the axis without a root
-for a box have none for its halves.
+the whole axis for all of them, and beyond a radius in the right half-plane, no root passes the axis: the
+number of right-half-plane roots is the same in the whole box (boundary crossing theorem; Bhattacharyya,
+Chapellat and Keel 1995, theorem 1.4). Boxes on which this is not proved are halved; pieces of the axis
+without a root for a box have none for its halves.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 BITS = 64
 """Precision of values on boxes, which are far wider."""
 LOWEST = 1e-6
-"""Radius from which one is sought beyond which no root lies right of the axis [rad/s]."""
+"""Radius from which one is sought beyond which no root lies in the right half-plane [rad/s]."""
 OCTAVES = 24
 """Pieces of the axis at first, each half as high as the next; the lowest begins at 0."""
 
@@ -66,7 +66,7 @@ class OpenBox:
     """A box with the pieces of the axis on which a factor may vanish."""
 
     box: Box
-    radius: float | str  # beyond which no root lies right of the axis [rad/s], or why none is known
+    radius: float | str  # beyond which no root lies in the right half-plane [rad/s], or why none is known
     pieces: tuple[tuple[Piece, ...], ...] = ()  # factor by factor
     weights: tuple[float, ...] = ()  # how much each parameter contributes to what is left
     # One of each piece, if there is one of all: where none of them vanishes no root is on the axis.

@@ -1,11 +1,11 @@
-"""For which values of parameters a model is stable: boxes with a proved number of poles right of the axis.
+"""For which values of parameters a model is stable: boxes with a proved number of right-half-plane poles.
 
 Input: a model, names of parameters and their ranges. Output: a :class:`StabilityChart`.
 
-Example: a mass on a spring whose force is fed back with gain K after a dead time T. Of 0 < K < 3 and
+Example: a mass on a spring whose force is fed back with gain K after a delay T. Of 0 < K < 3 and
 0 < T < 50 ms 99 % are decided by 2,000 boxes: stable below a curve with cusps, two or four poles above.
 
-A box on which no pole meets the axis holds as many poles right of it everywhere, and so do boxes that touch.
+If no pole meets the axis, their number is the same in the whole box, and so it is in boxes that touch.
 Poles are counted at one point of each connected region, as ``symflex roots`` counts them. A box about a
 boundary is decided but for a strip about a straight line, and halved until strips are as narrow as its cells.
 """
@@ -231,7 +231,7 @@ def chart_text(chart: StabilityChart) -> str:
 
 
 def word_of(verdict: StabilityVerdict) -> str:
-    """Return a verdict in a word, with the number of poles right of the axis."""
+    """Return a verdict in a word, with the number of poles in the right half-plane."""
     if verdict.word == "unknown":
         return "undecided"
     return f"unstable by {verdict.right}" if verdict.right else verdict.word

@@ -2,7 +2,7 @@
 
 Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
 K only where ``Im(A conj(B))`` does. Next to s = 0, where both may vanish, power series say what poles do.
-Between them poles in the right half plane are counted by the argument
+Between them poles in the right half-plane are counted by the argument
 principle about a half disc, beyond which, where this can be proved, there are none.
 """
 
@@ -54,7 +54,7 @@ BITS = 128
 OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
 """What is said where delayed terms leave poles without a bound."""
 HALVINGS = 12
-"""Halvings of a range: its end is then known to a few hundredths of the gain's own value."""
+"""Halvings of a range: its end is then known to a few hundredths of the nominal gain."""
 SLIVER = 40
 """Halvings of a range: what is left may be missing at an end of it."""
 WITHOUT_WAVES = 1e-6
@@ -92,8 +92,9 @@ class DistributedFactors(AxisSearch):
     def where_no_delay_leads(self) -> DistributedFactors:
         """The same on the largest part of the range, found by halving, in which the poles have a bound.
 
-        Beyond a gain at which a delayed term outweighs the others, infinitely many poles lie right of the
-        axis. The same whole range where that is not what keeps poles without a bound, or where no part helps.
+        Beyond a gain at which a delayed term outweighs the others, infinitely many poles lie in the right
+        half-plane. The same whole range where that is not what keeps poles without a bound, or where no part
+        helps.
         """
         if not any(tail in OUTWEIGHED for tail in self._tails):
             return self
@@ -163,7 +164,7 @@ class DistributedFactors(AxisSearch):
             self.method = "passive loop"
             return self._without_end, True
         reason = next(tail for tail in self._tails if isinstance(tail, str))
-        passive = "; as the loop is passive, none lies right of it"
+        passive = "; as the loop is passive, none lies in the right half-plane"
         self.reasons.append(reason + passive if self.energy.is_passive else reason)
         return self._without_end, False
 
@@ -255,7 +256,7 @@ class DistributedFactors(AxisSearch):
     def count(
         self, gain: Fraction, below: PoleCount | None = None, crossed: Sequence[Crossing] = ()
     ) -> PoleCount:
-        """Return how many poles lie right of the axis and on it, as far as they are searched.
+        """Return how many poles lie in the right half-plane and on the axis, as far as they are searched.
 
         Where that is proved, they are those ``below`` and what comes at the crossings between. SF802 when a
         pole lies on the path of the count.
@@ -292,7 +293,7 @@ class DistributedFactors(AxisSearch):
                 break
             except RootOnPathError:
                 continue
-        message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
+        message = f"poles in the right half-plane cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
 
@@ -302,7 +303,7 @@ class DistributedFactors(AxisSearch):
 
     @cached_property
     def _circle(self) -> float:
-        """The first circle that no pole passes right of the axis, whatever the gain; 0 without one."""
+        """The first circle that no pole passes in the right half-plane for any gain; 0 without one."""
 
         def is_free(circle: float, function: LoopFunction, low: float, high: float) -> bool | None:
             with precision(BITS):

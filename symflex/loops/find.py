@@ -77,9 +77,9 @@ def find_stable_gains(
 
     ``limits`` are the range of the gain, its ends left out: by default all gains of the sign that is assumed
     of it; of a loop with kernels up to 100 times its value. ``digits`` are of boundaries and frequencies.
-    Where it cannot be proved that no pole lies right of the axis beyond some frequency, poles are counted
-    ``up_to`` [rad/s]; by default about ten waves of the longest element. Of a model that was fitted to data
-    poles are counted up to where these end, and no others.
+    Where it cannot be proved that no pole lies in the right half-plane beyond some frequency, poles are
+    counted ``up_to`` [rad/s]; by default about ten waves of the longest element. Of a model that was fitted
+    to data poles are counted up to where these end, and no others.
 
     SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
     SF505, SF506.
@@ -183,14 +183,14 @@ def _gain_at_end(loop: Loop, end: float) -> float | None:
 
 
 def _beyond(lumped: Sequence[LumpedFactor], gain: Fraction, end: float) -> tuple[float, ...]:
-    """Return abs(s) of the poles right of the axis beyond the end of the data [rad/s], ascending."""
+    """Return abs(s) of the poles in the right half-plane beyond the end of the data [rad/s], ascending."""
     roots = (root for factor in lumped for root in factor.roots(gain))
     sizes = (abs(r.enclosure()) for r in roots if r.re > 0)
     return tuple(sorted(float(size.mid()) for size in sizes if size > end))
 
 
 def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> StabilityMap:
-    """Return what is known where the range of the gain is not searched: whether its own value is stable."""
+    """Return what is known if the range of the gain is not searched: whether its nominal value is stable."""
     verdict = None
     if loop.nominal is not None:
         verdict = _verdict_at(loop, loop.nominal)
@@ -473,7 +473,7 @@ class LoopGain:
     function: OnAxis  # A and B
     along: AnyFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
-    value: arb | None = None  # of the function of the gain that stands for it, at its own value
+    value: arb | None = None  # of the function of the gain that stands for it, at its nominal value
 
     def margins(self, gain: Fraction) -> tuple[PhaseMargin, ...]:
         """Return the phase margins where it is one in magnitude, ascending in frequency."""

@@ -150,11 +150,11 @@ class GainFunctions:
 
     @property
     def sign(self) -> int:
-        """Sign of the gain's own value."""
+        """Sign of the nominal gain."""
         return -1 if self.nominal is not None and self.nominal < 0 else 1
 
     def domain(self, limits: Limits, *, is_endless: bool) -> Limits:
-        """Return the part of a range about the gain's own value in which all functions are real.
+        """Return the part of a range about the nominal gain in which all functions are real.
 
         It goes to 100 times that value by default; of powers alone it may be endless. SF804 where there is no
         value, SF228 where it is not inside.

@@ -77,7 +77,7 @@ class RootLocus:
     # Curves to poles at the last gain from where none is marked: from infinity, as those of a delay, from
     # higher modes at the first gain, or from where poles accumulate.
     entering: tuple[tuple[complex, ...], ...] = ()
-    # The gain's own value and the proved poles there, where it has one between the limits.
+    # The nominal gain and the certified poles there, if it lies between the limits.
     nominal: tuple[Fraction, PoleZeroMap] | None = None
 
     def __repr__(self) -> str:
@@ -102,7 +102,7 @@ def closed_loop(loop: Loop, gain: Fraction | None = None) -> BoundTransferFuncti
 
 
 def nominal_gain(loop: AnyLoop) -> Fraction:
-    """Return the gain's own value; SF806 when it has none."""
+    """Return the nominal gain; SF806 without one."""
     if loop.nominal is None:
         message = f"'{loop.gain.name}' has no value"
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, "give it one in [parameters]"))
@@ -301,7 +301,7 @@ def _points(roots: Sequence[Root]) -> list[complex]:
 
 
 def _lowest(located: PoleZeroMap, wanted: int) -> list[bool]:
-    """Tell which poles of a map, with multiplicity, are of the lowest modes, or in the right half plane."""
+    """Tell which poles of a map, with multiplicity, are of the lowest modes, or in the right half-plane."""
     positions = [*Modes(wanted).classify(located.poles), *(Position.INSIDE for _ in located.unstable)]
     return [
         position is not Position.OUTSIDE or is_right(root)

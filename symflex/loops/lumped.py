@@ -268,7 +268,7 @@ class LumpedFactor:
         return [root for root in find_polynomial_roots(problem, digits) if root.is_real]
 
     def count(self, gain: Fraction, within: float = inf) -> PoleCount:
-        """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
+        """Return how many poles lie in the right half-plane and on the axis for a gain that is no crossing.
 
         They are those within an abs(s) [rad/s]. SF802 when a root cannot be told from one on the axis.
         """
@@ -278,7 +278,7 @@ class LumpedFactor:
         return PoleCount(count_right(roots) * times, axis * times)
 
     def roots(self, gain: Fraction) -> list[Root]:
-        """Return the poles for a gain, of which each is left of the axis, on it or right of it."""
+        """Return the poles for a gain, each in one of the open half-planes or on the axis."""
         loop = self.loop if self.factor.exponents else None
         bound = self.bound if loop is None else loop.bound_at(gain)
         factors = [(f, e) for f, e in self.factor.value_in(bound, gain, loop).factors if e > 0]

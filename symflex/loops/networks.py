@@ -7,8 +7,8 @@ parts are determinants themselves, which :mod:`symflex.roots.networks` makes ser
     det (M + K e r) = A + K B with A = det M, B = -det [M, e; r, 0]
 
 Poles at one gain are counted and enclosed in a disc, and followed from gain to gain there. A and B being
-series in the disc, crossings of the imaginary axis are searched and poles right of it counted as of any loop;
-that none lies beyond the disc is known of passive loops alone.
+series in the disc, crossings of the imaginary axis are searched and poles in the right half-plane counted as
+of any loop; that none lies beyond the disc is known of passive loops alone.
 """
 
 from __future__ import annotations
@@ -214,7 +214,9 @@ class NetworkFactors(AxisSearch):
         if self.energy.rests:
             self.method = "passive loop"
             return radius, True
-        passive = "; as the loop is passive, none lies right of the axis" if self.energy.is_passive else ""
+        passive = (
+            "; as the loop is passive, none lies in the right half-plane" if self.energy.is_passive else ""
+        )
         self.reasons.append(BEYOND + passive)
         return radius, False
 
@@ -278,19 +280,19 @@ class NetworkFactors(AxisSearch):
     def count(
         self, gain: Fraction, below: PoleCount | None = None, crossed: Sequence[Crossing] = ()
     ) -> PoleCount:
-        """Return how many poles in the disc lie right of the axis and on it, all of them enclosed."""
+        """Return how many poles in the disc lie in the right half-plane and on the axis, all enclosed."""
         function = self.function
         at_zero = min(function.orders)
         if self.radius[1]:
             return PoleCount(0, at_zero)
         series = function.a.plus(function.minus_b, -gain)
-        message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
+        message = f"poles in the right half-plane cannot be counted for a gain of {float(gain):.6g}"
         refusal = UncertifiedError(Diagnostic("SF802", message, None, "ask for another --up-to"))
         if series.order_at_zero() != at_zero:
             raise refusal
         boxes = [(box, n * images(box, is_even=False)) for box, n in enclosed_roots(series, at_zero)]
         for share in (1.0, *SHARES):
-            # Poles left of the axis may lie on the circle: nothing else is asked of them.
+            # Poles in the left half-plane may lie on the circle: nothing else is asked of them.
             with suppress(RootNearCircleError):
                 within = sum(n for box, n in boxes if box.abs_upper() < share)
                 if series.count_about(acb(0), share) == within + at_zero:

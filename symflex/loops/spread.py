@@ -6,7 +6,7 @@ Example: ``m s^2 + b s + k`` with every value off by up to 10 % is stable: next 
 keeps the imaginary part above 0.9 b omega.
 
 Poles are counted at the middle of the box. If no root meets the axis for any combination, and none comes in
-from infinity, as many lie right of the axis for all of them (boundary crossing theorem; Bhattacharyya,
+from infinity, as many lie in the right half-plane for all of them (boundary crossing theorem; Bhattacharyya,
 Chapellat and Keel 1995, theorem 1.4). Boxes that leave it open are halved along the parameter that
 contributes most. Combinations that may be unstable are those to which the slopes of roots next to the axis
 point; what holds there is proved as for any one point.
@@ -61,7 +61,7 @@ class SpreadStability:
     box: Box
     word: Word
     boxes: int = 0  # how many were needed
-    unstable: int = 0  # poles right of the axis for the combination
+    unstable: int = 0  # poles in the right half-plane for the combination
     combination: Point | None = None  # for which it is proved not to be stable
     open_box: Box | None = None  # a part in which it is undecided
     reason: str = ""

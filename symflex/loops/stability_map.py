@@ -32,7 +32,7 @@ BESIDE = "the value lies at a boundary, or outside of what was examined"
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """A gain at which the number of poles right of the imaginary axis, or on it, changes."""
+    """A gain at which the number of poles in the right half-plane, or on the axis, changes."""
 
     gain: arb  # enclosure
     crossings: tuple[Crossing, ...]  # what happens there
@@ -51,7 +51,7 @@ class GainInterval:
     # low and high: its ends; ``None`` where it has none.
     low: arb | None
     high: arb | None
-    poles: PoleCount  # closed-loop poles that are not in the left half plane
+    poles: PoleCount  # closed-loop poles that are not in the left half-plane
 
     def holds(self, gain: Fraction) -> bool:
         """Tell whether a gain is proved to lie inside."""
@@ -91,7 +91,7 @@ class AllowedBandwidth:
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """The gains for which all closed-loop poles are in the open left half plane."""
+    """The gains for which all closed-loop poles are in the open left half-plane."""
 
     gain: str  # its name
     unit: str  # its SI unit; empty when it is not known
@@ -102,7 +102,7 @@ class StabilityMap:
     gain_margins: tuple[GainMargin, ...] = ()  # of the nominal gain, when the loop is stable there
     phase_margins: tuple[PhaseMargin, ...] = ()  # at every crossover, ascending in frequency
     radius: float | None = None  # poles were counted up to this abs(s) [rad/s]; ``None``: all of them
-    is_complete: bool = True  # it is proved that no pole lies right of the axis beyond the radius
+    is_complete: bool = True  # it is proved that no pole lies in the right half-plane beyond the radius
     reasons: tuple[str, ...] = ()  # what is not proved
     digits: int = 15  # asked for
     # Which the stable gains next to 0 allow; none where there are none, or the loop is closed several times.
@@ -117,11 +117,11 @@ class StabilityMap:
     # What holds at a nominal gain that was examined alone, where ``intervals`` leave it open.
     at_nominal: StabilityVerdict | None = None
     tf: str = ""  # ``"OUT/IN"``, which sees the poles that are not hidden; empty where nothing is
-    is_passive: bool = False  # it is proved that no gain of the range brings a pole into the right half plane
+    is_passive: bool = False  # it is proved that no gain of the range brings a pole into the right half-plane
     is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
     # Where the data end that the model was fitted to, which is ``radius`` then [rad/s].
     data_end: float | None = None
-    # Poles of the nominal gain right of the axis beyond that, without kernels: their abs(s) [rad/s].
+    # Poles of the nominal gain in the right half-plane beyond that, without kernels: their abs(s) [rad/s].
     beyond: tuple[float, ...] = ()
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
     peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
@@ -151,7 +151,7 @@ class StabilityMap:
 
     @property
     def counted_up_to(self) -> float | None:
-        """Up to which abs(s) poles right of the axis are counted [rad/s]; ``None``: all of them are."""
+        """Up to which abs(s) poles in the right half-plane are counted [rad/s]; ``None``: all of them are."""
         return None if self.is_complete and self.data_end is None else self.radius
 
     @property
@@ -161,7 +161,7 @@ class StabilityMap:
 
     @property
     def stable(self) -> tuple[GainInterval, ...]:
-        """The intervals with all poles in the open left half plane, as far as they are counted."""
+        """The intervals with all poles in the open left half-plane, as far as they are counted."""
         return tuple(interval for interval in self.intervals if interval.poles.is_stable)
 
     @property
@@ -293,7 +293,7 @@ class StabilityMap:
         return (self.margin_beyond or 0.0) * 180 / pi
 
     def change(self, index: int) -> int:
-        """Return by how many poles the number right of the axis grows at a boundary, as the gain grows."""
+        """Return by how many the poles in the right half-plane grow at a boundary, as the gain grows."""
         return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
 
 
@@ -316,15 +316,16 @@ class Crossing:
     is_symmetric: bool = False
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
-    # By how many the poles of factors with kernels grow right of the axis with the gain, None where unknown.
+    # Growth of the number of right-half-plane poles of factors with kernels with the gain; None where
+    # unknown.
     change: int | None = 0
 
 
 @dataclass(frozen=True, slots=True)
 class PoleCount:
-    """Closed-loop poles that are not in the open left half plane, with multiplicity.
+    """Closed-loop poles that are not in the open left half-plane, with multiplicity.
 
-    Hidden ones that no gain moves count where they lie right of the axis only.
+    Hidden ones that no gain moves count where they lie in the right half-plane only.
 
     Examples
     --------
@@ -332,7 +333,7 @@ class PoleCount:
     PoleCount(right=2, axis=1)
     """
 
-    right: int  # in the open right half plane
+    right: int  # in the open right half-plane
     axis: int  # on the imaginary axis
 
     def __add__(self, other: PoleCount) -> PoleCount:
@@ -340,7 +341,7 @@ class PoleCount:
 
     @property
     def is_stable(self) -> bool:
-        """All poles lie in the open left half plane."""
+        """All poles lie in the open left half-plane."""
         return not self.right and not self.axis
 
     @property
@@ -389,11 +390,11 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     rows = [_boundary_row(stability, i) for i in range(len(stability.boundaries))]
     head = (stability.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
     yield Passage([f"{INDENT}boundaries: {len(rows) or 'none'}"], [head, *rows] if rows else ())
-    counted: list[tuple[str, ...]] = [("from", "to", "right of the axis", "on the axis")]
+    counted: list[tuple[str, ...]] = [("from", "to", "right half-plane", "on the axis")]
     for i in stability.intervals:
         ends = _end(i.low, "-inf", SHORT_DIGITS, i), _end(i.high, "inf", SHORT_DIGITS, i)
         counted.append((*ends, str(i.poles.right), str(i.poles.axis)))
-    yield Passage([f"{INDENT}poles that are not in the left half plane"], counted)
+    yield Passage([f"{INDENT}poles that are not in the left half-plane"], counted)
     if stability.gain_margins or stability.phase_margins:
         yield _margins(stability)
     if stability.peaks is not None:
@@ -416,7 +417,7 @@ def _beyond(stability: StabilityMap) -> Iterator[str]:
     if count := len(stability.beyond):
         places = ", ".join(_hertz(omega) for omega in stability.beyond)
         shown = f"{stability.gain} = {_number(stability.nominal)}"
-        yield f"{2 * INDENT}{_poles(count)} of the model right of the axis for {shown}: {places}"
+        yield f"{2 * INDENT}{_poles(count)} of the model in the right half-plane for {shown}: {places}"
     if stability.gain_at_end is not None:
         yield f"{2 * INDENT}the loop gain there is taken to stay below one: for {stability.gain} up to"
         yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it is so where the data end"
@@ -436,7 +437,7 @@ def _status(stability: StabilityMap) -> str:
             return f"certified {stability.where_data_end}"
         if stability.margin_beyond is not None:
             return f"certified: the loop is passive, {stability.gain} acts as a spring and a damper"
-        return "certified: all poles right of the imaginary axis counted"
+        return "certified: all poles in the right half-plane counted"
     if not stability.is_complete and stability.radius is not None:
         return f"NOT CERTIFIED beyond {stability.radius / (2 * pi):.4g} Hz: poles are counted up to there"
     return "NOT CERTIFIED"

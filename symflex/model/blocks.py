@@ -60,7 +60,7 @@ class Loads:
     failed: set[Path] = field(default_factory=set)
     # By file, how many ``model`` blocks it holds, counted with those inside them.
     blocks: dict[Path, int] = field(default_factory=dict)
-    # Resolved folders at and below which files may be read; the first is that of the outermost file.
+    # Resolved folders that may be read, with their subfolders; the first is that of the outermost file.
     folders: tuple[Path, ...] = ()
     # What parameters are, in whichever file they are declared, instead of what is declared.
     settings: Mapping[str, Setting] = field(default_factory=dict)
@@ -130,7 +130,7 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
             return None  # its outputs are signals
     values = _read_values(reader, entry, table, block)
     if values is not None and block.kernel_time and is_number(lower(values[0][1]), 0):
-        # Without dead time it is rational: a lag of no time.
+        # Without delay it is rational: a lag of no time.
         block, values = BLOCKS["lag"], (("k", signed_number(Fraction(1))), *values)
     return None if values is None else PlacedBlock(entry.key, block, values, span=entry.key_span)
 
@@ -287,7 +287,7 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
         reader.note("SF901", f"cannot read '{path_text.value}': the path leads in a circle", path_text.span)
         return None
     if not origin.loads.may_read(path):
-        message = f"'{path_text.value}' is not at or below the folder of the specification"
+        message = f"'{path_text.value}' is not in the folder of the specification or one of its subfolders"
         reader.note("SF258", message, path_text.span, ALLOW_HINT)
         return None
     if path in origin.ancestors:

@@ -3,7 +3,7 @@
 Input: a draft, as read. Output: the same, with names of blocks for roots of s and for exponentials of them.
 
 Example: ``G = "exp(-sqrt(s/a)*x)"`` is the block E(x/sqrt(a)) with ``E(k) = exp(-k*r)``, ``r = sqrt(s)``.
-With ``r = (a*s + b)^(1/q)`` in place of s all is entire, and exponentials are dead times. The principal sheet
+With ``r = (a*s + b)^(1/q)`` in place of s all is entire, and exponentials are delays. The principal sheet
 is the sector ``abs(arg r) < pi/q`` (Matignon 1996, for polynomials).
 """
 

@@ -42,7 +42,7 @@ SHOWN_PROBLEMS = 20
 """More of one expression than anybody reads."""
 ORDER_LIMIT = 24
 """Highest derivative at a point; those beyond the field's own order follow from its equations."""
-DELAY_HINT = "write a dead time in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
+DELAY_HINT = "write a delay in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
 FUNCTION_HINT = "of s, roots of one a*s + b are available, and exp, sinh, cosh and tanh of their multiples"
 NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()

@@ -32,7 +32,6 @@ from symflex.model.boundary import (
     varying_constants,
 )
 from symflex.model.branches import with_branches
-from symflex.model.dead_times import with_dead_times
 from symflex.model.declarations import (
     CycleReading,
     DeclaredParameter,
@@ -86,6 +85,7 @@ from symflex.model.units import (
     quotients,
 )
 from symflex.model.unused import unused
+from symflex.model.written_delays import with_written_delays
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -186,7 +186,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     reader.take(contradictions)
     draft = replace(draft, nodes=nodes, fields=fields)
     named = taken | loads | {n.name for n in nodes}
-    draft = with_imaginary_unit(reader, with_dead_times(with_branches(draft, named), named))
+    draft = with_imaginary_unit(reader, with_written_delays(with_branches(draft, named), named))
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
     later, hints = Reader(), Reader()

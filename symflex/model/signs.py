@@ -334,7 +334,7 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
             yield RangedValue(what, time, "nonnegative", reason, is_extent=True)
         elif block is ROOT:
             values = dict(placed.values)
-            reason = "the branch point must not lie right of the imaginary axis"
+            reason = "the branch point must not lie in the right half-plane"
             yield RangedValue("a of (a*s + b)", values["a"], "positive", reason, is_extent=True)
             yield RangedValue("b of (a*s + b)", values["b"], "nonnegative", reason, is_extent=True)
 
@@ -360,7 +360,7 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
     """Refuse a value of a parameter with which a distributed part is what none can be.
 
     All other parameters keep their declared values, but for those ``varied``, which do not count. Raises
-    UsageError: SF209 a length, stiffness or dead time of a sign it cannot have.
+    UsageError: SF209 a length, stiffness or delay of a sign it cannot have.
     """
     exact = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
     line = Line(

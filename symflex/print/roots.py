@@ -69,7 +69,7 @@ class RootColumn:
 
 
 def roots_of(located: PoleZeroMap, kind: str) -> tuple[Root, ...]:
-    """Return the roots that a table of one kind lists: poles in the right half plane wherever they lie."""
+    """Return the roots that a table of one kind lists: poles in the right half-plane wherever they lie."""
     if kind == "hidden":
         return tuple(h.root for h in located.hidden)
     return located.all_poles if kind == "poles" else located.zeros
@@ -221,7 +221,7 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     lines += broken(INDENT + phase, width) if (phase := _phase_text(located)) else []
     if shown := region_text(located.region):
         if located.verdict.word == "unstable" and not located.unstable:
-            shown += "; all known poles in the right half plane"
+            shown += "; all known poles in the right half-plane"
         default = "; by default, as there are infinitely many" * located.is_default_region
         lines += broken(f"{INDENT}shown: {shown}{default}", width)
     for part in located.excluded:
@@ -229,7 +229,7 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
     tables = [("poles", located.poles, ""), ("zeros", located.zeros, "")]
-    outside = ", in the right half plane, outside the region asked for"
+    outside = ", in the right half-plane, outside the region asked for"
     more = [("poles", located.unstable, outside)]
     for cause, meaning in CAUSES.items():
         more.append(("hidden", tuple(h.root for h in located.hidden if h.cause == cause), f", {meaning}"))
@@ -248,7 +248,7 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
 
 
 def _phase_text(located: PoleZeroMap) -> str:
-    """Say whether zeros lie in the right half plane; of endlessly many zeros those shown are known."""
+    """Say whether zeros lie in the right half-plane; of endlessly many zeros those shown are known."""
     if count := sum(zero.multiplicity for zero in located.zeros if zero.re > 0):
         return f"not minimum phase: {counted(count, 'zero')} in the right half-plane"
     if not located.certificate.certified or not all(z.re < 0 or z.on_imaginary_axis for z in located.zeros):

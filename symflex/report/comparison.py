@@ -166,7 +166,7 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "example because only springs hold it to ground."
         ),
         text(
-            "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
+            "Minimum phase means: no zero in the open right half-plane. “For all values” is proved for all "
             "positive values of the parameters. A function is colocated if its output is taken where the "
             "input acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or "
             "is a contact if its force is measured. Between moving parts, a compliance in bending belongs to "
@@ -177,7 +177,7 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
         words = (
             "Two outputs are together if one differs from the output on which the input does work by at "
             "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
-            "left half plane; the model's chapter says how far the stable gains are proved. The "
+            "left half-plane; the model's chapter says how far the stable gains are proved. The "
             "bandwidth allowed is the frequency at which the loop gain first falls below one, with half "
             "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
         )
@@ -213,7 +213,7 @@ def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
         verdict = Badge("yes", "good") if function.is_minimum_phase else Badge("no", "bad")
         return (verdict, " exactly when ", function.bracket_mathematics, " ≥ 0")
     if not function.is_minimum_phase:
-        count = f", with {counted(function.right_half_plane_zeros, 'zero')} in the right half plane{shown}"
+        count = f", with {counted(function.right_half_plane_zeros, 'zero')} in the right half-plane{shown}"
         for_all = " for all values" if function.condition in ("never", "as given") else " for these values"
         return (Badge("no", "bad"), for_all + count)
     return (Badge("yes", "good"), f" for these values{shown}")

@@ -99,12 +99,12 @@ class TransferFacts:
 
     @property
     def right_half_plane_zeros(self) -> int:
-        """Zeros in the right half plane among those listed."""
+        """Zeros in the right half-plane among those listed."""
         return sum(z.multiplicity for z in self.zeros if z.is_in_right_half_plane)
 
     @property
     def is_minimum_phase(self) -> bool:
-        """Whether none of the zeros listed lies in the right half plane."""
+        """Whether none of the zeros listed lies in the right half-plane."""
         return not self.right_half_plane_zeros
 
     @property
@@ -112,7 +112,7 @@ class TransferFacts:
         """Natural frequency up to which both poles and zeros are listed [Hz]; infinite when all are."""
         if not self.is_infinite:
             return inf
-        # Poles in the right half plane are listed wherever they lie.
+        # Poles in the right half-plane are listed wherever they lie.
         left = [p for p in self.poles if not p.is_in_right_half_plane] or self.poles
         ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (left, self.zeros)]
         return min(ends) if self.zeros else ends[0]
@@ -195,9 +195,9 @@ class LoopFacts:
     # gain and unit: name and SI unit.
     gain: str
     unit: str
-    # Intervals with all closed-loop poles in the left half plane; None if there is no end.
+    # Intervals with all closed-loop poles in the left half-plane; None if there is no end.
     stable: tuple[tuple[float | None, float | None], ...]
-    unstable_at_last: int  # poles right of the imaginary axis for the largest gains examined
+    unstable_at_last: int  # poles in the right half-plane for the largest gains examined
     crossings_hz: tuple[float, ...]  # where poles are on the axis at the boundaries [Hz]
     is_bounded: bool  # gains were examined up to an end
     certified: bool  # all of it is proved, for all poles

@@ -1,6 +1,6 @@
 """For which values of its parameters a transfer function is minimum phase.
 
-That is, has no zero in the open right half plane. What is said here is proved for all positive values of the
+That is, has no zero in the open right half-plane. What is said here is proved for all positive values of the
 parameters, from the signs of the numerator's coefficients, or from what its zeros are the poles of. Where
 neither decides, nothing is said.
 """

@@ -68,7 +68,7 @@ class DegeneratePoints:
 
     bound: BoundTransferFunction
     roots: Sequence[Root]
-    # How many poles and hidden modes lie at points of the upper half plane; ``None`` where that is not known.
+    # How many poles and hidden modes lie at points of the upper half-plane; ``None`` where that is not known.
     _counts: dict[complex, tuple[int, int] | None] = field(default_factory=dict)
 
     @cached_property

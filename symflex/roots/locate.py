@@ -75,7 +75,7 @@ def locate(
     its work where no time is. Of one in nested form, a network of beams, roots are counted
     without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
     poles that coincide with one stay among the others. ``judged`` is another map of the same function, whose
-    poles in the right half plane need not be counted again.
+    poles in the right half-plane need not be counted again.
     """
     if isinstance(bound, BoundNested):
         # Figures, responses and tables of one function ask for the same roots.
@@ -191,8 +191,10 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     return other if is_better else located
 
 
-UNSEEN_WAVES = "a distributed part that input and output do not see may have poles anywhere"
-UNSEEN_ON_AXIS = "a distributed part that input and output do not see may have poles on the imaginary axis"
+UNSEEN_WAVES = "a distributed part that is uncontrollable or unobservable may have poles anywhere"
+UNSEEN_ON_AXIS = (
+    "a distributed part that is uncontrollable or unobservable may have poles on the imaginary axis"
+)
 DEFAULT_MODES = 5
 """Number of modes if neither the model nor the user gives it."""
 
@@ -400,7 +402,7 @@ class _Searched:
     def judged(
         self, unproved: str | None, before: PoleZeroMap | None = None, *, is_over: bool = False
     ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
-        """Return whether the model is stable, and its poles and hidden modes in the right half plane.
+        """Return whether the model is stable, and its poles and hidden modes in the right half-plane.
 
         ``unproved`` is what could not be proved of the region; ``before`` is a map of another region. Where
         the budget ``is_over``, nothing more is searched.

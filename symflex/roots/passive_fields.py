@@ -1,4 +1,4 @@
-"""Fields that nothing supplies with energy: no pole lies right of the imaginary axis, whatever has no end.
+"""Passive fields, half-infinite ones too: no pole lies in the right half-plane.
 
 The states of a field are displacements q and the forces p that do work on them, ``q' = a q + C p`` and
 ``p' = G q - a^T p`` up to signs. Then ``q* p`` changes along x by ``C* |p|^2 + G |q|^2``, and between its
@@ -140,7 +140,7 @@ class _Fields:
         return {LOSS} if self.are_lossy else {0, LOSS, INERTIA}
 
     def _keeps(self, value: Factored) -> bool:
-        """Tell whether a coefficient vanishes nowhere that matters: right of the axis, or on it but at 0."""
+        """Tell whether a coefficient vanishes nowhere in the right half-plane, nor on the axis but at 0."""
         return not self.are_lossy or len(_coefficients(value) or ()) == 1
 
     def _held(self, held: Matrix, field: Continuum | None) -> set[int] | None:
@@ -201,7 +201,7 @@ class _Fields:
     def _eliminated(self, forces: set[Variable]) -> dict[Variable, Terms] | None:
         """Return what conditions say of states, in terms of those that stay free: forces follow first.
 
-        None where a state is multiplied by what may vanish at some s in the right half plane.
+        None where a state is multiplied by what may vanish at some s in the right half-plane.
         """
         known: dict[Variable, Terms] = {}
         for row in self.equations.rows:

@@ -1,4 +1,4 @@
-"""May a pole of a model lie right of the imaginary axis, may one lie on it, and if not, why: by energy.
+"""May a pole of a model lie in the right half-plane or on the axis, and if not, why: by energy.
 
 Input: a model with values, an output whose own poles count, names of parameters of which any positive value
 is meant. Output: an :class:`EnergyProof`.
@@ -64,7 +64,7 @@ from symflex.roots.root import ROUNDING
 from symflex.transfer.of_model import assemble
 
 PASSIVE = "passive, nothing supplies energy"
-COMPRESSED = "compressed members supply energy only to slow motion, which has no pole right of the axis"
+COMPRESSED = "compressed members supply energy only to slow motion, which has no pole in the right half-plane"
 OBSERVED = "(output)"
 """No name of a specification reads so."""
 Powers = dict[tuple[int, int], arb]
@@ -83,7 +83,7 @@ FALLING = ((1, -1, 1, 1), (1, -1, -1, -1))
 class EnergyProof:
     """What energy says of the poles of a model; without a ``reason`` nothing is proved."""
 
-    reason: str = ""  # why no pole lies right of the imaginary axis
+    reason: str = ""  # why no pole lies in the right half-plane
     rests: bool = False  # all rests where no energy is lost: none lies on the axis but at 0
     limit: float = 0.0  # abs(s) [rad/s] beyond which the above is so; with 0 it is everywhere
     has_loop: bool = False  # signals or blocks act on the structure
@@ -496,7 +496,7 @@ class _Structure:
         return coefficients
 
     def _fades(self, coefficient: Factored) -> bool:
-        """Tell whether a coefficient vanishes left of the imaginary axis or at 0 only, for every K > 0."""
+        """Tell whether a coefficient vanishes in the left half-plane or at 0 only, for every K > 0."""
         powers = self._powers(coefficient)
         if powers is None or self._turn(coefficient) == 0:
             return False
@@ -524,8 +524,8 @@ class _Structure:
 def _loss(above: Mapping[int, arb], below: Mapping[int, arb]) -> bool | None:
     """Tell whether a positive real quotient of polynomials has a positive real part at every frequency.
 
-    None where it is not proved that it is positive real: both together have to have roots left of the
-    imaginary axis only, and the real part must nowhere on the axis be negative (Chen & Smith 2009, A note on
+    None where it is not proved that it is positive real: both together have to have roots in the
+    left half-plane only, and the real part must nowhere on the axis be negative (Chen & Smith 2009, A note on
     tests for positive-real functions).
     """
     order = min(*above, *below)
@@ -542,7 +542,7 @@ def _loss(above: Mapping[int, arb], below: Mapping[int, arb]) -> bool | None:
 
 
 def _is_stable(coefficients: Mapping[int, arb]) -> bool:
-    """Tell whether all roots of a polynomial lie left of the imaginary axis, by Routh's scheme."""
+    """Tell whether all roots of a polynomial lie in the left half-plane, by Routh's scheme."""
     degree = max(coefficients)
     first, second = ([coefficients.get(i, arb(0)) for i in range(n, -1, -2)] for n in (degree, degree - 1))
     with precision(BITS):

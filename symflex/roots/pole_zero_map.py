@@ -34,38 +34,38 @@ MOST_NAMES = 3
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to decide"
 NONE_FOUND = "no pole was found, and those elsewhere may lie on the imaginary axis"
 NONE_ON_AXIS = "none of those found lies on the imaginary axis, but others may"
-WITHOUT_END = "infinitely many poles lie right of the axis"
+WITHOUT_END = "infinitely many poles lie in the right half-plane"
 
 
 @dataclass(frozen=True, slots=True)
 class StabilityVerdict:
     """Whether a system is stable, in the words that all commands, reports and figures use.
 
-    ``stable``: all poles that input and output see lie in the open left half plane, and no hidden one lies in
-    the right. ``marginal``: no pole lies in the right half plane, and input and output see some on the
-    imaginary axis. ``unstable``: a pole lies in the right half plane, seen or hidden. ``unknown``: none of
-    these is proved, or only that no pole lies in the right half plane. Hidden poles on the axis leave the
+    ``stable``: all controllable and observable poles lie in the open left half-plane, and no hidden one lies
+    in the right. ``marginal``: no pole lies in the right half-plane, and input and output see some on the
+    imaginary axis. ``unstable``: a pole lies in the right half-plane, seen or hidden. ``unknown``: none of
+    these is proved, or only that no pole lies in the right half-plane. Hidden poles on the axis leave the
     word as it is and are named beside it.
 
     Examples
     --------
     >>> StabilityVerdict("unstable", 2, True, "", 2).sentence
-    'unstable: 2 poles in the right half plane'
+    'unstable: 2 poles in the right half-plane'
     >>> StabilityVerdict("unknown", None, False, "poles have no end").headline
     'stability not known'
     >>> StabilityVerdict("unknown", 0, False, "passive").headline
     'stable or marginal'
     >>> StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=("phi",)).hidden_motion
-    'a hidden pole at s = 0: phi may rest anywhere'
+    'a hidden pole at s = 0: phi is arbitrary at rest'
     """
 
     word: Literal["stable", "marginal", "unstable", "unknown"]
-    # Poles in the open right half plane, with multiplicity; ``None`` where they are not all counted.
+    # Poles in the open right half-plane, with multiplicity; ``None`` where they are not all counted.
     right: int | None
     certified: bool  # the word is proved
     reason: str = ""  # what it follows from, or what is not proved. Never empty where something is not.
-    found: int = 0  # poles in the right half plane that are known, at least
-    hidden: str = ""  # which hidden poles do not lie in the open left half plane
+    found: int = 0  # poles in the right half-plane that are known, at least
+    hidden: str = ""  # which hidden poles do not lie in the open left half-plane
     moving: tuple[str, ...] = ()  # what moves at a hidden pole at s = 0, where that is known
 
     def __post_init__(self) -> None:
@@ -81,7 +81,7 @@ class StabilityVerdict:
         if self.word == "unstable":
             least = "" if self.right is not None else "at least "
             poles = "1 pole" if self.found == 1 else f"{self.found} poles"
-            said = f"unstable: {least}{poles} in the right half plane" if self.found else "unstable"
+            said = f"unstable: {least}{poles} in the right half-plane" if self.found else "unstable"
             return f"{said}; {self.reason}" if self.reason else said
         said = "marginal, not asymptotically stable" if self.word == "marginal" else self.word
         return f"{said}: {self.reason}" if self.reason else said
@@ -94,15 +94,18 @@ class StabilityVerdict:
 
     @property
     def hidden_motion(self) -> str:
-        """The motion that input and output do not see and that does not decay, in a line; empty without."""
+        """Hidden motion that does not decay, in a line; empty without."""
         if not self.hidden:
             return ""
         if not self.moving or not self.hidden.endswith(AT_REST):  # elsewhere it is not known what moves
-            return f"{self.hidden}, which input and output do not see"
+            return f"{self.hidden}, uncontrollable or unobservable"
         more = len(self.moving) - MOST_NAMES
-        shown = [*self.moving[:MOST_NAMES], *([f"{more} more"] if more > 0 else [])]
+        shown = [
+            *self.moving[:MOST_NAMES],
+            *([f"{more} others" if more > 1 else "1 other"] if more > 0 else []),
+        ]
         names = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
-        return f"{self.hidden}: {names} may rest anywhere"
+        return f"{self.hidden}: {names} {'are' if len(shown) > 1 else 'is'} arbitrary at rest"
 
     @property
     def brief(self) -> str:
@@ -152,7 +155,7 @@ NOT_EXAMINED = StabilityVerdict("unknown", None, certified=False, reason="not ex
 
 
 def is_right(root: Root) -> bool:
-    """Tell whether a root is proved to lie in the open right half plane."""
+    """Tell whether a root is proved to lie in the open right half-plane."""
     return bool(root.re > 0)
 
 
@@ -166,9 +169,9 @@ def judge(
 ) -> StabilityVerdict:
     """Return the verdict that known poles allow.
 
-    ``roots`` are the poles that input and output see, ``hidden`` the others: all that are not in the open
-    left half plane, unless ``unproved`` says why there may be more right of the imaginary axis or on it.
-    ``proof`` says what proves that there are none in the open right half plane, but maybe on the axis.
+    ``roots`` are the controllable and observable poles, ``hidden`` the others: all that are not in the open
+    left half-plane, unless ``unproved`` says why there may be more in the right half-plane or on the axis.
+    ``proof`` says what proves that there are none in the open right half-plane, but maybe on the axis.
     With ``is_endless``, more hidden poles may lie on the axis.
 
     Examples
@@ -228,11 +231,11 @@ def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
     >>> hidden_poles(1, 2, 0)
     'a hidden pole at s = 0 and 2 on the imaginary axis'
     >>> hidden_poles(0, 0, 2), hidden_poles(0, 0, 0)
-    ('2 hidden poles in the right half plane', '')
+    ('2 hidden poles in the right half-plane', '')
     >>> hidden_poles(0, inf, 0), hidden_poles(1, inf, 0)
     ('hidden poles on the imaginary axis', 'a hidden pole at s = 0 and others on the imaginary axis')
     """
-    places = ((at_rest, AT_REST), (on_axis, "on the imaginary axis"), (right, "in the right half plane"))
+    places = ((at_rest, AT_REST), (on_axis, "on the imaginary axis"), (right, "in the right half-plane"))
     said: list[str] = []
     for count, where in places:
         if count:
@@ -286,7 +289,7 @@ class Certificate:
 class HiddenRoot:
     """A root of a factor that cancelled between numerator and denominator."""
 
-    root: Root  # the mode that input and output do not see together
+    root: Root  # the mode that is uncontrollable or unobservable
     # ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
     cause: str = "cancelled"
     is_exact: bool = False  # what coincides is proved to be equal
@@ -339,7 +342,7 @@ class PoleZeroMap:
     verdict : StabilityVerdict
         Whether the model is stable: about all poles, not only those in the region.
     unstable : tuple of Root
-        Poles in the right half plane outside the region that was asked for. Where none was and a number of
+        Poles in the right half-plane outside the region that was asked for. Where none was and a number of
         modes was chosen, they are among ``poles``, wherever they lie.
     """
 
@@ -382,7 +385,7 @@ class PoleZeroMap:
     ) -> Self:
         """Assemble what a search delivers: poles, zeros and hidden modes of the region.
 
-        ``growing`` are poles known wherever they lie, of which those in the right half plane that are not
+        ``growing`` are poles known wherever they lie, of which those in the right half-plane that are not
         shown become ``unstable``. Where nobody asked for this number of modes, they are shown among the
         poles. ``found`` is the number of roots enclosed, if they are more than those shown; so many are
         ``missing``. ``reasons`` say what is not proved.
@@ -412,7 +415,7 @@ class PoleZeroMap:
 
     @property
     def all_poles(self) -> tuple[Root, ...]:
-        """The poles in the region, and those in the right half plane outside of it."""
+        """The poles in the region, and those in the right half-plane outside of it."""
         return (*self.poles, *self.unstable)
 
     def complete(self) -> Self:
@@ -565,7 +568,7 @@ def hidden_region(region: Region, poles: Sequence[Root]) -> Region:
 
 
 def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
-    """Return the roots in the right half plane that are not shown."""
+    """Return the roots in the right half-plane that are not shown."""
     return tuple(
         root for root in roots if is_right(root) and not any(overlap(root, other) for other in shown)
     )

@@ -221,7 +221,7 @@ def _verdict(
 
 
 def _growing(bound: BoundTransferFunction, side: Side) -> tuple[Sequence[Root], str]:
-    """Return poles, all those right of the axis and on it among them, or why not."""
+    """Return poles, all those in the right half-plane and on the axis among them, or why not."""
     if side.is_finite:
         known, is_open = on_sheet(side.all_roots, bound)
         return known, EITHER_SHEET if is_open and any(not r.re < 0 for r in known) else ""

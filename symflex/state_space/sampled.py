@@ -1,13 +1,13 @@
 """State equations between samples: what a computer that holds its output from one to the next steps through.
 
-Input: the matrices of ``w' = A w + B u(t - T)`` in balls, a sampling time h, a dead time T.
+Input: the matrices of ``w' = A w + B u(t - T)`` in balls, a sampling time h, a delay T.
 Output: a :class:`SampledStateSpace`, ``w[k+1] = F w[k] + G u[k]`` with every entry rounded once.
 
 Between samples u is constant, so the step is a matrix exponential and nothing is approximated:
 
     exp [A B; 0 0] h  =  [F G; 0 1]
 
-A dead time ``T = (n - m) h``, 0 <= m < 1, makes the input change m samples before the end of a step: what
+A delay ``T = (n - m) h``, 0 <= m < 1, makes the input change m samples before the end of a step: what
 comes after that instant acts with the newer of two past inputs, what comes before with the older, and past
 inputs are states (Astrom and Wittenmark 1997, Computer-Controlled Systems, section 2.3).
 """
@@ -41,7 +41,7 @@ FIRST_BITS, LAST_BITS = 192, 6144
 NOTHING_BITS = 150
 """An entry this many bits smaller than the largest counts as zero if its sign cannot be decided."""
 MOST_SAMPLES = 1000
-"""Largest dead time in samples: it takes as many states."""
+"""Largest delay in samples: it takes as many states."""
 METHODS = ("zoh", "tustin", "matched")
 """Zero-order hold, bilinear transformation, and roots matched, which is of one transfer function."""
 
@@ -93,13 +93,11 @@ class Sampling:
         return omega / (omega * self.seconds / 2).tan()
 
     def check_delay(self, delay: Fraction) -> None:
-        """Refuse a dead time [s] that is negative, or takes too many states, with SF902."""
+        """Refuse a delay [s] that is negative, or takes too many states, with SF902."""
         if not 0 <= delay <= MOST_SAMPLES * self.sample:
-            raise UsageError(Diagnostic("SF902", f"a dead time has from 0 to {MOST_SAMPLES} samples"))
+            raise UsageError(Diagnostic("SF902", f"a delay has from 0 to {MOST_SAMPLES} samples"))
         if self.method != "zoh" and (delay / self.sample).denominator != 1:
-            message = (
-                f"'{self.method}' cannot represent a dead time of {float(delay / self.sample):.6g} samples"
-            )
+            message = f"'{self.method}' cannot represent a delay of {float(delay / self.sample):.6g} samples"
             hint = "use zoh, or a sampling time that divides it"
             raise UsageError(Diagnostic("SF902", message, None, hint))
 
@@ -131,12 +129,12 @@ class SampledStateSpace(Matrices):
     """``w[k+1] = A w[k] + B u[k]``, ``y[k] = C w[k] + D u[k]`` in doubles, one step per sampling time.
 
     The input is held from one sample to the next; the states are those of the continuous system and then,
-    with a dead time, past inputs, the oldest first.
+    with a delay, past inputs, the oldest first.
     """
 
     arrays: Arrays
     sampling: Sampling
-    delay: Fraction  # the dead time of all inputs [s]
+    delay: Fraction  # the delay of all inputs [s]
     # names: of the states, inputs and outputs
     states: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -202,7 +200,7 @@ def sampled(
     Raises
     ------
     UsageError
-        SF902 for a negative dead time, one of too many samples, or with ``tustin`` of a part of one; for
+        SF902 for a negative delay, one of too many samples, or with ``tustin`` of a part of one; for
         ``matched``, and a pole that ``tustin`` takes to infinity.
     ModelError
         SF233 where an entry does not fit in double precision: the system is too fast for the sampling time.

@@ -11,7 +11,7 @@ goes: along the line through the last two points, by one factor with all others,
 measured in ln(s), so that all frequencies count alike; the assignment whose distances add up to the least
 gives the names. Where the paths of two roots cross, or come closer to each other than what was foretold is
 right, the step is divided, and where doubt remains the result says so. Roots are points of the closed upper
-half plane: a pair that meets on the real axis becomes two real roots, of which one keeps the name.
+half-plane: a pair that meets on the real axis becomes two real roots, of which one keeps the name.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
 def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between | None = None) -> Names:
     """Name the roots of all points.
 
-    ``s`` (points, roots) lie in the closed upper half plane and not at 0, by natural frequency; NaN stands
+    ``s`` (points, roots) lie in the closed upper half-plane and not at 0, by natural frequency; NaN stands
     behind the last of a point. ``family`` is equal and not 0 for points whose roots are the same but for one
     factor, in the same order. ``steps`` is the way through the design; ``between`` is asked where names are
     in doubt.

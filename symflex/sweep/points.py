@@ -134,7 +134,7 @@ class PointStatus(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class FoundRoot:
-    """One root in the closed upper half plane, other than 0."""
+    """One root in the closed upper half-plane, other than 0."""
 
     place: Doubles  # centre and radius [rad/s]
     multiplicity: int  # exact where certified; else how many roots the disc holds

@@ -26,7 +26,7 @@ ROOT_STATUS = "0 absent, 1 certified, 2 several that cannot be told apart"
 POINT_STATUS = "0 certified, 1 certified except where roots accumulate, 2 not certified, 3 failed"
 STABILITY = {
     "verdict": "0 not known, 1 unstable, 2 marginal, 3 stable: of all poles, shown or not",
-    "hidden_motion": "1 where hidden poles lie on the imaginary axis or right of it",
+    "hidden_motion": "1 where hidden poles lie on the imaginary axis or in the right half-plane",
 }
 LINKS = (
     "0 absent, 1 start, 2 similar: proved, 3 clearly the nearest, 4 in doubt, 5 met the real axis, 6 appears"
@@ -304,7 +304,7 @@ def _stability(sweep: Sweep, points: str) -> list[str]:
     shown = {word.replace("unknown", "stability not known"): count for word, count in words.items() if count}
     first, *said = [f"{word} at {count}" for word, count in shown.items()]
     unseen = int(np.sum(sweep["hidden_motion"]))
-    hidden = f"{INDENT}hidden poles on the imaginary axis or right of it at {unseen}"
+    hidden = f"{INDENT}hidden poles on the imaginary axis or in the right half-plane at {unseen}"
     return [f"{INDENT}{', '.join([f'{first} of {points}', *said])}", *([hidden] if unseen else [])]
 
 

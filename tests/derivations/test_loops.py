@@ -50,8 +50,8 @@ def test_every_gain_and_frequency_of_the_table_of_lumped_models():
 @pytest.mark.slow
 def test_every_gain_and_frequency_of_the_table_of_the_beam():
     (beam,) = [row for row in ROWS if "sliding_free_beam" in row[0]]
-    # The beam loses energy in its material, so poles far out are proved left of the axis, and the others are
-    # counted in half a disc: passivity need not be asked.
+    # The beam loses energy in its material, so poles far out are proved in the left half-plane, and the
+    # others are counted in half a disc: passivity need not be asked.
     assert check_row(beam) == ("argument principle", "argument principle")
 
 

@@ -1,4 +1,4 @@
-"""Poles in the right half plane, counted by turns of a characteristic function about a half disc.
+"""Poles in the right half-plane, counted by turns of a characteristic function about a half disc.
 
 The functions are written down from free-body diagrams; the count is the phase on a contour that is refined
 until no step turns by much. Nothing of the program is used.

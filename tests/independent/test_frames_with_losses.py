@@ -139,7 +139,7 @@ def gantry_loop(s):
 
 
 @pytest.mark.slow
-def test_a_gain_of_a_frame_with_dead_time_becomes_unstable_where_the_dense_loop_gain_is_minus_one():
+def test_a_gain_of_a_frame_with_delay_becomes_unstable_where_the_dense_loop_gain_is_minus_one():
     stable = symflex.loads(GANTRY).stability("K").proved
     (boundary,) = stable.boundaries
     gain, omega = float(boundary.gain.mid()), float(boundary.crossings[0].frequencies[0].mid())

@@ -1,8 +1,8 @@
 """Loops of every kind, and what every command says of them, against eigenvalues of polynomials by hand.
 
 Each loop is written twice: as a specification, and as the denominator and numerator of its transfer function
-before anything cancels. numpy's roots of both tell how many poles lie right of the axis, how many of those on
-it input and output see, and how many are hidden.
+before anything cancels. numpy's roots of both tell how many poles lie in the right half-plane, how many of
+those on it input and output see, and how many are hidden.
 """
 
 from __future__ import annotations
@@ -311,7 +311,7 @@ for size in (2, -2):
 
 
 def expected(case: Case) -> tuple[str, bool]:
-    """Return the word, and whether some hidden pole is not in the open left half plane."""
+    """Return the word, and whether some hidden pole is not in the open left half-plane."""
     poles, hidden = list(np.roots(np.poly1d(case.sides[0]).c)), []
     for zero in np.roots(np.poly1d(case.sides[1]).c):
         near = min(range(len(poles)), key=lambda i: abs(poles[i] - zero), default=None)

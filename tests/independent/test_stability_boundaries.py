@@ -175,7 +175,7 @@ def test_textbook_boundaries():
 
 
 @pytest.mark.slow
-def test_margins_of_an_integrator_with_dead_time():
+def test_margins_of_an_integrator_with_delay():
     # L = K e^(-s T)/s crosses 1 at omega = K; the phase left is 90 degrees less K T.
     found = loop("K*D/s", K=1.2).stability("K")
     ((angle, hertz),) = found.phase_margins

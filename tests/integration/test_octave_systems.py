@@ -66,7 +66,7 @@ def test_values_given_stand_in_place_of_the_model_s(values):
     assert values["late elsewhere"] == [0.5]
 
 
-def test_a_dead_time_is_an_input_delay(values):
+def test_a_delay_is_an_input_delay(values):
     assert values["late"] == [0.004]
     assert values["delayless"] == [0]
 

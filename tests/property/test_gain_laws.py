@@ -1,7 +1,7 @@
 """Random loops with functions of a gain: every interval agrees with the poles at gains inside it.
 
 The gain enters by roots, powers, logarithms, exponentials, quotients and definitions of definitions, in one
-place or two, before polynomials, dead times and beams. At each gain the model is read again with that value,
+place or two, before polynomials, delays and beams. At each gain the model is read again with that value,
 and ``roots`` proves its poles; numpy and the winding of a function written by hand count them, too.
 """
 
@@ -28,7 +28,7 @@ BESIDE = Fraction(1, 10**5)
 
 
 def wrong_counts(seed, kind, *, count=3, proved=inf):
-    """Return at which gains the poles right of the axis are not those of an interval, how many were tried."""
+    """Return the gains whose right-half-plane poles are not those of an interval, and how many were tried."""
     text, characteristic = random_loop(seed, kind)
     limits = None if kind in ("lumped", "two places") else ("0.1", "3")
     found = stability(pipeline.loads(text), StabilityOptions("K", limits))
@@ -44,7 +44,7 @@ def wrong_counts(seed, kind, *, count=3, proved=inf):
             continue
         plain, delayed = characteristic(float(gain)) if characteristic else (np.array([nan]), np.zeros(1))
         counted = []
-        if np.isfinite([*plain, *delayed]).all() and kind != "dead time":
+        if np.isfinite([*plain, *delayed]).all() and kind != "delay":
             poles = np.roots(np.polyadd(plain, delayed))
             if all(abs(p.real) > CLEAR * max(abs(poles)) for p in poles):
                 counted.append(sum(p.real > 0 for p in poles))
@@ -53,7 +53,7 @@ def wrong_counts(seed, kind, *, count=3, proved=inf):
             (bound,) = pipeline.derive_bound(model, model.transfer_functions)
             verdict = pipeline.roots(bound).verdict
             counted += [verdict.right] if verdict.certified and verdict.right is not None else []
-            if kind == "dead time" and not wrong:
+            if kind == "delay" and not wrong:
 
                 def chi(s, plain=plain, delayed=delayed):
                     return np.polyval(plain, s) + turned(-0.3 * s) * np.polyval(delayed, s)
@@ -64,15 +64,13 @@ def wrong_counts(seed, kind, *, count=3, proved=inf):
     return wrong, tried, found
 
 
-@pytest.mark.parametrize(("kind", "seed"), [("lumped", 0), ("two places", 20), ("dead time", 2)])
+@pytest.mark.parametrize(("kind", "seed"), [("lumped", 0), ("two places", 20), ("delay", 2)])
 def test_intervals_agree_with_poles(kind, seed):
     assert not wrong_counts(seed, kind)[0]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("kind", "seeds"), [("lumped", 12), ("two places", 8), ("dead time", 8), ("beam", 2)]
-)
+@pytest.mark.parametrize(("kind", "seeds"), [("lumped", 12), ("two places", 8), ("delay", 8), ("beam", 2)])
 def test_intervals_of_many_loops_agree_with_poles(kind, seeds):
     wrong = []
     for seed in range(100, 100 + seeds):

@@ -91,7 +91,7 @@ def contradictions(one: PoleZeroMap, other: PoleZeroMap) -> list[str]:
     if "unknown" not in words and words[0] != words[1]:
         wrong = [f"verdicts {words[0]} / {words[1]}"]
     if None not in counts and counts[0] != counts[1]:
-        wrong.append(f"poles in the right half plane {counts[0]} / {counts[1]}")
+        wrong.append(f"poles in the right half-plane {counts[0]} / {counts[1]}")
     every = [_roots(m) for m in (one, other)]
     certified = [m.certificate.certified for m in (one, other)]
     for what in every[0]:

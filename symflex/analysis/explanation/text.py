@@ -45,7 +45,7 @@ class EndChange:
 
 @dataclass(frozen=True, slots=True)
 class RealZero:
-    """A real zero in the right half plane, and whether its mirror image is a zero too."""
+    """A real zero in the right half-plane, and whether its mirror image is a zero too."""
 
     root: Root
     is_paired: bool
@@ -329,7 +329,7 @@ def _whereabouts(explained: ZeroExplanation) -> Iterator[list[str]]:
     one = count == 1
     yield [
         f"Nonminimum phase: {count} zero{'' if one else 's'} shown {'lies' if one else 'lie'} in the right "
-        f"half plane{_real_values(explained)}."
+        f"half-plane{_real_values(explained)}."
     ]
     bending = explained.bending
     if bending is None or not explained.real_zeros:

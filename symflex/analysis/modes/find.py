@@ -48,7 +48,7 @@ class NumberedShape:
     """A mode shape among the lowest of a model."""
 
     shape: EnclosedModeShape  # the shape
-    is_hidden: bool  # the input does not reach it, or the output does not see it
+    is_hidden: bool  # uncontrollable from the input or unobservable in the output
 
 
 def mode_shape(bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:
@@ -106,7 +106,7 @@ def lowest_modes(
 ) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
     """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
 
-    Those of poles in the right half plane follow, wherever they lie. Whether the model is stable comes with
+    Those of poles in the right half-plane follow, wherever they lie. Whether the model is stable comes with
     them.
     """
     search = _ModeSearch(bound)

@@ -66,7 +66,7 @@ class KeptRoots:
 def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     """Return the poles of a number of modes, and the zeros below the first pole left out.
 
-    Poles in the right half plane are kept wherever they lie: without them the approximation would be stable.
+    Poles in the right half-plane are kept wherever they lie: without them the approximation would be stable.
     Zeros are left out from above until there are no more than poles, unless nothing is left out of a rational
     function: what grows with s is of no use to a simulation. Modes count as in :class:`symflex.roots.Modes`,
     roots at 0 aside; SF902 for a number below zero.
@@ -90,7 +90,7 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
 
 
 def _lowest(located: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
-    """Return the poles of the lowest modes with those at 0 and in the right half plane, and the others."""
+    """Return the poles of the lowest modes with those at 0 and in the right half-plane, and the others."""
     positions = Modes(modes).classify(located.poles)
     is_kept = [
         p is not Position.OUTSIDE or is_right(r) for r, p in zip(located.poles, positions, strict=True)

@@ -260,7 +260,7 @@ class RationalApproximation(Approximant, RationalFunction):
     band : tuple of float
         The band of :attr:`error` [Hz].
     stability : StabilityVerdict
-        Of G and its hidden modes; all poles of G in the right half plane that are known are poles of R.
+        Of G and its hidden modes; all poles of G in the right half-plane that are known are poles of R.
     """
 
     bound: AnyBoundFunction
@@ -526,7 +526,7 @@ def _counted(title: str, roots: Sequence[mpmath.mpc]) -> str:
 
 
 def _unique(roots: Sequence[mpmath.mpc]) -> list[tuple[mpmath.mpc, int, bool]]:
-    """Return the roots of the upper half plane, how often each occurs, and whether it is one of a pair."""
+    """Return the roots of the upper half-plane, how often each occurs, and whether it is one of a pair."""
     counts: dict[mpmath.mpc, int] = {}
     for root in roots:
         counts[root] = counts.get(root, 0) + 1

@@ -44,8 +44,8 @@ IMPULSES = ("an impulse", "the derivative of an impulse")
 class EnclosedResponse:
     """What an output does after t = 0 when an input of unit size begins, from rest or from ``initial``.
 
-    Where it jumps it has two values: that at t = 0 is the limit from above, and the ball of one at a later
-    jump holds both sides.
+    Where it jumps it has two values: that at t = 0 is the limit from the right, and the ball of one at a
+    later jump holds both sides.
 
     Parameters
     ----------

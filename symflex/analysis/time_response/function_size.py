@@ -148,7 +148,7 @@ class SizeOfExponentials:
                 return None
             terms = ring.terms(self.bound, integrations)
             count = 2 * len(terms)
-            # Left of the imaginary axis no exponential is larger than 1.
+            # In the left half-plane no exponential is larger than 1.
             missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
             return ring, terms, missing.upper()
 
@@ -277,7 +277,7 @@ Ring = tuple[Annulus, list[ExponentialTerm], arb]
 
 
 def ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:
-    """Return a ring about a neighbourhood, left of the imaginary axis, as far as possible from all poles."""
+    """Return a ring about a neighbourhood in the left half-plane, as far as possible from all poles."""
     if not hole.right <= pi <= hole.left:
         return None
     centre = -arb((hole.low + hole.high) / 2).exp()

@@ -38,7 +38,7 @@ BAND, SPARE = 6.0, 10.0
 def along_hyperbolas(asked: Asked) -> Sampled:
     """Return a response.
 
-    Raises ModelError: SF910 where the function is not known far out, as with dead times, after very many time
+    Raises ModelError: SF910 where the function is not known far out, as with delays, after very many time
     constants, and at t = 0 where it is infinite.
     """
     bound, digits = asked.bound, asked.digits

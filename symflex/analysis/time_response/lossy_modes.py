@@ -20,7 +20,7 @@ and on the way meets all poles within R and no others, whose residues are summed
 
 so what they add fades at once but at the first instants, and there H/s^n, which falls off, bounds it: on the
 arcs by an integral covered with balls, on the rays by c abs(s)^(-7/4 - n). Where poles lie beyond R at 120
-degrees and more, but not right of the imaginary axis, the rays are those of the axis, and nothing fades.
+degrees and more, but none into the right half-plane, the rays are those of the axis, and nothing fades.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ INWARD = 1 - 1e-12
 
 @dataclass(frozen=True, eq=False)
 class LossyBound(BoundBySize):
-    """A transfer function that is about a power of s in the right half plane, and beyond, far from 0."""
+    """A transfer function that is about a power of s in the right half-plane, and beyond, far from 0."""
 
     name: ClassVar = "lossy modes"
 

@@ -254,7 +254,7 @@ class BoundedModes:
         return reached, [*begun, *added[:-1]]
 
     def _may_be_pole(self, root: Root, radius: arb) -> bool:
-        """Tell whether a root of the denominator, in the upper half plane, may be a pole within a radius."""
+        """Tell whether a root of the denominator, in the upper half-plane, may be a pole within a radius."""
         is_outside = root.is_zero or root.im < 0 or root.natural_frequency() > radius
         return not is_outside and self._bounding.may_be_pole(root) and not self._is_removable(root)
 

@@ -79,7 +79,7 @@ class PassiveBound(BoundBySize):
     colocated: tuple[SizeOfExponentials, ...]  # what forces at both ends move; none where these are one
 
     def may_be_pole(self, root: Root) -> bool:
-        """Tell whether a root may be a pole: none is right of the axis, without losses none left."""
+        """Tell whether a root may be a pole: none lies in the right half-plane, undamped all on the axis."""
         return not (root.re > 0 or (root.re < 0 and self.function.is_even))
 
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:

@@ -162,7 +162,7 @@ class Negate(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class LargerRoot(CodeNode):
-    """The root ``m*(1 + sqrt(1 - p/(m*m)))`` of ``x^2 - 2*m*x + p`` where m is in the right half plane.
+    """The root ``m*(1 + sqrt(1 - p/(m*m)))`` of ``x^2 - 2*m*x + p`` where m is in the right half-plane.
 
     Where m is small beside the root of p, the formula's value keeps digits that its derivative loses.
     """

@@ -266,7 +266,7 @@ def _fit(
     is_lag_free = given.is_lag_free or given.is_lag_signed
     free = Free(given.is_gain_free, is_lag_free, given.is_delay_free, given.is_lag_signed)
     if free.delay and any(one.is_magnitude for one in measured):
-        message = "a dead time leaves no trace in a magnitude without a phase"
+        message = "a delay leaves no trace in a magnitude without a phase"
         raise UsageError(Diagnostic("SF902", message, None, "leave --delay out"))
     problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
     for line, base in zip(problem.lines, bases, strict=True):
@@ -409,14 +409,16 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     for i in np.flatnonzero(fit.modes).tolist():
         if not errors.zeta_p[i] <= weak * modes.zeta_p[i]:
             where = f"{named_pair(fit, i)} at {modes.omega_p[i] / (2 * np.pi):.4g} Hz"
-            lost.append(f"the damping of {where} is lost in its error{why}")
+            lost.append(f"the damping of {where} is less than {1 / weak:g} times its standard error{why}")
     if fit.leaves_rounding:
         return tuple(lost)  # what is left tells nothing
     reasons = []
     if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
-        reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
+        reasons.append(
+            f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what the coherence predicts"
+        )
     if fit.candidate.is_rivalled and high > NARROW_BAND * low:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
@@ -425,8 +427,8 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
         is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
         is_lag = not fit.problem.free.delay and bool(np.any(modes.real_z < 0) or np.any(is_beyond))
-        advice = ": zeros on the right above the band may stand for a dead time, try --delay"
-        reasons.append("the gain is lost in its error" + advice * is_lag)
+        advice = ": zeros on the right above the band may stand for a delay, try --delay"
+        reasons.append("the gain is less than twice its standard error" + advice * is_lag)
     for r, line in enumerate(fit.problem.lines):
         if reasons and (k := step_line(line.omega, line.measured.values)) is not None:
             low, high = line.measured.frequency_hz[k : k + 2]
@@ -521,7 +523,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     several = ", the responses one by one, or --driving OUT/IN" if modes.responses > 1 else " or more --modes"
     advice = "" if fit.problem.has_base else f"; try --slope N{several}"
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
-        said = f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains"
+        said = f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what the coherence predicts"
         warnings.append(f"{said}: the model lacks something that the data show{advice}")
     if fit.refined.correlation > SMOOTH and not is_exact:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"

@@ -18,7 +18,7 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances
 from symflex.data.fitting.starts import solved_real
 
 TURNS, PER_TURN = 2.5, 8
-"""Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""
+"""Delays tried on either side of that of the poles, in turns of the phase at the highest line."""
 MOST_LINES = 400
 MOST_POLISHED = 12
 POLISHED = 4
@@ -60,7 +60,7 @@ def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) 
 def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[tuple[float, Resonances]]:
     """Return at most so many functions with these poles that describe the lines best, with their BIC.
 
-    Poles lie in the upper half plane; the problem says which powers of s are tried, and dead times to begin
+    Poles lie in the upper half-plane; the problem says which powers of s are tried, and delays to begin
     with.
     """
     choices = [_numerators(problem, r, poles, most) for r in range(len(problem.lines))]
@@ -98,7 +98,7 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
         likely = np.argsort(full.bic(np.array([rest for rest, _ in solved]), shapes))[:MOST_POLISHED]
         polished = [(solved[i][0], begun, shapes[i], solved[i][1]) for i in likely]
     else:
-        # Poles hardly depend on the dead time they were found with; what stands over them does.
+        # Poles hardly depend on the delay they were found with; what stands over them does.
         thin = _System(problem, response, poles, max(1, full.size // MOST_LINES))
         turn = 2 * np.pi / float(np.max(full.s.imag))
         tried = begun + turn * np.arange(-TURNS, TURNS, 1 / PER_TURN)
@@ -174,7 +174,7 @@ class _System:
         return rest, np.concatenate((given, solution * norms[-1] / norms[at]))
 
     def polished(self, shape: tuple[int, int], delay: float) -> tuple[float, float, tuple[int, int], Real]:
-        """Return sum of squares, dead time, shape and coefficients after a few steps of the dead time."""
+        """Return sum of squares, delay, shape and coefficients after a few steps of the delay."""
         at = self._at(shape)[0 if self.has_gain else 1 :]
         for _ in range(POLISHED):
             target = self.weight * self.values * np.exp(self.s * delay)

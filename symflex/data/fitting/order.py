@@ -10,8 +10,8 @@ Two are chosen, which are one resonance: their BIC is the least, and more explai
 cost. Poles are counted one by one, because some are real; pairs outside the band and real poles are residual
 terms, which stand for what a resonance in the band is not. A number is tried with few steps of the search
 first, on lines that tell the most; the one preferred is then fitted to the end on all lines, and given up
-where a damping ratio is lost in its own error, or where the evidence for it is not strong. There always is a
-result: where all are given up, it is the best of them, and says why it is poor.
+where a damping ratio is less than twice its standard error, or where the evidence for it is not strong. There
+always is a result: where all are given up, it is the best of them, and says why it is poor.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ NARROW_BAND = 1.1
 SAME = 1e-3
 """Relative distance below which two starts have the same poles."""
 MOST_RISE = 1.5
-"""Zeros moved to the other half plane are a start where the misfit rises by no more than this factor."""
+"""Zeros moved to the other half-plane are a start where the misfit rises by no more than this factor."""
 CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 HALF_FORGOTTEN = 1.66
@@ -128,7 +128,7 @@ class Score:
     bic: float
     aicc: float
     reduced: float  # the sum of squares per degree of freedom
-    # ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error, or
+    # ``usable``; ``failed`` when the fit did; ``weak`` when a damping ratio is less than twice its error, or
     # strong evidence for one resonance more is missing.
     status: str
 
@@ -326,7 +326,7 @@ def _is_founded(problem: FitProblem, scores: Sequence[Score], score: Score, crit
 
 
 def _is_weak(problem: FitProblem, refined: Refined) -> bool:
-    """Return whether a gain, or the damping of a resonance, is lost in its own error: it fits noise."""
+    """Return whether a gain, or the damping of a resonance, is less than twice its error: it fits noise."""
     covariance, modes = refined.covariance, refined.resonances
     if covariance is None:
         return True
@@ -542,7 +542,7 @@ def _with_least_power(problem: FitProblem, best: Candidate) -> Candidate:
 
 
 def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
-    """Return the fit after trying each pair of zeros in the other half plane: magnitude hardly tells."""
+    """Return the fit after trying each pair of zeros in the other half-plane: magnitude hardly tells."""
     for r in range(len(problem.lines)):
         for i in range(best.refined.resonances.count):
             now = best.refined.resonances

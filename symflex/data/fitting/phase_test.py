@@ -1,12 +1,12 @@
 """Is the measured function minimum phase? The test of the paper.
 
-A resonance at 10 Hz with a pair of zeros at 12 Hz in the right half plane, zeta_z = -0.3:
+A resonance at 10 Hz with a pair of zeros at 12 Hz in the right half-plane, zeta_z = -0.3:
 
     fitted to the magnitude alone      zeta_z = +0.3, with the same magnitude on every line
     measured less fitted phase         146 degrees at 5 Hz, -121 degrees at 20 Hz: they part
-    magnitude and phase together       no zeros in the left half plane have both: nonminimum phase
+    magnitude and phase together       no zeros in the left half-plane have both: nonminimum phase
 
-The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots
+The resonances are fitted to the magnitude alone, with all zeros in the left half-plane. "The phase plots
 should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering
 1988, section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The
 base keeps its own phase.
@@ -14,7 +14,7 @@ base keeps its own phase.
 Magnitude in a band does not determine phase there: a pair of zeros at twice the highest frequency changes the
 level by tenths of a decibel and the phase by tens of degrees (Bode 1945, chapter 14: phase depends on the
 slope of the level at all frequencies). Where the phases part, a second fit therefore looks for any product of
-the same resonances, zeros in the left half plane, that has both: magnitude and phase as measured. Only where
+the same resonances, zeros in the left half-plane, that has both: magnitude and phase as measured. Only where
 there is none, not even with a lag linear in frequency, is the function called nonminimum phase.
 """
 
@@ -89,9 +89,9 @@ class PhaseTest:
 
 
 def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
-    """Fit the magnitude alone, from the mirror image of a fit in the left half plane, and compare phases.
+    """Fit the magnitude alone, from the mirror image of a fit in the left half-plane, and compare phases.
 
-    Where they part, functions with zeros in the left half plane are fitted to magnitude and phase together.
+    Where they part, functions with zeros in the left half-plane are fitted to magnitude and phase together.
     """
     if problem.lines[response].measured.is_magnitude:
         return replace(not_judged(problem, response, fitted), verdict="assumed")
@@ -135,10 +135,10 @@ KINDS: Final = ("magnitude", "both", "lag")
 
 
 class _PhaseSearch:
-    """Fits of one response by resonances whose zeros lie in the left half plane."""
+    """Fits of one response by resonances whose zeros lie in the left half-plane."""
 
     def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:
-        # A dead time is not part of the question: it stays as it was fitted.
+        # A delay is not part of the question: it stays as it was fitted.
         free = replace(problem.free, delay=False)
         self.single = replace(
             problem, lines=problem.lines[response : response + 1], delays=(), free=free

@@ -27,7 +27,7 @@ class FitProblem:
     # Whether the known factor is a model rather than a power of s; messages speak of it then.
     has_base: bool = True
     slopes: tuple[int, ...] = (0,)  # the powers of s that each response may have
-    delays: tuple[float, ...] = ()  # dead time of each response that a start begins with [s]
+    delays: tuple[float, ...] = ()  # delay of each response that a start begins with [s]
     # Whether the accuracy of lines was estimated, and not known from coherence.
     is_noise_estimated: bool = False
     # Of the estimate: how well a function without structure describes the lines.
@@ -110,7 +110,7 @@ class FitProblem:
         return replace(self, lines=tuple(replace(x, observation=o, base=base) for x, o, base in plain))
 
     def quotient(self, response: int) -> Complex:
-        """Return measured values over the base, the dead time to begin with, and s to a known power."""
+        """Return measured values over the base, the delay to begin with, and s to a known power."""
         line = self.lines[response]
         slope = self.slopes[0] if len(self.slopes) == 1 else 0
         s = 1j * line.omega_seen
@@ -124,7 +124,7 @@ class FitProblem:
         return round(float(np.polyfit(x, y, 1)[0]))
 
     def with_slope(self, slope: int) -> FitProblem:
-        """Return the problem on a base that has this power of s already, and the dead times to begin with."""
+        """Return the problem on a base that has this power of s already, and the delays to begin with."""
         lines = []
         for line, delay in zip(self.lines, self.delays, strict=True):
             inside, at_lines = 1j * line.observation.omega, 1j * line.omega_seen

@@ -36,7 +36,7 @@ NO_PEAK = 0.5**0.5
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """What is fitted of each response besides its resonances: a gain, a lag of the sensor, a dead time.
+    """What is fitted of each response besides its resonances: a gain, a lag of the sensor, a delay.
 
     A lag may be negative, a lead, where ``lag_sign`` says so.
     """
@@ -60,7 +60,7 @@ class Resonances:
     omega_p: Real
     zeta_p: Real
     # omega_z and zeta_z: shape (m, n): Those of the zeros, ascending in each response. A negative damping
-    # ratio is a pair of zeros in the right half plane. Infinite where a response has fewer pairs of zeros. A
+    # ratio is a pair of zeros in the right half-plane. Infinite where a response has fewer pairs of zeros. A
     # negative frequency -w stands for two real zeros of opposite sign, the factor 1 + 2 zeta s/w - (s/w)^2:
     # transfer functions of beams have them.
     omega_z: Real
@@ -69,7 +69,7 @@ class Resonances:
     # shape (m,): Time constant of the sensor of each response [s], a factor 1/(1 + lag s), or where it is
     # negative, a lead, 1 - lag s; by default 0.
     lag: Real = field(default_factory=lambda: np.zeros(0))
-    # shape (m,): Dead time of each response [s], a factor exp(-delay s); by default 0.
+    # shape (m,): Delay of each response [s], a factor exp(-delay s); by default 0.
     delay: Real = field(default_factory=lambda: np.zeros(0))
     # shape (m,): The power of s of each response; by default 0.
     slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))

@@ -41,7 +41,7 @@ def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = 
     """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name.
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
-    stand for is referred to; any other, and one that does not stand at or below the folder, is copied. SF617
+    stand for is referred to; any other, and one outside the folder and its subfolders, is copied. SF617
     where neither way gives a specification that is accepted.
     """
     bases = tuple(dict.fromkeys(Path(base.path) for base in fit.bases if base.path))
@@ -83,7 +83,7 @@ def _written(
     """Return the text of a specification with the fitted functions.
 
     Frequencies are written in Hz and damping ratios as they are, with nine digits and their standard errors.
-    Zeros in the right half plane have a negative damping ratio. Names of the base's parameters are ``taken``:
+    Zeros in the right half-plane have a negative damping ratio. Names of the base's parameters are ``taken``:
     they mean something else. The base is ``copied`` as nested values, or referred to by a ``model`` block
     from the folder.
     """
@@ -217,7 +217,7 @@ def _single(
 def _beside(
     fit: ResonanceFit, response: int, errors: Resonances, names: _Names
 ) -> tuple[dict[str, object], dict[str, object], list[str]]:
-    """Return parameters, blocks and factors of what stands beside the pairs, lag and dead time among it."""
+    """Return parameters, blocks and factors of what stands beside the pairs, lag and delay among it."""
     parameters, factors = _single(fit, response, errors, names)
     blocks: dict[str, object] = {}
     modes = fit.resonances
@@ -228,7 +228,7 @@ def _beside(
         blocks[names.block("L_sensor")] = {"type": "lead_lag", "T_1": ends[0], "T_2": ends[1]}
     if fit.problem.free.delay:
         name = names.parameter("T_dead")
-        parameters[name] = _time(modes.delay[response], errors.delay[response], "dead time")
+        parameters[name] = _time(modes.delay[response], errors.delay[response], "delay")
         blocks[names.block("D_dead")] = {"type": "delay", "T": name}
     return parameters, blocks, [*factors, *blocks]
 

@@ -1,4 +1,4 @@
-"""Where fits begin: from the magnitude alone, from rational approximation, and with which dead time.
+"""Where fits begin: from the magnitude alone, from rational approximation, and with which delay.
 
 The paper's procedure takes the magnitude alone. For each resonance, starting with the lowest: compare the
 model so far with the data; the peak is omega_p, the trough omega_z; zeta_p matches the height of the peak,
@@ -10,8 +10,8 @@ frequency domain responses by vector fitting, IEEE Trans. Power Delivery 14(3), 
 pole relocating properties of vector fitting, IEEE Trans. Power Delivery 21(3), 2006 (relaxed); Nakatsukasa,
 Sete & Trefethen, The AAA algorithm for rational approximation, SIAM J. Sci. Comput. 40(3), 2018.
 
-A wrong dead time winds the phase, and no function with few poles follows that: the one that leaves least of a
-row of dead times is within a quarter of a turn at the highest line, and from there least squares find it.
+A wrong delay winds the phase, and no function with few poles follows that: the one that leaves least of a
+row of delays is within a quarter of a turn at the highest line, and from there least squares find it.
 """
 
 from __future__ import annotations
@@ -70,14 +70,14 @@ REAL = 1e-9
 FEW_POWERS = (0, 1)
 """The same where poles outside the band are to be found: what they add looks like powers of s."""
 
-# Of dead times.
+# Of delays.
 PER_TURN = 5
-"""Dead times tried per turn of the phase at the highest line."""
+"""Delays tried per turn of the phase at the highest line."""
 MOST_TURNS = 40.0
 LEAST_TURNS = 2.0
-"""Of the phase at the highest line: how far the dead times tried reach, at most and at least."""
+"""Of the phase at the highest line: how far the delays tried reach, at most and at least."""
 MOST_LINES = 300
-"""Lines on which dead times are compared."""
+"""Lines on which delays are compared."""
 
 
 # ------------------------------------------------------------------ from the magnitude alone
@@ -440,11 +440,11 @@ def _aaa_poles(omega: Values, values: Complex, degree: int) -> list[tuple[float,
     return poles
 
 
-# ------------------------------------------------------------------ with which dead time
+# ------------------------------------------------------------------ with which delay
 
 
 def with_delays(problem: FitProblem, count: int | None) -> FitProblem:
-    """Return the problem with the dead time of each response to begin with, where they are free."""
+    """Return the problem with the delay of each response to begin with, where they are free."""
     if not problem.free.delay:
         return problem
     delays = []
@@ -458,7 +458,7 @@ def _delay(single: FitProblem, count: int) -> float:
     line = single.lines[0]
     values, omega = line.ratio, line.omega
     turn = 2 * np.pi / float(omega[-1])
-    # Resonances turn the phase near their peaks; on most lines the dead time alone does.
+    # Resonances turn the phase near their peaks; on most lines the delay alone does.
     steps = -np.angle(values[1:] / values[:-1]) / np.diff(omega)
     likely = max(float(np.median(steps)), 0.0)
     most = min(max(3 * likely / turn, LEAST_TURNS), MOST_TURNS) * turn

@@ -77,7 +77,7 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     if free.lag:
         lines.append(f"{INDENT}lag of the sensor {modes.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
     if free.delay:
-        lines.append(f"{INDENT}dead time {modes.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+        lines.append(f"{INDENT}delay {modes.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
     if modes.is_improper[r] and not fit.problem.has_base:
         end = fit.problem.band[1] / (2 * pi)
         lines.append(f"{INDENT}more zeros than poles, as the data ask for: it grows beyond {end:.4g} Hz")
@@ -219,7 +219,7 @@ def _poles(fit: ResonanceFit, which: np.ndarray) -> list[dict[str, object]]:
 
 
 def _real(corner: float, error: float) -> dict[str, object]:
-    """Return a real pole, or zero, by its corner frequency; in the right half plane it is negative."""
+    """Return a real pole, or zero, by its corner frequency; in the right half-plane it is negative."""
     return {
         "omega": float(corner),
         "omega_standard_error": _finite(float(error)),
@@ -314,7 +314,7 @@ def _accuracy(fit: ResonanceFit) -> str:
         errors += f" and count neighbouring lines as correlated ({variance})"
     if not _is_scaled(fit):
         return errors
-    return f"that is {sqrt(fit.refined.reduced):.3g} times what coherence explains; {errors}"
+    return f"that is {sqrt(fit.refined.reduced):#.3g} times what the coherence predicts; {errors}"
 
 
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:

@@ -6,7 +6,7 @@
 A unit that is not said is found from the numbers. Logarithm of magnitude and phase of a causal function are
 Hilbert transforms of each other, so their slopes have equal energy (Titchmarsh 1937, theorem 90), and so has
 circular noise: a phase read in the wrong unit is 57 times too steep or too flat. Straight lines, which powers
-of s and dead times add, are taken out before. What stays open is asked for.
+of s and delays add, are taken out before. What stays open is asked for.
 """
 
 from __future__ import annotations

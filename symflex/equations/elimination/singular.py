@@ -140,7 +140,7 @@ def listed(names: list[str]) -> str:
 
 
 def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
-    """Return the nodes and signals that may rest anywhere without input, those an output does not see first.
+    """Return the nodes and signals that are arbitrary at rest without input, unobservable ones first.
 
     They belong to solutions of ``A(0) x = 0`` in which the output stays 0, where there are some.
     ``equations`` have numbers in place of all parameters, and no kernels.
@@ -150,7 +150,7 @@ def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
         point[name] = _number(value, point, PRIME)
     for row in equations.rows:
         if row.role == "signal" and all(_number(c, point, PRIME) == 0 for _, c in row.form.terms):
-            return ()  # what rests anywhere is within a block, where s cancels
+            return ()  # what is arbitrary at rest is within a block, where s cancels
     seen = [row.form for row in equations.outputs if row.name == output]
     for forms in ([*(row.form for row in equations.rows), *seen], [row.form for row in equations.rows]):
         matrix = matrix_of(forms, equations.unknowns, PRIME, lambda c: _number(c, point, PRIME))

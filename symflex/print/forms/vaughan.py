@@ -2,7 +2,7 @@
 
 With ``E = exp(-q)``, ``S = E sin q`` and ``C = E cos q`` the hyperbolic functions are ``cosh q = (1 + E^2)/(2
 E)`` and ``sinh q = (1 - E^2)/(2 E)``, where ``E^2 = S^2 + C^2``; powers of E cancel but for one at most.
-Nothing in this form overflows in the right half plane (Eppinger & Seering 1988, section "Bending Beam
+Nothing in this form overflows in the right half-plane (Eppinger & Seering 1988, section "Bending Beam
 Models", after Vaughan).
 """
 

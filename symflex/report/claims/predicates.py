@@ -188,7 +188,7 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
 
 
 def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
-    """Tell whether no zero lies in the right half plane, for all values of the parameters."""
+    """Tell whether no zero lies in the right half-plane, for all values of the parameters."""
     facts = functions(models, of)
     words = {True: "minimum phase", False: "nonminimum phase"}
     said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in facts]
@@ -198,7 +198,7 @@ def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
 
 
 def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: bool = False) -> Finding:
-    """Tell whether zeros lie in the right half plane.
+    """Tell whether zeros lie in the right half-plane.
 
     With ``for_these_values``, what it is for other values of the parameters is left out.
     """
@@ -206,7 +206,7 @@ def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: b
     facts = functions(models, of)
     for stem, function in facts:
         zeros = counted(function.right_half_plane_zeros, "zero")
-        lines += ["\n", f"In {stem}, {function.tf} has {zeros} in the right half plane."]
+        lines += ["\n", f"In {stem}, {function.tf} has {zeros} in the right half-plane."]
         lines += () if for_these_values else _bracket(function)
     is_true = all(not f.is_minimum_phase for _, f in facts)
     has_condition = not for_these_values and any(f.bracket for _, f in facts)

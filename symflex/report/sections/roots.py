@@ -49,7 +49,7 @@ LEFT_OUT: Final = (
 
 
 COMPLEX: Final = (
-    "Coefficients are complex. The report lists all poles and zeros, in both half planes. It has no mode "
+    "Coefficients are complex. The report lists all poles and zeros, in both half-planes. It has no mode "
     "shapes, responses in time, state equations, or code in languages other than Python."
 )
 
@@ -142,7 +142,7 @@ def _paragraphs(meaning: ZeroExplanation) -> list[tuple[str, ...]]:
 
 
 LOOP_HEADS: Final = columns(
-    ("From", "number"), ("to", "number"), ("right of the axis", "number"), ("on the axis", "number"), "Loop"
+    ("From", "number"), ("to", "number"), ("right half-plane", "number"), ("on the axis", "number"), "Loop"
 )
 
 
@@ -180,7 +180,7 @@ def loop_section(study: Study) -> ChapterPart | None:
 def _gains(loop: StabilityMap) -> tuple[Block, ...]:
     opening = marked(Badge("not certified", "bad"), "; ".join(loop.reasons))
     if loop.certified:
-        opening = marked(Badge("certified", "good"), "All poles right of the imaginary axis are counted.")
+        opening = marked(Badge("certified", "good"), "All poles in the right half-plane are counted.")
     blocks: list[Block] = []
     if loop.nominal is not None:
         blocks.append(_stability(loop.verdict, f", with {loop.gain} = {float(loop.nominal):g}"))

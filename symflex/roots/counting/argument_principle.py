@@ -98,7 +98,7 @@ class CertifiedWinding(Winding[E_co]):
             return _whole(total / (2 * arb.pi()))
 
     def count_right(self, low: float, high: float, angle: float = pi / 2) -> int:
-        """Return the number of roots right of the imaginary axis with ``low < ln(abs(s)) < high``: proved.
+        """Return the number of roots in the right half-plane with ``low < ln(abs(s)) < high``: proved.
 
         F is real on the real axis: below it, the argument turns as above. RootOnAxisError where a root lies
         on the imaginary axis, or too close to it; RootOnPathError on the arcs.

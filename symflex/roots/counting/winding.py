@@ -54,7 +54,7 @@ class RootOnPathError(Exception):
 
 
 class RootOnAxisError(RootOnPathError):
-    """The imaginary axis meets a root: no other path about the right half plane avoids it."""
+    """The imaginary axis meets a root: no other path about the right half-plane avoids it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 In a sector of the s plane every wavenumber goes like a power of s, times a factor close to its limit. So do
 the amplitudes of a sum of exponentials, and the exponents. Where at ``abs(s) = R`` one term is larger than
 all others together, and every quotient of another term to it falls with growing ``abs(s)``, there is no root
-beyond R in this sector, and the sum is as large as that term, up to the share of the others. For dead time in
+beyond R in this sector, and the sum is as large as that term, up to the share of the others. For delay in
 the lower powers of s alone this is Cauchy's bound. Example: ``s^2 + s + 3 exp(-s T)``, where the exponential
 is at most one: ``R^2 > R + 3`` from R = 2.31 on.
 """
@@ -43,7 +43,7 @@ NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbe
 NOT_OUTWEIGHED = "no bound on the poles is known, as no term outweighs the others at high frequencies"
 TOO_MANY = "no bound on the poles is known for so many exponentials"
 TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
-ADVANCED = "a delayed term has the highest power of s, so poles right of the axis have no bound"
+ADVANCED = "a delayed term has the highest power of s, so poles in the right half-plane have no bound"
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
 DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
@@ -60,7 +60,7 @@ Terms = dict[Exponent, dict[Fraction, acb]]
 class _Power:
     """``s^power`` times a number.
 
-    A delay's exponent never grows in the right half plane, which rounding at a right angle would hide.
+    A delay's exponent never grows in the right half-plane, which rounding at a right angle would hide.
     """
 
     power: Fraction
@@ -302,7 +302,7 @@ class _SumFarOut:
         """Say why no term outweighs the others for large s.
 
         If a delayed one outweighs all others of the highest power of s along the axis, infinitely many roots
-        lie right of it (Bellman and Cooke 1963, chapter 12).
+        lie in the right half-plane (Bellman and Cooke 1963, chapter 12).
         """
         powers = self.powers(radius)
         if powers is None or any(each.wavenumber for each in self.sums.arguments):
@@ -380,7 +380,7 @@ class _SumFarOut:
         return terms, arguments
 
     def _is_late(self, length: Factored) -> bool:
-        """Tell whether a dead time is proved not to be negative, though its ball may be about 0."""
+        """Tell whether a delay is proved not to be negative, though its ball may be about 0."""
         names, constants = self.kernels.names, self.kernels.constants
         factors = [f for f, _ in length.factors]
         used = {names[i] for f in factors for monomial, _ in terms_of(f) for i, _ in monomial}

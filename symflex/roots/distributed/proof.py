@@ -3,7 +3,7 @@
 Found within 100 rad/s are a double root at 0 and j 3.5, -j 3.5. The argument turns four times on that circle:
 they are all. Were it six times, two would be missing, and the domain is searched with every count proved.
 
-Domains are cells of ln(s), less holes where roots accumulate. A search keeps to the upper half plane, for
+Domains are cells of ln(s), less holes where roots accumulate. A search keeps to the upper half-plane, for
 functions whose roots mirror each other in the imaginary axis to a quarter of the plane; what is counted is
 the ring that mirror images make of it.
 
@@ -119,7 +119,7 @@ class Count:
         return Proof(counted + (count_roots(at_zero) if is_disc else 0), count)
 
     def right(self, high: float, angle: float = pi / 2) -> int:
-        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
+        """Return how many roots lie in the right half-plane, with ln(abs(s)) below ``high``: proved.
 
         The axis may be at another angle.
 
@@ -175,7 +175,7 @@ def _meet(a: Cell, b: Cell) -> bool:
 def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
     """Tell whether a cell and its mirror images make a ring, whose circles pass by all holes.
 
-    The cell lies in the upper half plane. ``left`` is the argument of s up to which the search goes: pi, or
+    The cell lies in the upper half-plane. ``left`` is the argument of s up to which the search goes: pi, or
     pi/2 where mirror images make up for the rest.
     """
     return (
@@ -204,7 +204,7 @@ def parts(domain: Cell, left: float, holes: Sequence[Cell]) -> tuple[tuple[Cell,
 
 
 def _images(hole: Cell) -> tuple[Cell, ...]:
-    """Return a neighbourhood in the closed upper half plane and, off the real axis, its mirror image."""
+    """Return a neighbourhood in the closed upper half-plane and, off the real axis, its mirror image."""
     if hole.right <= 0 <= hole.left or hole.right <= pi <= hole.left:
         return (hole,)
     return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
@@ -242,7 +242,7 @@ def _is_between(cell: Cell, root: Root) -> bool | None:
 
 
 def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:
-    """Return ln(abs(s)) and arg(s) between which a band or rectangle lies, folded into the upper half plane.
+    """Return ln(abs(s)) and arg(s) between which a band or rectangle lies, folded into the upper half-plane.
 
     Roots of even functions mirror each other in the imaginary axis too. TypeError for any other region.
     """

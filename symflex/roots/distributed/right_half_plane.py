@@ -1,6 +1,6 @@
-"""Roots of a function with kernels in the right half plane, wherever they lie.
+"""Roots of a function with kernels in the right half-plane, wherever they lie.
 
-The closed right half plane is searched up to a radius beyond which one of the function's terms outweighs all
+The closed right half-plane is searched up to a radius beyond which one of the function's terms outweighs all
 others; a certified count about the half disc says how many roots it holds, and only where there are some they
 are searched.
 """
@@ -24,9 +24,9 @@ from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import Root
 from symflex.transfer import BoundTransferFunction
 
-ACCUMULATING = "poles accumulate in the right half plane"
+ACCUMULATING = "poles accumulate in the right half-plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"
-NOT_COUNTED = "the poles right of the imaginary axis could not be counted"
+NOT_COUNTED = "the poles in the right half-plane could not be counted"
 WAVES = 10.0
 """Largest argument of a kernel up to which poles are counted where no end of them is known."""
 FURTHER, LOWER = 30.0, 3000.0
@@ -37,7 +37,7 @@ MARGIN = 1.01
 
 @dataclass(frozen=True, slots=True)
 class RightHalfPlane:
-    """The roots of one function in the right half plane."""
+    """The roots of one function in the right half-plane."""
 
     roots: tuple[Root, ...]  # those found, on the imaginary axis too
     unproved: str = ""  # why there may be others; empty where there are none
@@ -53,11 +53,11 @@ def search_right(
     digits: int,
     limit: float | None = None,
 ) -> RightHalfPlane:
-    """Count the roots of a function with kernels right of the imaginary axis, and find them.
+    """Count the roots of a function with kernels in the right half-plane, and find them.
 
     ``side`` is the same function, perhaps searched elsewhere; ``known`` roots are those found already,
     anywhere, proved. Up to an abs(s) of ``reached`` [rad/s] all roots are known; 0 where that is not so.
-    Beyond a ``limit`` [rad/s], where one is given, it is known that none lies right of the axis.
+    Beyond a ``limit`` [rad/s], where one is given, it is known that none lies in the right half-plane.
     """
     if side.is_finite:
         return RightHalfPlane(tuple(known))

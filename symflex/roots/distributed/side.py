@@ -163,7 +163,7 @@ class Side:
 
     def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
-        # What is known of the upper half plane alone makes no disc.
+        # What is known of the upper half-plane alone makes no disc.
         low = -inf if self.function.is_paired or self._innermost is None else self._innermost
         self._domain = Cell(low, min(search.reached, HIGHEST), 0.0, pi)
         self._set(search.roots)
@@ -341,7 +341,7 @@ class Side:
         return Count(self._winding, self._order, self.holes, self._left, self._lossless)
 
     def count_right(self, high: float) -> int:
-        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
+        """Return how many roots lie in the right half-plane, with ln(abs(s)) below ``high``: proved.
 
         If it is one of a root ``r = s^(1/q)``, count those in the sector of r that is right of it in s.
         """
@@ -356,7 +356,7 @@ def _without_laplace(value: Factored) -> Factored:
 
 
 def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) -> list[Root]:
-    """Return the roots of the factors with positive exponents, of those with j in the upper half plane."""
+    """Return the roots of the factors with positive exponents, of those with j in the upper half-plane."""
     factors = [(f, e) for f, e in part.factors if e > 0]
     if is_complex(part):
         return [root for root in complex_roots(bound, factors, digits) if not root.im < 0]
@@ -365,7 +365,7 @@ def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) 
 
 
 def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
-    """Return where the laws of waves have poles in s, such as -1/eta; upper half plane."""
+    """Return where the laws of waves have poles in s, such as -1/eta; upper half-plane."""
     points: list[complex] = []
     for law in bound.kernels.dispersions:
         laws = (*law.characteristic, law.shift, *divisors_in_s(law))

@@ -75,7 +75,7 @@ class Entire(Followed, Protocol):
 
     @property
     def is_paired(self) -> bool:
-        """Whether the roots of one half plane follow from those of the other."""
+        """Whether the roots of one half-plane follow from those of the other."""
 
     @property
     def is_mirrored(self) -> bool:

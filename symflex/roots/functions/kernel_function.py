@@ -94,7 +94,7 @@ class KernelFunction:
 
     @property
     def is_paired(self) -> bool:
-        """Whether the roots of one half plane follow from those of the other."""
+        """Whether the roots of one half-plane follow from those of the other."""
         return self.is_real or self.is_central
 
     @cached_property

@@ -1,8 +1,8 @@
 """Poles and zeros of a transfer function of a network without losses, from counts alone.
 
 A pole is an eigenvalue of the network. What is held at the input, or at the output, has eigenvalues between
-them; a pole that is one of these as well is a mode that input or output does not see, and hidden. Zeros of a
-receptance at the input are the eigenvalues of the network held there.
+them; a pole that is one of these as well is a mode that is uncontrollable or unobservable, and hidden. Zeros
+of a receptance at the input are the eigenvalues of the network held there.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ class _Sought:
     region: Region
     digits: int
     is_default: bool = False
-    proof: str = ""  # why no pole lies right of the imaginary axis
+    proof: str = ""  # why no pole lies in the right half-plane
     unsure: str = NONE_ON_AXIS  # what is not known with that proof
 
     @property
@@ -264,7 +264,7 @@ class _NetworkSearch:
         return None if order is None or (order - powers) % 2 else (order - powers) // 2
 
     def _unseen(self, each: Eigenvalue) -> int:
-        """Return how many of the modes of an eigenvalue input or output do not see."""
+        """Return how many of the modes of an eigenvalue are uncontrollable or unobservable."""
         if each.number not in self.unseen:
             held = self._most_held(each) and self._most_held(self._closer(each, None))
             self.unseen[each.number] = min(each.multiplicity, held)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
 RIGHT_HALF = 1.3
-"""Angle of the first cut across a half plane [rad]: to the right of lightly damped roots."""
+"""Angle of the first cut across a half-plane [rad]: to the right of lightly damped roots."""
 SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
 """Shares at which a cell may be cut: off its middle, where symmetry puts roots."""
 NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
@@ -57,7 +57,7 @@ MODES_LIMIT = 2000
 class Found:
     """What a search brought to light."""
 
-    # In the upper half plane, for even functions in its right quadrant; both with the axes.
+    # In the upper half-plane, for even functions in its right quadrant; both with the axes.
     roots: tuple[Root, ...]
     missing: int  # roots that were counted but not found
     cell: Cell | None = None  # what was searched
@@ -67,7 +67,7 @@ class RootSearch:
     """Searches one function with at least one kernel.
 
     Holes, neighbourhoods of points where roots accumulate, are left out; ``excluded`` are those that a search
-    met. :meth:`extend` puts what it finds in the upper half plane, for even functions in its right quadrant,
+    met. :meth:`extend` puts what it finds in the upper half-plane, for even functions in its right quadrant,
     into ``roots``; so many are ``missing``: counted on the way but not found. ``reached`` is ln of the radius
     up to which it searched.
     """

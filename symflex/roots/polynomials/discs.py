@@ -6,7 +6,7 @@ Guesses only propose; every decision here is ball arithmetic.
 The disc of radius n abs(p(z)/p'(z)) about z holds at least one of the n roots, because p'(z)/p(z) is the sum
 of the n inverse distances (Laguerre); n such discs that are disjoint hold one each. The roots of a real
 polynomial come in conjugate pairs: a disc about a real centre that holds one root holds a real one. Guesses
-are therefore listed in the closed upper half plane only.
+are therefore listed in the closed upper half-plane only.
 
 For low degrees FLINT's Durand-Kerner guesses: good to the working precision, in a time that grows with the
 third power of the degree. For high ones Laguerre's method with implicit deflation does, good to about double
@@ -43,7 +43,7 @@ CENTRE_STEPS = 40
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """A disc in the closed upper half plane, or about a centre on the real axis."""
+    """A disc in the closed upper half-plane, or about a centre on the real axis."""
 
     centre: acb  # an exact point; imaginary part positive, or exactly zero
     radius: arb  # exact; infinite when nothing could be proved

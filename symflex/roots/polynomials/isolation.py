@@ -1,6 +1,6 @@
 """Isolation of the simple roots of one real polynomial, all at growing precision.
 
-Input: a square-free polynomial and the digits wanted. Output: disjoint discs in the closed upper half plane
+Input: a square-free polynomial and the digits wanted. Output: disjoint discs in the closed upper half-plane
 that, with their mirror images, hold all roots. A cluster that the constants' balls never tell apart comes out
 as one disc with its count.
 """

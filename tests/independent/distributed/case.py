@@ -61,7 +61,7 @@ class Case:
             return self.respond(self.values(), mpc(s))
 
     def points(self, count: int) -> list[complex]:
-        """Return points on a spiral through both half planes, many of them near the imaginary axis."""
+        """Return points on a spiral through both half-planes, many of them near the imaginary axis."""
         low, high = self.decades
         return [
             cmath.rect(self.scale * 10 ** (low + (high - low) * k / (count - 1)), math.radians(angle))

@@ -124,7 +124,7 @@ def delayed_arm(v: Values, s: Number) -> Number:
 
 
 def delayed_rod(v: Values, s: Number) -> Number:
-    """Free rod pushed through a dead time."""
+    """Free rod pushed through a delay."""
     push = mp.exp(-s * v["T"])
     return span(lambda u, f, v, s: (f + push,), lambda u, f, v, s: (f,), second_end(0), rod)(v, s)
 

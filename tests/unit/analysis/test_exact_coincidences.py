@@ -55,7 +55,7 @@ def recurrence(above, below):
 
 
 def held(num, den, late=0):
-    """Return the output for U held between samples, behind a dead time of so many samples."""
+    """Return the output for U held between samples, behind a delay of so many samples."""
     n = len(den) - 1
     num, den = ([PI.mpf(0)] * (n + 1 - len(num)) + [PI.mpf(c) for c in num], [PI.mpf(c) for c in den])
     whole = ceil(late)
@@ -111,7 +111,7 @@ def test_roots_at_two_over_h_are_taken_to_infinity_and_to_zero_by_tustin():
     assert agree(delayed, [0, 0, 0, *U[:-3]])
 
 
-def test_a_pade_filter_of_one_sample_is_one_sample_of_dead_time():
+def test_a_pade_filter_of_one_sample_is_one_sample_of_delay():
     pade = discretised("(1 - T*s/2)/(1 + T*s/2)", "tustin", parameters='parameters.T = "1 ms"')
     made = difference_equation(pade)
     assert made.run(U) == [0.0, *U[:-1]]

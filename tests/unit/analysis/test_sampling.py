@@ -30,7 +30,7 @@ CIRCLE = np.exp(1j * np.array([0.05, 0.4, 1.3, 2.9]))
 
 
 def delayed(delay, text="1/(s + 2)"):
-    """Return a function behind a dead time [s]."""
+    """Return a function behind a delay [s]."""
     lines = [
         "symflex = 1",
         f'parameters.T = {{ value = "{delay} s", assume = "nonnegative" }}',
@@ -85,7 +85,7 @@ def test_of_matched_zeros_at_infinity_one_stays_and_small_s_decides_the_gain():
     assert found(exp(s * float(H))) * s == pytest.approx(3.5, rel=1e-6)
 
 
-def test_the_response_behind_a_dead_time_is_right_at_samples():
+def test_the_response_behind_a_delay_is_right_at_samples():
     for samples in [0.0, 0.3, 1.0, 2.7]:
         # y' = -2 y + u(t - T): a step of the input makes (1 - exp(-2 (t - T)))/2.
         h = 0.1
@@ -97,7 +97,7 @@ def test_the_response_behind_a_dead_time_is_right_at_samples():
         assert np.max(np.abs(got - (1 - np.exp(-2 * times)) / 2)) < 1e-14, samples
 
 
-def test_a_sum_of_dead_times_is_sampled_too():
+def test_a_sum_of_delays_is_sampled_too():
     text = 'symflex = 1\nblocks.D = { type = "delay", T = "T" }\nblocks.E = { type = "delay", T = "2.5*T" }\n'
     text += 'parameters.T = "0.03 s"\ninputs.u = {}\noutputs.y = "(D + 2*E)*9/(s^2 + 9)*u"'
     bound = loads(text).transfer_function("y", "u").bind().bound

@@ -248,7 +248,7 @@ def test_a_slip_is_blamed_on_the_line_that_has_it(name):
     assert f"{change.place}: {printed}, {derived}" == expected
 
 
-# A rod that a mass loads: X/F = tanh(g*l)/(E*A*g + m*s^2*tanh(g*l)), g = s/c; and a lag behind a dead time.
+# A rod that a mass loads: X/F = tanh(g*l)/(E*A*g + m*s^2*tanh(g*l)), g = s/c; and a lag behind a delay.
 ROD = """
 symflex = 1
 parameters = { E = "210 GPa", A = "1e-4 m^2", rho = "7800 kg/m^3", l = "0.7 m", m = "0.3 kg" }
@@ -284,7 +284,7 @@ CALL_SLIPS = [
 
 
 @pytest.mark.slow
-def test_slips_in_arguments_wavenumbers_and_dead_times_are_found():
+def test_slips_in_arguments_wavenumbers_and_delays_are_found():
     for head, expr, line, expected in CALL_SLIPS:
         (found,) = audit(pipeline.loads(f"{head}expr = '{expr}'\nwhere = {{ g = '{line}' }}\n"))
         (change,) = found.changes

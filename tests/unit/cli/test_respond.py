@@ -151,7 +151,7 @@ def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
     assert (tmp_path / "left.svg").exists()
 
 
-def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
+def test_a_delay_of_the_specification_becomes_states(shell, tmp_path):
     text = OSCILLATOR.replace("[elements]", 'blocks.D = { type = "delay", T = "13 ms" }\n[elements]')
     (tmp_path / "late.toml").write_text(text.replace('X = "x"', 'X = "D*x"'), encoding="utf-8")
     asked = ["--to", "state-space", "--sample", "10ms", "-o", "step.py"]
@@ -164,7 +164,7 @@ def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
     assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.487), rel=1e-12)
     done = shell("export", "late.toml", *asked)
     assert done.code == 3
-    assert "use --tf to choose functions with the same dead time" in done.err
+    assert "use --tf to choose functions with the same delay" in done.err
 
 
 def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path):
@@ -253,7 +253,7 @@ def test_a_response_of_an_unstable_system_says_that_it_grows(oscillator, tmp_pat
     (tmp_path / "fall.toml").write_text(
         'symflex = 1\nparameters.a = "4 1/s^2"\ninputs.u = {}\noutputs.y = "a*u/(s^2 - a)"\n'
     )
-    said = "the response grows without bound; the system is unstable: 1 pole in the right half plane"
+    said = "the response grows without bound; the system is unstable: 1 pole in the right half-plane"
     for until in ((), ("--until", "1s")):
         assert said in oscillator("respond", "fall.toml", *until).out
     assert "grows" not in oscillator("respond", "osc.toml", "--tf", "X/F").out

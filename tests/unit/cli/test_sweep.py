@@ -38,7 +38,7 @@ def test_one_point_is_not_several(shell):
 
 
 def test_a_sweep_of_poles_says_at_how_many_points_one_grows(shell):
-    # s^2 + b s + 4 has its roots in the right half plane for b < 0.
+    # s^2 + b s + 4 has its roots in the right half-plane for b < 0.
     text = 'symflex = 1\nparameters.b = { assume = "real" }\ninputs.u = {}\noutputs.y = "u/(s^2 + b*s + 4)"'
     (shell.folder / "grows.toml").write_text(text)
     command = ("sweep", "grows.toml", "--workers", "1", "--over")

@@ -112,14 +112,14 @@ def test_what_is_not_available_is_said_with_what_is():
     for blocks, text, message, hint in [
         (
             {"G": K}, "sqrt(s)", "sqrt of an expression in s is not available yet",
-            "a dead time is a block of type delay; waves come with rods, beams and [fields]",
+            "write a delay as a block of type delay; waves come with rods, beams and [fields]",
         ),
         (
             {"k": K}, "sqrt(k)", "sqrt of a block ('k') is not available yet",
             "blocks may be added, multiplied, divided and raised to integer powers",
         ),
         (
-            {}, "G", "a dead time inside a field's equation or a length is not available",
+            {}, "G", "a delay inside a field's equation or a length is not available",
             "wavenumbers would depend on it; a delayed load may come from a signal: "
             '[signals] load = "exp(-s*T)*..."',
         ),

@@ -298,7 +298,7 @@ def test_roots_outside_the_limits_asked_for_are_counted():
     frame = AxisLimits(x=(-2, 1), has_verdict=True)
     figure = drawn_rational("poles_zeros", "(s + 5)/((s^2 + 1*s + 1)*(s - 30))", frame=frame)
     said = [text.get_text() for text in figure.texts]
-    assert "unstable: 1 pole in the right half plane" in said
+    assert "unstable: 1 pole in the right half-plane" in said
     assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
 
 

@@ -37,7 +37,7 @@ def test_boundaries_of_textbooks():
     for letters, transfer, over, expected in (
         ("K T", "K/s*exp(-s*T)", ("T", "K"), integrator),  # K*T < pi/2
         ("m b K T", "K/(m*s^2 + b*s)*exp(-s*T)", ("K", "T"), wall),  # a haptic wall
-        # Silva, Datta and Bhattacharyya 2005, PI control of a lag with dead time
+        # Silva, Datta and Bhattacharyya 2005, PI control of a lag with delay
         ("K K_i T L", "(K + K_i/s)/(T*s + 1)*exp(-s*L)", ("K", "K_i"), lag),
     ):
         assert "; ".join(map(str, loop(letters, transfer).conditions(over=over).conditions)) == expected

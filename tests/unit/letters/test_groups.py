@@ -89,7 +89,7 @@ CASES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {**OF_BEAM, "N": "100 N", "a": "0.2 m"},
         {"scale": "l/N", "S": "l*sqrt(rho*A/N)*s", "lambda": "a/l"},
     ),
-    "loop with a dead time": (
+    "loop with a delay": (
         SIGNALS + 'y = "K*u/(tau*s + 1 + K*exp(-s*T))"',
         {"K": "2", "T": "0.1 s", "tau": "1 s"},
         {"scale": "1", "Pi": "K"},
@@ -132,7 +132,7 @@ def test_groups_are_those_of_books(name: str) -> None:
         positive = {x: sympy.Symbol(x.name, positive=True) for x in quotient.free_symbols}
         assert sympy.simplify(quotient.subs(positive)) == 1, reading
     groups = {row.name for row in reading.rows} - {"y/F", "y/u", "y/U", "scale"}
-    assert name in ("coil", "loop with a dead time") or groups - {"q", "q_1", "q_2", "S"} <= set(expected), (
+    assert name in ("coil", "loop with a delay") or groups - {"q", "q_1", "q_2", "S"} <= set(expected), (
         reading
     )
 

@@ -100,7 +100,7 @@ CASES = {
         TIP + "/s**Rational(3, 2)",
     ),
     "string": (STRING + FORCE + 'y = "x"', "3*l/(16*N)", "1/(2*sqrt(N*rho*A)*s)"),
-    "loop with a dead time": (
+    "loop with a delay": (
         SIGNALS + 'e = "u - y"\ny = "c*e*exp(-s*T)/(tau*s + 1)"\n[outputs]\nout = "y"',
         "c/(1 + c)",
         "c*exp(-s*T)/(tau*s)",

@@ -59,7 +59,7 @@ def test_terms_of_opposite_sign_in_which_nothing_is_left_stay():
         ("u*(a*s + 1)/((a + d)*s + 1)", {"a": 1, "d": 0.001}, "(a*s + 1)/((a + d)*s + 1)"),
         # two springs in series of which one is rigid
         ("u*(k + c)/(m*s^2*(k + c) + k*c)", {"m": 1, "k": 5, "c": 5000}, "1/(m*s^2 + k)"),
-        # the dead time is as it was
+        # the delay is as it was
         ("u*exp(-T*s)/(s + a + d)", {"T": 1, "a": 2, "d": 0.001}, "exp(-T*s)/(s + a)"),
     ],
 )  # fmt: skip

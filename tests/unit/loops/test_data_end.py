@@ -61,7 +61,7 @@ def test_unstable_poles_are_those_that_nyquist_counts_below_the_end_of_the_data(
     assert found.counted_up_to_hz == pytest.approx(END / (2 * np.pi))
 
 
-def test_a_dead_time_in_the_loop_changes_little_of_that():
+def test_a_delay_in_the_loop_changes_little_of_that():
     found = closed("*D").stability("K", (0, 1), T="1 us")
     assert (found.certified, found.is_stable) == (True, True)
     assert float(found.boundaries[0].gain) == pytest.approx(

@@ -172,7 +172,7 @@ X = "x"
 """
 
 
-def test_one_gain_of_two_channels_with_a_dead_time_has_two_boundaries_at_one_frequency():
+def test_one_gain_of_two_channels_with_a_delay_has_two_boundaries_at_one_frequency():
     # s + K exp(-s T) = -+ j w: at omega T = pi/2 poles cross for K = pi/2 - w and for K = pi/2 + w.
     found = symflex.loads(CHANNELS).stability("K", (0, 4))
     assert found.certified
@@ -185,7 +185,7 @@ def test_one_gain_of_two_channels_with_a_dead_time_has_two_boundaries_at_one_fre
     ("function", "highest"),
     [("K^2", np.sqrt(np.pi)), ("sqrt(K)", np.pi**2), ("exp(K) - 1", np.log(1 + np.pi))],
 )
-def test_with_a_dead_time_an_integrator_is_stable_up_to_pi_over_twice_the_time(function, highest):
+def test_with_a_delay_an_integrator_is_stable_up_to_pi_over_twice_the_time(function, highest):
     # s + f(K) exp(-s T) with T = 0.5 s: f < pi.
     model = symflex.Model(
         parameters={"K": {"value": 1}, "T": "0.5 s", "tau": "1 s"},

@@ -241,12 +241,12 @@ def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
 
 def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(loop):
     # K exp(-s/2)/s is stable up to K = pi, where a pair crosses; the next one does at 5 pi.
-    said = "unstable: 2 poles in the right half plane"
+    said = "unstable: 2 poles in the right half-plane"
     asked = AxisLimits(has_verdict=True)
     figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=4)), title="A loop", frame=asked)
     (legend,) = figure.legends
     assert legend.get_title().get_text() == (
-        f"A loop\nopen loop: no pole in the right half plane\nclosed loop {said}"
+        f"A loop\nopen loop: no pole in the right half-plane\nclosed loop {said}"
     )
 
 

@@ -72,7 +72,7 @@ def found(text, up_to="300 Hz", limits=("0", "100")):
 
 
 def unstable(count, gain, up_to):
-    """Return how many poles finite elements have in the right half plane, up to a frequency [rad/s]."""
+    """Return how many poles finite elements have in the right half-plane, up to a frequency [rad/s]."""
     pieces = 6
     size = 2 * (pieces * count + 1)
     mass, stiff, loss = (np.zeros((size, size)) for _ in range(3))

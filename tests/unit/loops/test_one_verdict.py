@@ -114,7 +114,7 @@ def between(law):
 
 
 def counted(function, radius):
-    """Count the zeros right of the axis by the winding about a half disc, with numpy alone."""
+    """Count the zeros in the right half-plane by the winding about a half disc, with numpy alone."""
     inner = 1e-3
     axis = np.geomspace(inner, radius, 300_000)
     half = np.linspace(-np.pi / 2, np.pi / 2, 20_000)

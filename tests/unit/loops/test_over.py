@@ -38,7 +38,7 @@ def oscillator(gain: float) -> Model:
     )
 
 
-def test_an_integrator_with_a_dead_time_is_stable_up_to_half_of_pi() -> None:
+def test_an_integrator_with_a_delay_is_stable_up_to_half_of_pi() -> None:
     """Hayes 1950: all roots of ``s + a exp(-s T)`` lie on the left exactly if 0 < a T < pi/2."""
     stable = LAG.stability(over="T", limits=(0, 3), a=0.7)
     assert stable.certified
@@ -48,7 +48,7 @@ def test_an_integrator_with_a_dead_time_is_stable_up_to_half_of_pi() -> None:
     assert abs(stable.boundaries[0].frequencies_hz[0] - 0.7 / (2 * pi)) < 1e-14
 
 
-def test_a_delayed_oscillator_is_stable_again_for_later_dead_times() -> None:
+def test_a_delayed_oscillator_is_stable_again_for_later_delays() -> None:
     """On the axis ``abs(k - m w^2 + j b w) = K k``, and T is the angle over w, plus whole periods."""
     m, b, k, gain = 8.0, 60.0, 20000.0, 0.2
     middle, off = (
@@ -64,8 +64,8 @@ def test_a_delayed_oscillator_is_stable_again_for_later_dead_times() -> None:
     stable = oscillator(gain).stability(over="T", limits=(0, 0.6))
     assert stable.certified
     assert [each.entering for each in stable.boundaries] == [change for _, change, _ in expected]
-    for each, (dead_time, _, omega) in zip(stable.boundaries, expected, strict=True):
-        assert abs(each.gain - dead_time) < 1e-12
+    for each, (delay, _, omega) in zip(stable.boundaries, expected, strict=True):
+        assert abs(each.gain - delay) < 1e-12
         assert abs(each.frequencies_hz[0] * 2 * pi - omega) < 1e-10
 
 

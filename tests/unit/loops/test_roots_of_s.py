@@ -53,7 +53,7 @@ def test_a_fractional_controller_has_the_gains_at_which_a_polynomial_s_roots_ent
         assert [b.entering for b in found.boundaries] == [2]
 
 
-def test_a_dead_time_beside_a_root_of_s_counts_at_its_own_rate():
+def test_a_delay_beside_a_root_of_s_counts_at_its_own_rate():
     # K exp(-s T - sqrt(s)) = -1 at s = j w: w T + sqrt(w/2) = pi, K = exp(sqrt(w/2)).
     root = (-1 + np.sqrt(1 + 4 * pi * 2 * 0.5)) / (2 * 2 * 0.5)  # u = sqrt(w/2): 2 T u^2 + u = pi
     found = stable("K*exp(-s*T - sqrt(s))", 'K = 2, T = "0.5 s"', "K", 5)

@@ -44,7 +44,7 @@ def test_a_servo_is_stable_for_every_combination_up_to_the_share_that_routh_give
     assert unstable.unstable == sum(roots.real > 0) == 2
 
 
-def test_a_lag_with_dead_time_is_stable_while_the_largest_product_is_below_half_of_pi() -> None:
+def test_a_lag_with_delay_is_stable_while_the_largest_product_is_below_half_of_pi() -> None:
     """Hayes 1950: ``s + a exp(-s T)`` for a T < pi/2; here a T is at most 0.7 (1 + x)^2."""
     most = (pi / 2 / 0.7) ** 0.5 - 1
     assert LAG.stability(spread=most - 1e-3, a=0.7, T=1).word == "stable"
@@ -60,7 +60,7 @@ def test_only_declared_spreads_count_where_no_share_is_given() -> None:
 
 
 def test_a_small_damping_is_seen_beside_a_stiffness_that_is_spread() -> None:
-    """A passive oscillator with 0.1 % of damping has no pole right of the axis for any positive values."""
+    """A passive oscillator with 0.1 % of damping has no right-half-plane pole for any positive values."""
     found = oscillator(0.001).stability(spread="20 %", b=0.8)
     assert (found.word, found.certified) == ("stable", True)
 

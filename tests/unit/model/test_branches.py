@@ -77,7 +77,7 @@ def test_what_is_no_root_of_one_linear_function_is_refused_at_its_place(output, 
 
 
 def test_a_branch_point_right_of_the_axis_is_refused():
-    with pytest.raises(SpecError, match="must not lie right of the imaginary axis"):
+    with pytest.raises(SpecError, match="must not lie in the right half-plane"):
         function("sqrt(s - 2)*r")
 
 

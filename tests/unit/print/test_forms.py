@@ -334,7 +334,7 @@ def test_a_form_that_lists_poles_says_what_a_hidden_one_makes_of_stability():
     text = 'symflex = 1\ninputs.u = {}\nsignals.x = "u/(s - 3)"\noutputs.y = "(s - 3)*x/(s + 1)"'
     tf = tf_of(text, "y", "u")
     form = print_form(tf, "zpk")
-    assert derive_text([(tf, form)]).splitlines()[0].endswith("; unstable: 1 pole in the right half plane")
+    assert derive_text([(tf, form)]).splitlines()[0].endswith("; unstable: 1 pole in the right half-plane")
     assert derive_json(tf, form)["stability"]["right_half_plane"] == 1
 
 
@@ -380,7 +380,7 @@ SHAPES = {
     "decimals as typed": ("", "u/(s^2 + 0.9*s + 1)", "1/(s^2 + 0.9*s + 1)"),
     "a time constant beside a decimal gain": ("", "0.1*5*u/(5*s + 1)", "0.5/(5*s + 1)"),
     "no decimals where none are typed": ("K = {}", "K*u/(10*s^2 + 9*s + 10)", "K/(10*s^2 + 9*s + 10)"),
-    # Ogata, Modern Control Engineering, a conditionally stable loop; and a lag with dead time.
+    # Ogata, Modern Control Engineering, a conditionally stable loop; and a lag with delay.
     "what a gain multiplies follows the plant": (
         "K = {}", "K*(s^2 + 2*s + 4)*u/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))",
         "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
@@ -473,14 +473,14 @@ B = { type = "delay", T = "T_2" }
 """
 
 
-def test_dead_times_are_one_and_decay_below_one():
+def test_delays_are_one_and_decay_below_one():
     names = 'T_1 = "1 s", T_2 = "2 s"'
     assert shaped(names, "A*B*u", DELAYS) == "exp(-(T_1 + T_2)*s)"
     assert shaped(names, "(1 - A)/(s*T_1)*B*u", DELAYS).startswith("exp(-T_2*s)*(1 - exp(-T_1*s))")
 
 
-def test_a_dead_time_stands_behind_the_same_factors_above_and_below():
-    # A loop with the block (T_n*s + 1)/s and a dead time has numerator and denominator N and s*D + N.
+def test_a_delay_stands_behind_the_same_factors_above_and_below():
+    # A loop with the block (T_n*s + 1)/s and a delay has numerator and denominator N and s*D + N.
     text = """symflex = 1
 parameters = { K = {}, T_n = {}, T = {}, R = {}, L = {} }
 blocks.D = { type = "delay", T = "T" }

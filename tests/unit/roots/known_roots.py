@@ -32,7 +32,7 @@ MOST = 70
 class Case:
     """A function of s and its roots: numbers, or pairs of a number and a multiplicity.
 
-    Those of the upper half plane and the real axis count, without 0, in the order of their distance from it.
+    Those of the upper half-plane and the real axis count, without 0, in the order of their distance from it.
     In a band or a rectangle there may be more than lie in it; of modes there are as many as were found.
     """
 
@@ -94,7 +94,7 @@ def expected(given, region, found):
 
 
 def assert_are(found, wanted, digits):
-    """Assert that the roots found in the upper half plane are just those, and each is certified."""
+    """Assert that the roots found in the upper half-plane are just those, and each is certified."""
     numbers = upper(found, digits)
     assert all(root.certified for root in found)
     both = (in_order(pairs, min(15, digits - 3)) for pairs in (numbers, wanted))
@@ -210,7 +210,7 @@ def quadratic(omega, damping):
 
 
 def lambert(argument, scale=1, times=1):
-    """Return the branches of Lambert's function in the upper half plane in the order of their size."""
+    """Return the branches of Lambert's function in the upper half-plane in the order of their size."""
 
     def roots():
         every = sorted((scale * mpmath.lambertw(argument, k) for k in range(-31, 32)), key=abs)

@@ -536,7 +536,7 @@ NOT_PASSIVE = {
     "pushed somewhere": (PUSHED, [*FREE[:3], "EI*w'''(l) + T*w'(l) = -F"]),
     "a string that moves along": ("T*w'' = rhoA*(s^2*w + 2*v*s*w' + v^2*w'')", FIXED),
     "a negative loss": (LOSSY, [*FREE[:3], "w'''(l) = -F/EI"]),
-    "a condition that an s in the right half plane meets": (STRING, ["w(0) = 0", "(s*l/v - 1)*T*w'(l) = F"]),
+    "a condition that an s in the right half-plane meets": (STRING, ["w(0) = 0", "(s*l/v - 1)*T*w'(l) = F"]),
     "not what a slope does": ("EI*w'''' - T*x/l*w'' + rhoA*s^2*w = 0", FREE),
 }
 
@@ -708,7 +708,7 @@ def test_fields_rest_on_the_axis_where_what_moves_them_loses_energy():
         ends = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", f"{law}*w'''(l) = -F"]
         model = model_of(f"{law}*w'''' + rhoA*s^2*w = 0", ends)
         assert energy_proof(model).rests is expected
-    # (R + L s) (G + C s) = -q^2 has its roots left of the axis with R or G.
+    # (R + L s) (G + C s) = -q^2 has its roots in the left half-plane with R or G.
     line = pipeline.loads(TRANSMISSION)
     assert energy_proof(line).rests
 

@@ -69,7 +69,7 @@ MODELS = {
     "the same with units": (
         LOOP, 'K = 20, a = "4 mm^2/s", x = "1 cm"', "exp(-x*(s/a)^0.5)", lambda s: 1 + 20 * exp(-5 * sqrt(s))
     ),
-    "a half-infinite bar and a dead time": (
+    "a half-infinite bar and a delay": (
         LOOP, 'K = 3, T = "0.5 s", x = 2', "exp(-s*T - x*sqrt(s))",
         lambda s: 1 + 3 * exp(-s / 2 - 2 * sqrt(s)),
     ),

@@ -1,4 +1,4 @@
-"""Verdicts on models whose poles right of the axis are known, wherever the region asked for lies."""
+"""Verdicts on models whose poles in the right half-plane are known, wherever the region asked for lies."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from tests.unit.roots.known_roots import UNIT, along, elements, late, member
 class Said:
     """What is said of a model's stability.
 
-    ``word`` and ``right``, the number of poles right of the axis, ``None`` where it is not known; some of
-    these poles; a part of the sentence that gives the reason.
+    ``word`` and ``right``, the number of poles in the right half-plane, ``None`` where it is not known; some
+    of these poles; a part of the sentence that gives the reason.
     """
 
     text: str
@@ -37,7 +37,7 @@ def lumped(den):
 
 
 def hayes(gain):
-    """Return a loop around an integrator and a dead time of 1 s: s + K exp(-s) = 0."""
+    """Return a loop around an integrator and a delay of 1 s: s + K exp(-s) = 0."""
     return late("y", more=f'signals.y = "{gain}*D/s*(u - y)"')
 
 
@@ -121,9 +121,9 @@ CASES = {
     "a pair on the axis": Said(lumped("s^2 + 4"), "marginal", because="poles on the imaginary axis"),
     "a pole on the right": Said(lumped("s - 1"), "unstable", 1, (1,)),
     # Hayes 1950: a pair enters as K T passes (2 n + 1/2) pi; s = W_k(-K).
-    "a dead time and a gain of 1": Said(hayes(1), "stable"),
-    "a dead time and a gain of 2": Said(hayes(2), "unstable", 2, (lambda: complex(mpmath.lambertw(-2)),)),
-    "a dead time and a gain of 10": Said(
+    "a delay and a gain of 1": Said(hayes(1), "stable"),
+    "a delay and a gain of 2": Said(hayes(2), "unstable", 2, (lambda: complex(mpmath.lambertw(-2)),)),
+    "a delay and a gain of 10": Said(
         hayes(10), "unstable", 4, tuple(lambda k=k: complex(mpmath.lambertw(-10, k)) for k in (0, 1))
     ),
     # Roots of s = -exp(s), without end to the right (Bellman & Cooke 1963, section 12.12).
@@ -227,7 +227,7 @@ def test_poles_right_of_the_axis_outside_of_what_is_asked_for_are_a_part_of_thei
         shown = locate(bound(LUMPED), region)
         assert not any(p.re > 0 for p in shown.poles), region
         assert [complex(p) for p in shown.unstable] == [0.5 + 100j, 0.5 - 100j], region
-        assert "in the right half plane, outside the region asked for" in roots_text(shown, 15), region
+        assert "in the right half-plane, outside the region asked for" in roots_text(shown, 15), region
 
 
 def test_whatever_is_asked_for_the_unstable_poles_of_a_delay_are_those_of_lambert():
@@ -251,12 +251,12 @@ def test_a_part_not_told_from_zero_is_not_printed_as_zero():
     shown = locate(bound(hayes("pi/2")), Modes(1))
     assert shown.poles[0].decimal(15).re.startswith("0e-")
     assert "  ~0" in roots_text(shown, 15)
-    # All others are proved to lie left of the axis, though the count along it meets these two.
+    # All others are proved to lie in the left half-plane, though the count along it meets these two.
     assert (shown.verdict.word, shown.verdict.reason) == ("unknown", ON_AXIS)
 
 
 def test_poles_right_of_the_axis_are_not_counted_again(monkeypatch):
-    # exp(-s)/(s + 1) with gain 5: one pair right of the axis, at 2.03 to 2.5 rad/s.
+    # exp(-s)/(s + 1) with gain 5: one pair in the right half-plane, at 2.03 to 2.5 rad/s.
     loop = bound(late("y", more='signals.y = "5*D*(u - y)/(s + 1)"'))
     fresh, lowest = locate(loop, Band(1, 2)), locate(loop, Modes(2))
     monkeypatch.setattr("symflex.roots.locate.search_right", None)

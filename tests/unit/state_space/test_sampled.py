@@ -65,7 +65,7 @@ def held(lag, gain, times, h, u, delay):
     return [found[t] for t in times]
 
 
-def test_a_dead_time_of_any_fraction_is_exact():
+def test_a_delay_of_any_fraction_is_exact():
     for samples in [0.0, 0.3, 1.0, 2.7]:
         h, u = 0.1, np.random.default_rng(5).normal(size=40)
         times = [k * h for k in range(40)]

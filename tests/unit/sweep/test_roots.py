@@ -194,7 +194,7 @@ def test_a_length_is_refused_by_itself_and_not_for_what_it_was_declared():
 CUT = 'c = { value = "0.1 m", assume = "real" }\n[elements]'
 
 
-def test_a_dead_time_may_vanish_and_not_be_negative():
+def test_a_delay_may_vanish_and_not_be_negative():
     text = """
 symflex = 1
 [parameters]

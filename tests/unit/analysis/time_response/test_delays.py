@@ -267,8 +267,8 @@ def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind
     assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
 
 
-def test_a_speed_loop_with_dead_time_is_what_small_steps_give():
-    # 0.28 s are 560 dead times, whose echoes are too many; the pole of friction is next to one at 0.
+def test_a_speed_loop_with_delay_is_what_small_steps_give():
+    # 0.28 s are 560 delays, whose echoes are too many; the pole of friction is next to one at 0.
     found = loads(SPEED_LOOP).transfer_function("w", "r").bind().step_response()
     info = loads(SPEED_LOOP).transfer_function("w", "r").bind().step_info()
     step, late = 1e-5, 50

@@ -161,7 +161,7 @@ def driven(seed, noise, **more):
 
 
 def test_a_passive_driving_point_is_minimum_phase():
-    # Every driving point of a passive structure is positive real, and has no zeros in the right half plane.
+    # Every driving point of a passive structure is positive real, and has no zeros in the right half-plane.
     (test,) = fit_resonances([driven(2, 0.003)], None, FitOptions(slope=2, modes=3)).phase_tests
     assert test.verdict == "minimum"
 
@@ -185,7 +185,7 @@ def test_a_delay_that_could_be_poles_above_the_band_is_not_called_nonminimum_pha
 @pytest.mark.slow
 def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
     # Poles and zeros of derivations/eppinger1988/lumped_bending_beam.toml, X_tip/F, with 1 % of damping:
-    # a zero at 28 Hz in either half plane, none others.
+    # a zero at 28 Hz in either half-plane, none others.
     f = np.arange(2.0, 600.0, 0.5)
     modes = [1 + 0.02j * f / centre - (f / centre) ** 2 for centre in (12.876, 241.365)]
     data = MeasuredResponse("X_tip/F", f, (1 + (f / 28.072) ** 2) / (modes[0] * modes[1] * -(f**2)))

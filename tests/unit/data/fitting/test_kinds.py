@@ -41,7 +41,7 @@ CIRCUITS = {
     "notch": (lambda s: (1e4 + 0.2 * s + s * s) / (1e4 + 100 * s + s * s), (2, 200), 2),
     "tight": (lambda s: 3e4 / (1e4 + 20 * s + s * s), (15.5, 16.5), 2),
     "four poles": (lambda s: 1 / (1 + s / 6e4) / (1 + s / 2e5) / (1 + s / 2e6 + s * s / 2e10), (1e2, 1e5), 4),
-    "dead time": (lambda s: np.exp(-2e-3 * s) / (1 + s / 120), (1, 200), 1),
+    "delay": (lambda s: np.exp(-2e-3 * s) / (1 + s / 120), (1, 200), 1),
 }
 
 
@@ -51,7 +51,7 @@ def test_exact_data_have_the_order_of_their_circuit_and_its_digits(tmp_path, nam
     function, band, order = CIRCUITS[name]
     f = np.array([float(f"{x:.{digits}g}") for x in np.geomspace(*band, 101)])
     h = function(2j * np.pi * f)
-    fit = fitted(tmp_path, table("f_hz,re,im", f, h.real, h.imag, digits=digits), delay=name == "dead time")
+    fit = fitted(tmp_path, table("f_hz,re,im", f, h.real, h.imag, digits=digits), delay=name == "delay")
     assert (fit.resonances.order, fit.poor) == (order, ())
     assert np.max(np.abs(fit.found.values(0) - h) / np.abs(h)) < 2000 * 10.0**-digits
     assert "decade" not in str(fit)

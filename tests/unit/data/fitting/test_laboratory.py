@@ -157,7 +157,7 @@ def test_rounded_numbers_of_a_ladder_filter_are_no_reason_to_call_a_fit_poor(is_
 
 
 @pytest.mark.slow
-def test_a_dead_time_that_is_not_asked_for_and_spoils_the_gain_is_a_reason():
+def test_a_delay_that_is_not_asked_for_and_spoils_the_gain_is_a_reason():
     frequency = np.array([written(f, "4g") for f in np.geomspace(1, 1000, 601)])
     s = OMEGA * 1j * frequency
     exact = 200 / s**2 * np.exp(-1e-4 * s)

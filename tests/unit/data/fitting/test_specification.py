@@ -90,7 +90,7 @@ def test_a_base_with_a_beam_or_rod_is_copied_too(folder):
 
 
 @pytest.mark.slow
-def test_a_dead_time_is_found_and_written_as_a_delay_block(folder):
+def test_a_delay_is_found_and_written_as_a_delay_block(folder):
     fit = symflex.fit(noisy(2.5 * resonance() * np.exp(-S * 4e-3)), modes=1, delay=True)
     assert fit.resonances.delay[0] == pytest.approx(4e-3, abs=4 * fit.standard_errors.delay[0])
     assert fit.standard_errors.delay[0] < 1e-4
@@ -114,7 +114,7 @@ def test_a_fit_has_an_input_shaper_for_the_resonance_that_was_measured(folder):
 
 
 @pytest.mark.slow
-def test_a_dead_time_and_a_lag_are_not_negative_unless_asked(folder):
+def test_a_delay_and_a_lag_are_not_negative_unless_asked(folder):
     lead = noisy(2.5 * resonance() * np.exp(S * 1e-3))
     assert symflex.fit(lead, modes=1, slope=0, delay=True).resonances.delay[0] >= 0
     lead = noisy(2.5 * resonance() * (1 + S * 4e-4))

@@ -1,4 +1,4 @@
-"""Radii beyond which no root lies in the right half plane: Cauchy's bound, and its edge."""
+"""Radii beyond which no root lies in the right half-plane: Cauchy's bound, and its edge."""
 
 from fractions import Fraction
 from itertools import product

@@ -1,4 +1,4 @@
-"""What known poles say of stability, and what is made of a count of those right of the axis."""
+"""What known poles say of stability, and what is made of a count of those in the right half-plane."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_hidden_poles_on_the_axis_are_named_and_leave_the_word_those_on_the_righ
         ([LEFT], [ZERO], "stable", "a hidden pole at s = 0"),
         ([LEFT], [LEFT], "stable", ""),
         ([ZERO], [DOUBLE_ZERO, ON], "marginal", "2 hidden poles at s = 0 and 1 on the imaginary axis"),
-        ([LEFT], [RIGHT], "unstable", "a hidden pole in the right half plane"),
+        ([LEFT], [RIGHT], "unstable", "a hidden pole in the right half-plane"),
         ([LEFT], [NEAR], "unknown", ""),
         ([RIGHT], [ON], "unstable", "a hidden pole on the imaginary axis"),
     ]:
@@ -83,14 +83,14 @@ def test_a_verdict_is_said_in_a_sentence_a_headline_and_a_word():
         ),
         (
             ("unstable", 1, True, "", 1),
-            "unstable: 1 pole in the right half plane",
-            "unstable: 1 pole in the right half plane",
+            "unstable: 1 pole in the right half-plane",
+            "unstable: 1 pole in the right half-plane",
             "unstable",
         ),
         (
             ("unstable", None, True, "no end", 3),
-            "unstable: at least 3 poles in the right half plane; no end",
-            "unstable: at least 3 poles in the right half plane",
+            "unstable: at least 3 poles in the right half-plane; no end",
+            "unstable: at least 3 poles in the right half-plane",
             "unstable",
         ),
         (
@@ -141,10 +141,10 @@ def test_gaps_of_several_functions_say_every_reason_once_and_how_far_all_are_kno
 
 def test_hidden_motion_is_a_line_that_names_what_moves():
     for moving, said in [
-        ("", ", which input and output do not see"),
-        ("u", ": u may rest anywhere"),
-        ("xy", ": x and y may rest anywhere"),
-        ("abcde", ": a, b, c and 2 more may rest anywhere"),
+        ("", ", uncontrollable or unobservable"),
+        ("u", ": u is arbitrary at rest"),
+        ("xy", ": x and y are arbitrary at rest"),
+        ("abcde", ": a, b, c and 2 others are arbitrary at rest"),
     ]:
         verdict = StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=tuple(moving))
         assert verdict.hidden_motion == f"a hidden pole at s = 0{said}"

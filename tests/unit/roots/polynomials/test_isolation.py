@@ -8,7 +8,7 @@ from symflex.balls import precision
 from symflex.roots import PolynomialInS
 from symflex.roots.polynomials.isolation import isolations
 
-# (s - 1)(s + 2)((s + 3)^2 + 16), and the roots in the closed upper half plane
+# (s - 1)(s + 2)((s + 3)^2 + 16), and the roots in the closed upper half-plane
 COEFFICIENTS, ROOTS = [-50, 13, 29, 7, 1], (1, -2, -3 + 4j)
 
 

@@ -1,4 +1,4 @@
-"""Dead times written as ``exp(-s*T)``: each is a block of type delay without a name of its own.
+"""Delays written as ``exp(-s*T)``: each is a block of type delay without a name.
 
 Input: a draft, as read. Output: the same, with a name of a block wherever the exponential stood.
 
@@ -40,14 +40,14 @@ SIZE_LIMIT = 200
 """Nodes of what is written out: definitions of definitions would double at every level."""
 
 
-def with_dead_times(draft: Draft, taken: Collection[str]) -> Draft:
+def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     """Return a draft with a delay block for each ``exp(-s*T)``; their names are not among those taken."""
     places = draft.expressions()
     ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
     places += ratios.values()
-    # What depends on x is no dead time, unless x is a parameter.
+    # What depends on x is no delay, unless x is a parameter.
     along = {COORDINATE} - {p.name for p in draft.declared} - {p.name for p in draft.inherited}
-    times = {n: t for e in places for n in nodes(e) if (t := _dead_time(n)) and not names_among(t, along)}
+    times = {n: t for e in places for n in nodes(e) if (t := _written_delay(n)) and not names_among(t, along)}
     if not times:
         return draft
     used = {n.name for e in places for n in names(e)}
@@ -87,7 +87,7 @@ def _ratio(block: PlacedBlock) -> Expression:
     return Quotient(values["num"], values["den"])
 
 
-def _dead_time(node: Expression) -> Expression | None:
+def _written_delay(node: Expression) -> Expression | None:
     """Return T of ``exp(-s*T)``; None of all else."""
     if not isinstance(node, Call) or node.name != "exp" or node.order:
         return None

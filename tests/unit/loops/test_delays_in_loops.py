@@ -1,4 +1,4 @@
-"""Cascaded loops with dead time: proved whatever carries the delay, or it is said why not."""
+"""Cascaded loops with delay: proved whatever carries the delay, or it is said why not."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -81,7 +81,7 @@ def cascade(speed, current, voltage):
 
 
 @pytest.mark.slow
-def test_a_cascade_is_proved_with_dead_time_in_several_places():
+def test_a_cascade_is_proved_with_delay_in_several_places():
     place = (2, 0, 1)
     model = cascade(*place)
     found = stability(model, StabilityOptions("K_v", (Fraction(3), Fraction(5))))
@@ -94,7 +94,7 @@ def test_a_cascade_is_proved_with_dead_time_in_several_places():
 
 @pytest.mark.slow
 def test_a_loop_that_cannot_be_proved_has_a_reason():
-    # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and of one size.
+    # The current's rate fed back with delay: K_d D s^2 beside L s^2, neutral and of one size.
     text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/5000)*motor.i")
     found = stability(pipeline.loads(text), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     assert not found.certified
@@ -135,14 +135,14 @@ outputs.V = "v"
     found = stability(pipeline.loads(text), StabilityOptions("K"))
     assert found.verdict.word == "unstable"
     assert not found.intervals
-    assert "infinitely many poles lie right of the axis" in found.reasons[0]
+    assert "infinitely many poles lie in the right half-plane" in found.reasons[0]
     assert "not proved" not in stability_text(found)
 
 
 @pytest.mark.parametrize(("gain", "word"), [(2, "stable"), (6, "unstable")])
 def test_the_range_of_a_delayed_acceleration_ends_below_the_mass(gain, word):
     # 4 s^2 + 8 s + 100 + K s^2 exp(-s T): at a crossing K^2 = 16 - 736/w^2 + 10^4/w^4, first where w T is
-    # near pi and K is 3.9998; beyond K = 4 infinitely many poles lie right of the axis.
+    # near pi and K is 3.9998; beyond K = 4 infinitely many poles lie in the right half-plane.
     text = f"""
 symflex = 1
 parameters = {{ m = "4 kg", K_a = "{gain} kg" }}
@@ -164,8 +164,8 @@ outputs.X = "x"
 
 
 @pytest.mark.parametrize("written", ["0", '"0 s"'])
-def test_without_dead_time_a_loop_is_one_of_polynomials(written):
-    # s + K*exp(-s*T) is stable up to K = pi/(2 T); without dead time it always is.
+def test_without_delay_a_loop_is_one_of_polynomials(written):
+    # s + K*exp(-s*T) is stable up to K = pi/(2 T); without delay it always is.
     text = f"""
 symflex = 1
 parameters.K = 3

@@ -1,4 +1,4 @@
-"""Dead times written as exp(-s*T) mean what a block of type delay means."""
+"""Delays written as exp(-s*T) mean what a block of type delay means."""
 
 import cmath
 
@@ -42,7 +42,7 @@ def value(signal, output="y"):
         ("r - delay_1*0", None),
     ],
 )
-def test_a_dead_time_is_written_in_signals_definitions_and_tf_blocks(signal, expected):
+def test_a_delay_is_written_in_signals_definitions_and_tf_blocks(signal, expected):
     if expected is None:
         with pytest.raises(SpecError, match="unknown name 'delay_1'"):
             value(signal)
@@ -50,7 +50,7 @@ def test_a_dead_time_is_written_in_signals_definitions_and_tf_blocks(signal, exp
     assert value(signal) == pytest.approx(expected, rel=1e-12)
 
 
-def test_a_dead_time_is_written_in_an_output():
+def test_a_delay_is_written_in_an_output():
     assert value("K*r", "y*exp(-s*T)") == pytest.approx(LATE, rel=1e-12)
 
 
@@ -64,7 +64,7 @@ def test_a_dead_time_is_written_in_an_output():
         ("exp(-s*U)*r", "unknown name 'U'"),
     ],
 )
-def test_what_is_no_dead_time_is_refused_at_its_place(signal, said):
+def test_what_is_no_delay_is_refused_at_its_place(signal, said):
     if said is None:  # K has no unit of its own: a number of seconds
         assert value(signal) == pytest.approx(cmath.exp(-3 * S), rel=1e-12)
         return
@@ -106,7 +106,7 @@ conditions = ["u2(x_f) = HEAT*u1(x_f)", "p2(L) = 0"]
 """
 
 
-def test_a_dead_time_is_written_in_a_condition_of_a_field():
+def test_a_delay_is_written_in_a_condition_of_a_field():
     def determinant(s):  # waves p_1 = sinh(s*x/c), p_2 = sinh(s*(L - x)/c) about the heat source
         return mpmath.sinh(s / 343) + 0.1 * mpmath.exp(-s / 1000) * mpmath.cosh(s / 1372) * mpmath.sinh(
             3 * s / 1372
@@ -119,9 +119,9 @@ def test_a_dead_time_is_written_in_a_condition_of_a_field():
         assert found == pytest.approx([complex(s) for s in growing], rel=1e-12)
 
 
-def test_a_dead_time_in_an_equation_of_a_field_is_refused_with_its_reason():
+def test_a_delay_in_an_equation_of_a_field_is_refused_with_its_reason():
     text = RIJKE.replace("HEAT", "1").replace("definitions.Q", "# ")
     text = text.replace("-s/(rho*c^2)*p2", "-s/(rho*c^2)*(1 + n*exp(-s*tau))*p2")
-    with pytest.raises(ModelError, match="a dead time inside a field's equation") as caught:
+    with pytest.raises(ModelError, match="a delay inside a field's equation") as caught:
         pipeline.derive_all(pipeline.loads(text))
     assert caught.value.diagnostics[0].span.line == 14
