@@ -91,7 +91,12 @@ class StabilityChart:
         return f"<StabilityChart over {', '.join(self.names)}: {100 * self.decided:.1f} % decided>"
 
     def __str__(self) -> str:
-        return chart_text(self)
+        return passages_text(_passages(self), WIDTH)
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html(_passages(self))
 
     @property
     def certified(self) -> bool:
@@ -206,8 +211,8 @@ class StabilityChart:
         return self.at(*point) if len(point) == len(self.names) else "undecided"
 
 
-def chart_text(chart: StabilityChart) -> str:
-    """Return what is decided, region by region, in 80 columns."""
+def _passages(chart: StabilityChart) -> list[Passage]:
+    """Return what is decided, region by region."""
     status = "certified" if chart.certified else "NOT CERTIFIED"
     heads = [
         f"{name} [{unit}]" if unit else name for name, unit in zip(chart.names, chart.units, strict=True)
@@ -227,7 +232,7 @@ def chart_text(chart: StabilityChart) -> str:
     more = len(chart.regions) - SHOWN
     more_said = f", the {SHOWN} largest of {len(chart.regions)}" if more > 0 else ""
     regions = Passage([f"{INDENT}regions, each with a point in it{more_said}"], rows)
-    return passages_text([Passage(lines), regions], WIDTH)
+    return [Passage(lines), regions]
 
 
 def word_of(verdict: StabilityVerdict) -> str:

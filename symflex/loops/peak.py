@@ -24,6 +24,7 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, joined, pieces
 from symflex.loops.loop_function import LoopFunction
 from symflex.options import band_ends
+from symflex.print.text import Passage
 from symflex.roots import Band, Everything, Position, figure, find_polynomial_roots
 from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
 from symflex.roots.distributed.right_half_plane import WAVES
@@ -107,6 +108,11 @@ class Peak:
         lines += [f"  not proved: {reason}" for reason in self.reasons]
         lines.append(f"  largest magnitude {self._shown(self.magnitude)}, {self.place}")
         return "\n".join(lines if self.h2 is None else [*lines, f"  H2 norm {self._shown(self.h2)}"])
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html([Passage(str(self).split("\n"))])
 
     def _shown(self, value: arb) -> str:
         decimals = real_json(value, self.digits)

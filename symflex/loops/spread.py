@@ -70,6 +70,14 @@ class SpreadStability:
         return f"<SpreadStability of {len(self.names)} parameters: {self.word}>"
 
     def __str__(self) -> str:
+        return passages_text(self._passages(), WIDTH)
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html(self._passages())
+
+    def _passages(self) -> list[Passage]:
         word = f"{self.word}: {self.reason}" if self.reason else self.word
         word += {"stable": " for every combination", "unstable": f" by {self.unstable}"}.get(self.word, "")
         other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])
@@ -79,7 +87,7 @@ class SpreadStability:
             cells = (f"{float(x):.6g}" for values in ends for x in values)
             rows.append((f"{name} [{unit}]" if unit else name, *cells))
         status = "certified" if self.certified else "NOT CERTIFIED"
-        return passages_text([Passage([f"{status}: {word}"]), Passage([], rows)], WIDTH)
+        return [Passage([f"{status}: {word}"]), Passage([], rows)]
 
     @property
     def certified(self) -> bool:

@@ -1,6 +1,7 @@
 """Figures and short prints of what a Python user holds."""
 
 import re
+from dataclasses import replace
 from io import BytesIO
 
 import matplotlib
@@ -305,6 +306,28 @@ def test_a_notebook_shows_stability_as_tables():
     assert "<pre>" not in shown
     assert shown.count("<table>") == 4
     assert re.search(r"<td[^>]*>6</td>", shown)
+
+
+def test_a_notebook_shows_charts_spreads_and_peaks_with_names_that_stay_text():
+    """K e^(-s T)/s is stable where K T < pi/2; its closed loop peaks at rest while K T is small."""
+    model = symflex.Model(
+        parameters={"K": 1, "T": "0.1 s"},
+        signals={"y": "K*exp(-s*T)/s*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    chart = model.stability(over=("K", "T"), ranges={"K": (0, 4), "T": (0, 2)}, resolve="10 %")
+    spread, peak = model.stability(spread="20 %"), model.peak("Y", "r")
+    for shown, said in ((chart, "unstable by 2"), (spread, "stable for every"), (peak, "magnitude 1.0")):
+        assert said in shown._repr_html_()
+    for shown in (
+        replace(chart, names=("<b>", "$x$")),
+        replace(spread, names=("<b>", "$x$")),
+        replace(peak, tf="<b>$x$"),
+    ):
+        page = shown._repr_html_()
+        assert "<b>" not in page
+        assert "$x" not in page
 
 
 def test_a_figure_with_other_data_is_saved_as_pgf_without_tex(tmp_path, monkeypatch):
