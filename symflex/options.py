@@ -512,6 +512,7 @@ class PlotOptions:
         False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
     )
     verdict: bool = option(False, "--verdict", help="Write above the figure whether it is stable.")
+    spread: Stated | None = option(None, "--spread", **SPREAD)
 
     @property
     def stability(self) -> StabilityOptions:

@@ -25,8 +25,9 @@ from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError, UsageError, counted
 from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
+from symflex.print.notebook import Printed
 from symflex.print.roots import SHORT_DIGITS, TERMINAL_COLUMNS, PrintedRoot
-from symflex.print.text import Passage, passages_text
+from symflex.print.text import Passage
 from symflex.roots import Everything, Modes, Root
 from symflex.roots.locate import locate
 from symflex.roots.root import decimals, figure
@@ -61,7 +62,7 @@ SHAPERS: Mapping[str, Callable[[arb], tuple[arb, ...]]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class InputShaper:
+class InputShaper(Printed):
     """Impulses that sum to one, for the modes of one transfer function."""
 
     tf: str  # ``"OUT/IN"``
@@ -125,15 +126,8 @@ class InputShaper:
         many = f"{len(self.impulses)} impulses in {self.times[-1]:.4g} s"
         return f"<InputShaper {self.tf}: {self.title} from {least:.4g} Hz, {many}>"
 
-    def _repr_html_(self) -> str:
-        from symflex.print.html import passages_html  # only notebooks ask
-
-        return passages_html(self._passages())
-
-    def __str__(self) -> str:
-        return passages_text(self._passages())
-
-    def _passages(self) -> list[Passage]:
+    def passages(self) -> list[Passage]:
+        """Return the modes with what is left of them, and the impulses."""
         digits = min(self.digits, TEXT_DIGITS)
         lines = []
         for pole in self.poles:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.rational import RationalApproximation
+    from symflex.loops.clouds import RootCloud
     from symflex.loops.peak import Peak
     from symflex.options import Ends
 
@@ -290,6 +291,30 @@ class Analyses(Plotted):
         """
         given = RootsOptions(None, modes, mode, band, region, digits)
         return face_of(PoleZeroMap, self._map(given, budget))
+
+    def root_clouds(
+        self, spread: str | float, modes: int | None = None, *, budget: float | None = None
+    ) -> tuple[RootCloud, ...]:
+        r"""Return rectangles that poles and zeros do not leave for any combination of values.
+
+        Parameters
+        ----------
+        spread : str or float
+            How far every parameter is off, "10 %" or 0.1; "" for those that declare a ``spread``.
+        modes, budget : optional
+            As for :meth:`poles`.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> text = 'symflex = 1\nparameters.T = 0.5\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"'
+        >>> (cloud,) = loads(text).transfer_function("y", "u").bind().root_clouds("10 %")
+        >>> cloud.kind, cloud.count, cloud.sides[0] < -1 / 0.45 < -1 / 0.55 < cloud.sides[1]
+        ('pole', 1, True)
+        """
+        from symflex.loops.clouds import root_clouds  # not needed for roots
+
+        return root_clouds(self.bound, self._found(RootsOptions(None, modes), budget), spread)
 
     def residues(
         self,

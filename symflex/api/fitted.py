@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -12,6 +12,7 @@ import numpy as np
 from symflex.api.model import Model, loads
 from symflex.data.measurement import Estimate, MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
+from symflex.print.notebook import Printed
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from symflex.data import fitting
     from symflex.data.fitting.resonances import Resonances
     from symflex.figures import AxesGiven
+    from symflex.print.text import Passage
 
     Real = npt.NDArray[np.float64]
     Complex = npt.NDArray[np.complex128]
@@ -29,7 +31,7 @@ Data = str | Path | MeasuredResponse
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Printed):
     """Resonances that fit measured responses, with standard errors.
 
     Parameters
@@ -117,15 +119,11 @@ class Fit:
 
         return fit_json(self.found)
 
-    def __str__(self) -> str:
-        from symflex.data.fitting.text import fit_text
+    def passages(self) -> Iterator[Passage]:
+        """Return the report."""
+        from symflex.data.fitting.text import fit_passages
 
-        return fit_text(self.found)
-
-    def _repr_html_(self) -> str:
-        from symflex.data.fitting.text import fit_html
-
-        return fit_html(self.found)
+        return fit_passages(self.found, None)
 
     def __repr__(self) -> str:
         modes = ", ".join(f"{f:.3g}" for f in self.frequencies_hz)

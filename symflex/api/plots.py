@@ -36,6 +36,7 @@ def plot_functions(
         width_mm=width_of(given.width),
         font=given.font or DEFAULT_FONT,
         ax=ax,
+        spread=given.spread,
     )
 
 
@@ -124,6 +125,7 @@ class Plotted:
         font: str | None = None,
         verdict: bool = False,
         ax: AxesGiven | None = None,
+        spread: str | float | None = None,
     ) -> Figure:
         r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
 
@@ -141,6 +143,8 @@ class Plotted:
             Ends of the axes [rad/s].
         verdict : bool
             Say above the panels whether the functions are stable.
+        spread : str or float, optional
+            Shade where roots lie for all combinations of values; see :meth:`root_clouds`.
 
         Examples
         --------
@@ -150,9 +154,8 @@ class Plotted:
         >>> panel.get_xlim() == (-4, 1), panel.get_title()
         (True, '$y/u$')
         """
-        given = PlotOptions(
-            "poles_zeros", (), None, band, xlim, ylim, modes=modes, width=width, font=font, verdict=verdict
-        )
+        given = PlotOptions("poles_zeros", (), None, band, xlim, ylim, modes=modes, width=width, font=font)
+        given = replace(given, verdict=verdict, spread=spread)
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
     def nyquist(

@@ -9,11 +9,15 @@ import mpmath
 from flint import arb
 
 from symflex.balls import to_mpmath
+from symflex.print.notebook import Printed
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import degrees, hertz
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from symflex import loops as stability_room
+    from symflex.print.text import Passage
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ class StabilityBoundary:
 
 
 @dataclass(frozen=True)
-class Stability:
+class Stability(Printed):
     """The gains for which all controllable and observable closed-loop poles lie in the open left half-plane.
 
     Parameters
@@ -133,15 +137,9 @@ class Stability:
         """Return the result in the schema ``symflex.stability/1``."""
         return self.proved.to_json_dict()
 
-    def __str__(self) -> str:
-        from symflex.loops.stability_map import stability_text
-
-        return stability_text(self.proved)
-
-    def _repr_html_(self) -> str:
-        from symflex.loops.stability_map import stability_html
-
-        return stability_html(self.proved)
+    def passages(self) -> Iterator[Passage]:
+        """Return stable ranges, boundaries, counts and margins."""
+        return self.proved.passages()
 
     def __repr__(self) -> str:
         pieces = (f"{mpmath.nstr(a, 8)} < {self.proved.gain} < {mpmath.nstr(b, 8)}" for a, b in self.stable)

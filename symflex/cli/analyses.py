@@ -83,7 +83,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         if given.spread is not None:
             from symflex.loops.clouds import clouds_text, root_clouds
 
-            clouds = root_clouds(model, located, given.spread, pair)
+            clouds = root_clouds(bound, located, given.spread, model)
             more["spread"] = [each.to_json_dict() for each in clouds], "\n" + clouds_text(clouds)
         if given.explain:
             from symflex.analysis.explanation import explain_zeros, explanation_text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,6 +66,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
+
+    poles_zeros --spread shades where roots lie for all combinations of values, as 'symflex roots' proves it.
 
     --band sets the frequencies of curves, and which modes are drawn. Figures in the s plane
     show everything up to the end of the band. --xlim, --ylim and --phase set the ends of axes. Frequencies
@@ -140,7 +143,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         bounds = pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
             bounds = _without_zeros(bounds)
-        drawing = draw(drawn, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
+        look = partial(draw, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
+        drawing = look(drawn, bounds, spread=given.spread, model=model)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
@@ -156,9 +160,10 @@ def _without_zeros(bounds: tuple[AnyBoundFunction, ...]) -> tuple[AnyBoundFuncti
 def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -> int:
     """Draw for which values of one parameter, or of two, SPEC is stable."""
     others = ("tfs", "gain", "band", "xlim", "ylim", "phase", "modes", "until", "record")
-    if given.kind != STABILITY or not given.over or any(getattr(given, n) for n in others):
+    is_other = given.spread is not None or any(getattr(given, n) for n in others)
+    if given.kind != STABILITY or not given.over or is_other:
         hint = "as in: symflex plot FILE stability --over K --over T --box"
-        message = "--over is for stability, which takes no --tf, --band or ends of axes"
+        message = "--over is for stability, which takes no --tf, --band, --spread or ends of axes"
         raise UsageError(Diagnostic("SF902", message, None, hint))
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.over import stability_over
@@ -177,7 +182,7 @@ def _exchanged(spec: Specification, given: PlotOptions) -> UsageError:
 
 def _plot_record(spec: Specification, given: PlotOptions) -> int:
     """Draw the measured output of a record over the model's."""
-    if given.kind != "step" or len(given.tfs) > 1:
+    if given.kind != "step" or len(given.tfs) > 1 or given.spread is not None:
         raise UsageError(Diagnostic("SF902", "--record is for step, and one --tf"))
     path = check_place(given.output or f"{Path(spec.path).stem}_step.pdf", PICTURES)
     shared = {name: getattr(given, name) for name in ("record", "columns", "until", *FRAME)}
@@ -188,8 +193,8 @@ def _plot_record(spec: Specification, given: PlotOptions) -> int:
 def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
     """Draw what 'symflex sweep -o' wrote."""
     others = (given.tfs, given.gain, given.limits, given.band, given.xlim, given.ylim, given.phase)
-    if spec.settings or any(others):
-        message = "--set, --tf, --gain, --range, --band and ends of axes do not apply to a sweep"
+    if spec.settings or any(others) or given.spread is not None:
+        message = "--set, --tf, --gain, --range, --band, --spread and ends of axes do not apply to a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import checked_font, draw_sweep, save
     from symflex.print.latex import width_of

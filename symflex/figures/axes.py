@@ -37,9 +37,12 @@ if TYPE_CHECKING:
     from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
 
+    from symflex.loops.clouds import RootCloud
     from symflex.model import Model
-    from symflex.roots import Root
+    from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import AnyBoundFunction
+
+    CloudsOf = Callable[[AnyBoundFunction, PoleZeroMap], Sequence[RootCloud]]
 
 
 SHORT_BAND_DECADES: Final = 1.3
@@ -255,6 +258,7 @@ class Canvas:
     axes: tuple[Axes, ...] = ()  # to draw on, in place of those of a new figure
     gains: tuple[Fraction | None, Fraction | None] | None = None  # first and last one of a locus
     modes: int | None = None  # traced in the locus of a loop with kernels
+    clouds: CloudsOf | None = None  # where the poles and zeros of a function may lie
 
     def own_axes(self, *counts: int) -> tuple[Axes, ...]:
         """Return the axes to draw on, if there are as many as a figure has panels; UsageError: SF902."""

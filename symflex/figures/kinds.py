@@ -23,6 +23,7 @@ from symflex.figures.runs import panels_of
 from symflex.figures.sensitivity import draw_sensitivity
 from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
+from symflex.loops.clouds import root_clouds
 from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from symflex.loops.chart import StabilityChart
     from symflex.loops.stability_map import StabilityMap
     from symflex.model import Model
+    from symflex.options import Stated
     from symflex.transfer import AnyBoundFunction
 
 FIGURES: dict[str, Drawing] = {
@@ -71,6 +73,8 @@ def draw(
     width_mm: float | None = None,
     font: str = DEFAULT_FONT,
     ax: AxesGiven | None = None,
+    spread: Stated | None = None,
+    model: Model | None = None,
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
@@ -81,7 +85,9 @@ def draw(
     suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is 3.5 inches
     wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the same
     ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style, with
-    as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises UsageError:
+    as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. With ``spread`` a
+    pole-zero plot shades where roots may lie, of functions that were derived with numbers as the ``model``
+    says. Raises UsageError:
     SF208 an unknown kind; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and
     1000 mm or too small for what is drawn, ``ax`` are too many or too few, or limits are of axes that the
     figure has not; ModelError: SF402 a transfer function is identically zero.
@@ -100,7 +106,8 @@ def draw(
     for bound in bounds:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    canvas = _canvas(band_hz, frame, title, width_mm, ax)
+    clouds = None if spread is None else partial(root_clouds, share=spread, model=model)
+    canvas = replace(_canvas(band_hz, frame, title, width_mm, ax), clouds=clouds)
     return _styled(font, canvas, lambda: FIGURES[kind](bounds, canvas))
 
 
@@ -144,6 +151,8 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         band, xlim = xlim, None
     if given.asymptotes and kind != "bode":
         raise UsageError(Diagnostic("SF902", f"--asymptotes is for bode, not for '{kind}'"))
+    if given.spread is not None and kind != "poles_zeros":
+        raise UsageError(Diagnostic("SF902", f"--spread is for poles_zeros, not for '{kind}'"))
     is_plane = kind in ("locus", "poles_zeros")
     frame = AxisLimits(
         axis_ends(xlim, "--xlim", is_frequency=is_plane),

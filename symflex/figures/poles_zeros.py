@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
+
+from matplotlib.patches import Rectangle
 
 from symflex.figures.axes import FREE, draw_points, draw_zero_lines, root_figure, set_round_ticks
 from symflex.figures.figure import new_figure
@@ -41,6 +44,7 @@ if TYPE_CHECKING:
 
     from symflex.figures.axes import Canvas
     from symflex.figures.s_plane import Box, Kind, RootMark
+    from symflex.loops.clouds import RootCloud
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
@@ -57,6 +61,7 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
     "pole": ("x", COLOURS[1], 4.8),
 }
 """Shape, colour and size of marks."""
+SHADED: Final = "shaded: for all combinations; dashed: not proved"
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 
 
@@ -68,12 +73,15 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
     default modes are shown, as far up as the highest pole, or those up to the end of a band, and all poles in
     the right half-plane. Within limits asked for, scales may differ, and the title counts what is outside.
-    A verdict asked for holds for all poles, drawn or not.
+    A verdict asked for holds for all poles, drawn or not, and for the values themselves, not over a spread.
     """
     band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
     maps = [locate(bound, None if bound.is_rational else region) for bound in bounds]
     panels = [marks_of(located) for located in maps]
+    clouds = [
+        [] if canvas.clouds is None else canvas.clouds(*each) for each in zip(bounds, maps, strict=True)
+    ]
     count = len(panels)
     width = canvas.width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
@@ -81,10 +89,11 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     own = canvas.own_axes(count) if canvas.axes else ()
     room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
     narrowest = min(NARROWEST, room / 1.3)
-    view = choose_view(
+    view = _view(
         [mark for marks in panels for mark in marks],
         _highest_pole(maps) if band_hz is None else band_hz[1],
         (inches_of(own[0])[0] / inches_of(own[0])[1],) * 2 if own else (narrowest, WIDEST),
+        [cloud for each in clouds for cloud in each],
     )
     is_asked = frame != FREE
     if is_asked:
@@ -96,7 +105,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     titles = (
         title_lines(canvas.title, width),
         stability_lines(maps, width) if frame.has_verdict else [],
-        [line for said in outside if said for line in title_lines(said, width)],
+        [line for said in (*outside, SHADED if canvas.clouds else "") for line in title_lines(said, width)],
     )
     lines = [line for group in titles for line in group]
     above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
@@ -112,11 +121,11 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         axes = own[i] if own else figure.add_axes(box)
         if own:
             panel_width, panel_height = inches_of(axes)
-        _draw_panel(axes, marks, view, panel_width, panel_height)
+        _draw_panel(axes, marks, clouds[i], view, panel_width, panel_height)
         if is_asked:
             axes.set_aspect("auto")
         panel = Panel.of(view, panel_width, panel_height, marks)
-        inset = () if is_asked else _draw_inset(axes, marks, panel)
+        inset = () if is_asked else _draw_inset(axes, marks, clouds[i], panel)
         write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks, inset)
         axes.set_title(label_of_tf(bound.source), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
@@ -139,7 +148,29 @@ def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     return max((root.frequency_hz() for root in poles), default=None)
 
 
-def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float, height: float) -> None:
+def _view(
+    marks: Sequence[RootMark],
+    high_hz: float | None,
+    ratios: tuple[float, float],
+    clouds: Sequence[RootCloud],
+) -> View:
+    """Return the part to show, wide enough for the rectangles about the roots that it shows."""
+    view, corners = choose_view(marks, high_hz, ratios), set[complex]()
+    for left, right, low, high in (each.sides for each in clouds):
+        if any(left <= s.real <= right and low <= s.imag <= high for s in view.shown):
+            corners |= {complex(left, high), complex(right, high)}
+    wider = choose_view(marks, None, ratios, {*view.shown, *corners})
+    return replace(wider, shown=view.shown) if corners else view
+
+
+def _draw_panel(
+    axes: Axes,
+    marks: Sequence[RootMark],
+    clouds: Sequence[RootCloud],
+    view: View,
+    width: float,
+    height: float,
+) -> None:
     axes.set_xlim(*view.re)
     axes.set_ylim(*view.im)
     axes.set_aspect("equal", adjustable="box")
@@ -148,9 +179,19 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     inside = [mark for mark in marks if view.shows(mark)]
     for kind, look in LOOKS.items():
         draw_points(axes, [mark.s for mark in inside if mark.kind == kind], look, is_cut=False)
+    for each in clouds:
+        left, right, low, high = each.sides
+        # What is not proved is not shaded.
+        line, colour = "--" if each.count is None else "-", COLOUR_OF[each.kind]
+        for bottom in {low, -high}:
+            box = Rectangle((left, bottom), right - left, high - low, linestyle=line, linewidth=0.6, zorder=2)
+            box.set(edgecolor=colour, facecolor=(colour, 0.25), fill=each.count is not None)
+            axes.add_patch(box)
 
 
-def _draw_inset(axes: Axes, marks: Sequence[RootMark], panel: Panel) -> tuple[Box, ...]:
+def _draw_inset(
+    axes: Axes, marks: Sequence[RootMark], clouds: Sequence[RootCloud], panel: Panel
+) -> tuple[Box, ...]:
     """Draw the roots close to the origin where no root is, and return what it covers [points]."""
     near, (wide, high) = crowded(panel.view), panel.size
     across, upwards = INSET * wide, INSET * high
@@ -163,7 +204,7 @@ def _draw_inset(axes: Axes, marks: Sequence[RootMark], panel: Panel) -> tuple[Bo
         return ()
     inset = axes.inset_axes(((box[0] + PAD) / wide, (box[1] + PAD / 2) / high, INSET, INSET))
     view = choose_view([m for m in marks if m.s in near], None, (across / upwards,) * 2, near)
-    _draw_panel(inset, marks, view, across / POINTS_PER_INCH, upwards / POINTS_PER_INCH)
+    _draw_panel(inset, marks, clouds, view, across / POINTS_PER_INCH, upwards / POINTS_PER_INCH)
     inset.tick_params(labelsize=NOTE_POINTS, pad=2)
     return (box,)
 

@@ -24,7 +24,8 @@ from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
-from symflex.print.text import INDENT, WIDTH, Passage, passages_text
+from symflex.print.notebook import Printed
+from symflex.print.text import INDENT, Passage
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict
 from symflex.roots.region import Modes
@@ -74,7 +75,7 @@ class ChartRegion:
 
 
 @dataclass(frozen=True)
-class StabilityChart:
+class StabilityChart(Printed):
     """What is proved of stability for all values of some parameters in their ranges."""
 
     names: tuple[str, ...]
@@ -90,13 +91,28 @@ class StabilityChart:
     def __repr__(self) -> str:
         return f"<StabilityChart over {', '.join(self.names)}: {100 * self.decided:.1f} % decided>"
 
-    def __str__(self) -> str:
-        return passages_text(_passages(self), WIDTH)
-
-    def _repr_html_(self) -> str:
-        from symflex.print.html import passages_html  # only notebooks ask
-
-        return passages_html(_passages(self))
+    def passages(self) -> list[Passage]:
+        """Return what is decided, region by region."""
+        status = "certified" if self.certified else "NOT CERTIFIED"
+        heads = [
+            f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units, strict=True)
+        ]
+        lines = [f"{', '.join(heads)}   {status}: {100 * self.decided:.1f} % of the area decided"]
+        for name, (low, high) in zip(self.names, self.ranges, strict=True):
+            lines.append(f"{INDENT}examined: {float(low):.6g} < {name} < {float(high):.6g}")
+        lines += [f"{INDENT}not proved: {reason}" for reason in self.reasons]
+        if None not in self.nominal:
+            point = zip(self.names, self.nominal, strict=True)
+            place = ", ".join(f"{name} = {float(x or 0):.6g}" for name, x in point)
+            lines.append(f"{INDENT}{place}: {self.at_nominal}")
+        rows = [("share", "verdict", *self.names)]
+        for region in self.regions[:SHOWN]:
+            point_of = (f"{float(x):.4g}" for x in region.point)
+            rows.append((f"{100 * region.share:.1f} %", word_of(region.verdict), *point_of))
+        more = len(self.regions) - SHOWN
+        more_said = f", the {SHOWN} largest of {len(self.regions)}" if more > 0 else ""
+        regions = Passage([f"{INDENT}regions, each with a point in it{more_said}"], rows)
+        return [Passage(lines), regions]
 
     @property
     def certified(self) -> bool:
@@ -209,30 +225,6 @@ class StabilityChart:
         """What holds at the declared values, ``"undecided"`` also where one is missing."""
         point = [x for x in self.nominal if x is not None]
         return self.at(*point) if len(point) == len(self.names) else "undecided"
-
-
-def _passages(chart: StabilityChart) -> list[Passage]:
-    """Return what is decided, region by region."""
-    status = "certified" if chart.certified else "NOT CERTIFIED"
-    heads = [
-        f"{name} [{unit}]" if unit else name for name, unit in zip(chart.names, chart.units, strict=True)
-    ]
-    lines = [f"{', '.join(heads)}   {status}: {100 * chart.decided:.1f} % of the area decided"]
-    for name, (low, high) in zip(chart.names, chart.ranges, strict=True):
-        lines.append(f"{INDENT}examined: {float(low):.6g} < {name} < {float(high):.6g}")
-    lines += [f"{INDENT}not proved: {reason}" for reason in chart.reasons]
-    if None not in chart.nominal:
-        point = zip(chart.names, chart.nominal, strict=True)
-        place = ", ".join(f"{name} = {float(x or 0):.6g}" for name, x in point)
-        lines.append(f"{INDENT}{place}: {chart.at_nominal}")
-    rows = [("share", "verdict", *chart.names)]
-    for region in chart.regions[:SHOWN]:
-        point_of = (f"{float(x):.4g}" for x in region.point)
-        rows.append((f"{100 * region.share:.1f} %", word_of(region.verdict), *point_of))
-    more = len(chart.regions) - SHOWN
-    more_said = f", the {SHOWN} largest of {len(chart.regions)}" if more > 0 else ""
-    regions = Passage([f"{INDENT}regions, each with a point in it{more_said}"], rows)
-    return [Passage(lines), regions]
 
 
 def word_of(verdict: StabilityVerdict) -> str:

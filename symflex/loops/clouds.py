@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from symflex.errors import BudgetError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
+from symflex.loops.over import with_values
 from symflex.loops.spread import halves, middle_of, reach, spread_function
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots.locate import locate
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
     from symflex.loops.boxes import Box
     from symflex.model import Model
     from symflex.options import Stated
-    from symflex.roots import PoleZeroMap
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import AnyBoundFunction
 
     Sides = tuple[float, float, float, float]
 
@@ -47,7 +49,7 @@ PIECE = (Fraction(1), Fraction(2))
 class RootCloud:
     """A rectangle of the s plane that roots do not leave."""
 
-    kind: str  # ``pole`` or ``zero``
+    kind: Literal["pole", "zero"]
     sides: Sides  # least and largest real and imaginary part [rad/s]; its mirror image holds the conjugates
     count: int | None  # how many lie in it for every combination; None where that is not proved
 
@@ -78,15 +80,19 @@ class RootCloud:
 
 
 def root_clouds(
-    model: Model, located: PoleZeroMap, share: Stated, pair: tuple[str, str]
+    bound: AnyBoundFunction, located: PoleZeroMap, share: Stated, model: Model | None = None
 ) -> tuple[RootCloud, ...]:
     """Return where the poles and zeros of a map may lie; those at s = 0 stay there.
 
-    SF804, SF801 as for :func:`symflex.loops.spread.stability_spread`.
+    A function that was derived with numbers has no parameters left: give its ``model``. SF804, SF801 as for
+    :func:`symflex.loops.spread.stability_spread`.
     """
-    function, box, _ = spread_function(model, share, pair)
+    tf = bound.source
+    valued = with_values(model or tf.model, dict(bound.values))
+    function, box, _ = spread_function(valued, share, (tf.output.name, tf.input.name))
     clouds: list[RootCloud] = []
-    for kind, roots in (("pole", located.poles), ("zero", located.zeros)):
+    both: dict[Literal["pole", "zero"], Sequence[Root]] = {"pole": located.poles, "zero": located.zeros}
+    for kind, roots in both.items():
         own = function.of_roots(kind)
         upper = [complex(r) for r in roots if not r.im < 0 and not r.is_zero]
         if own.factors:
@@ -95,7 +101,7 @@ def root_clouds(
 
 
 def _clouds(
-    function: CharacteristicFunction, box: Box, roots: Sequence[complex], kind: str
+    function: CharacteristicFunction, box: Box, roots: Sequence[complex], kind: Literal["pole", "zero"]
 ) -> list[RootCloud]:
     sizes = [reach(function, s, box)[0] for s in roots]
     left = list(zip(roots, sizes, strict=True))

@@ -24,6 +24,7 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, joined, pieces
 from symflex.loops.loop_function import LoopFunction
 from symflex.options import band_ends
+from symflex.print.notebook import Printed
 from symflex.print.text import Passage
 from symflex.roots import Band, Everything, Position, figure, find_polynomial_roots
 from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
@@ -54,7 +55,7 @@ BELOW, SAME, FURTHER = 1e9, 1e-7, 60
 
 
 @dataclass(frozen=True)
-class Peak:
+class Peak(Printed):
     """The largest magnitude on the imaginary axis, or the least bound of all."""
 
     tf: str
@@ -101,18 +102,14 @@ class Peak:
             "h2": real_json(self.h2, self.digits),
         }
 
-    def __str__(self) -> str:
+    def passages(self) -> list[Passage]:
+        """Return the magnitude, where it is, and what is not proved."""
         where = f" from {float(self.band.low):g} Hz to {float(self.band.high):g} Hz" if self.band else ""
         status = "certified" if self.certified else "NOT CERTIFIED"
         lines = [f"{self.tf}{self.unit and f' [{self.unit}]'}   {status}{where}"]
         lines += [f"  not proved: {reason}" for reason in self.reasons]
         lines.append(f"  largest magnitude {self._shown(self.magnitude)}, {self.place}")
-        return "\n".join(lines if self.h2 is None else [*lines, f"  H2 norm {self._shown(self.h2)}"])
-
-    def _repr_html_(self) -> str:
-        from symflex.print.html import passages_html  # only notebooks ask
-
-        return passages_html([Passage(str(self).split("\n"))])
+        return [Passage(lines if self.h2 is None else [*lines, f"  H2 norm {self._shown(self.h2)}"])]
 
     def _shown(self, value: arb) -> str:
         decimals = real_json(value, self.digits)

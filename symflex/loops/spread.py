@@ -30,7 +30,8 @@ from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
 from symflex.model import spread_box
 from symflex.options import share_of
-from symflex.print.text import WIDTH, Passage, passages_text
+from symflex.print.notebook import Printed
+from symflex.print.text import Passage
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -53,7 +54,7 @@ TRIES = frozenset(4**i for i in range(8))
 
 
 @dataclass(frozen=True)
-class SpreadStability:
+class SpreadStability(Printed):
     """What is proved of stability for all values that parameters may have at once."""
 
     names: tuple[str, ...]
@@ -69,15 +70,8 @@ class SpreadStability:
     def __repr__(self) -> str:
         return f"<SpreadStability of {len(self.names)} parameters: {self.word}>"
 
-    def __str__(self) -> str:
-        return passages_text(self._passages(), WIDTH)
-
-    def _repr_html_(self) -> str:
-        from symflex.print.html import passages_html  # only notebooks ask
-
-        return passages_html(self._passages())
-
-    def _passages(self) -> list[Passage]:
+    def passages(self) -> list[Passage]:
+        """Return the verdict, and the box beside the combination or the part that it is about."""
         word = f"{self.word}: {self.reason}" if self.reason else self.word
         word += {"stable": " for every combination", "unstable": f" by {self.unstable}"}.get(self.word, "")
         other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])

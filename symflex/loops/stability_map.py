@@ -11,7 +11,8 @@ from flint import arb
 
 from symflex.balls import ball, precision
 from symflex.loops.apart import PolesApart
-from symflex.print.text import INDENT, WIDTH, Passage, passages_text
+from symflex.print.notebook import Printed
+from symflex.print.text import INDENT, Passage
 from symflex.roots import decimals, figure
 from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.root import degrees, hertz, real_json, short_hertz
@@ -90,7 +91,7 @@ class AllowedBandwidth:
 
 
 @dataclass(frozen=True)
-class StabilityMap:
+class StabilityMap(Printed):
     """The gains for which all closed-loop poles are in the open left half-plane."""
 
     gain: str  # its name
@@ -136,8 +137,9 @@ class StabilityMap:
         status = "certified" if self.certified else "not certified"
         return f"<StabilityMap of {self.gain}: {count} boundar{'y' if count == 1 else 'ies'}, {status}>"
 
-    def __str__(self) -> str:
-        return stability_text(self)
+    def passages(self) -> Iterator[Passage]:
+        """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
+        return _passages(self)
 
     def __post_init__(self) -> None:
         if not self.is_complete and not self.reasons:
@@ -353,18 +355,6 @@ class PoleCount:
 SHORT_DIGITS = 6
 SHOWN = 3
 """Frequencies of one boundary in print; the others are in the JSON."""
-
-
-def stability_text(stability: StabilityMap) -> str:
-    """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-    return passages_text(_passages(stability), WIDTH)
-
-
-def stability_html(stability: StabilityMap) -> str:
-    """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import passages_html  # only notebooks ask
-
-    return passages_html(_passages(stability))
 
 
 def _passages(stability: StabilityMap) -> Iterator[Passage]:

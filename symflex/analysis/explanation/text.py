@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from symflex.print.notebook import Printed
 from symflex.print.text import Passage
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class RealZero:
 
 
 @dataclass(frozen=True, slots=True)
-class ZeroExplanation:
+class ZeroExplanation(Printed):
     """What the zeros of a transfer function are the poles of.
 
     Parameters
@@ -128,10 +129,9 @@ class ZeroExplanation:
     def __repr__(self) -> str:
         return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
 
-    def _repr_html_(self) -> str:
-        from symflex.print.html import passages_html  # only notebooks ask
-
-        return passages_html(Passage(lines) for lines in ([_title(self)], *explanation_paragraphs(self)))
+    def passages(self) -> Iterator[Passage]:
+        """Return the title and what there is to say."""
+        return (Passage(lines) for lines in ([_title(self)], *explanation_paragraphs(self)))
 
     def __str__(self) -> str:
         return explanation_text(self)

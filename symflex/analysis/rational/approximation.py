@@ -23,6 +23,7 @@ from symflex.analysis.response import adaptive_grid
 from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
+from symflex.print.notebook import Printed
 from symflex.print.text import Passage, passages_text
 from symflex.roots import PoleZeroMap, Root
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
@@ -239,7 +240,7 @@ class Approximant:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RationalApproximation(Approximant, RationalFunction):
+class RationalApproximation(Printed, Approximant, RationalFunction):
     """A rational function R(s) in place of a transfer function G(s), for a band of frequencies.
 
     Parameters
@@ -277,8 +278,9 @@ class RationalApproximation(Approximant, RationalFunction):
         limit = "exact" if self.is_exact else f"within 1 % up to {self.valid_to(0.01):.4g} Hz"
         return f"<RationalApproximation {self.tf}: {self.form} form, {modes}, {limit}>"
 
-    def _repr_html_(self) -> str:
-        return rational_html(self)
+    def passages(self) -> Iterator[Passage]:
+        """Return poles and zeros, or residues, and how good the approximation is."""
+        return _passages(self)
 
     @property
     def source(self) -> AnyTransferFunction:
@@ -454,13 +456,6 @@ def rational_text(approximation: RationalApproximation) -> str:
       zeros: none
     """
     return passages_text(_passages(approximation))
-
-
-def rational_html(approximation: RationalApproximation) -> str:
-    """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import passages_html  # only notebooks ask
-
-    return passages_html(_passages(approximation))
 
 
 def _passages(approximation: RationalApproximation) -> Iterator[Passage]:

@@ -24,17 +24,11 @@ STARTS: Final = {
 
 def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
     """Return the report of a fit, and of mode shapes, for a terminal of so many columns."""
-    return passages_text(_passages(fit, shapes), width)
+    return passages_text(fit_passages(fit, shapes), width)
 
 
-def fit_html(fit: ResonanceFit) -> str:
-    """Return the report of a fit for a notebook: paragraphs and tables."""
-    from symflex.print.html import passages_html  # only notebooks ask
-
-    return passages_html(_passages(fit, None))
-
-
-def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Passage]:
+def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Passage]:
+    """Return the report of a fit, and of mode shapes."""
     modes, errors = fit.resonances, fit.standard_errors()
     lines = [f"POOR FIT: {reason}" for reason in fit.poor]
     for r, measured in enumerate(fit.measured):

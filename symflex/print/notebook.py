@@ -1,0 +1,28 @@
+"""What prints as passages: text in a terminal, paragraphs and tables in a notebook."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.print.text import WIDTH, passages_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symflex.print.text import Passage
+
+
+class Printed:
+    """A result that prints as passages."""
+
+    def passages(self) -> Iterable[Passage]:
+        """Return what is said."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return passages_text(self.passages(), WIDTH)
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html(self.passages())
