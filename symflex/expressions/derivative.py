@@ -8,6 +8,7 @@ Input: a tree, and a leaf of it. Output: a tree, kept short by the constructors 
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING, Final
 
 from symflex.expressions.nodes import (
@@ -48,7 +49,9 @@ SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
     "sinh": lambda _, inner: Call("cosh", inner),
     "cosh": lambda _, inner: Call("sinh", inner),
     "tanh": lambda whole, _: sum_of([number(1), negative(power(whole, 2))]),
+    "atan": lambda _, inner: quotient(number(1), sum_of([number(1), power(inner, 2)])),
     "abs": lambda whole, inner: quotient(inner, whole),
+    "sgn": lambda *_: number(0),
 }
 """The derivative of every function by its argument."""
 AT_ZERO: Final = {
@@ -60,6 +63,7 @@ AT_ZERO: Final = {
     "sinh": 0,
     "cosh": 1,
     "tanh": 0,
+    "atan": 0,
     "abs": 0,
 }
 
@@ -127,12 +131,39 @@ def rate(expression: Expression, varies: Callable[[Expression], bool]) -> Expres
 
 
 def without_brackets(expression: Expression, varies: Callable[[Expression], bool]) -> Expression:
-    """Return an expression with ``(x + l*sin(theta))'`` carried out."""
+    """Return an :func:`elementary` expression with ``(x + l*sin(theta))'`` carried out."""
+    expression = elementary(expression)
     while bracket := next((n for n in reversed(nodes(expression)) if isinstance(n, Differentiated)), None):
         changed = bracket.operand
         for _ in range(bracket.order):
             changed = rate(changed, varies)
         expression = replace_node(expression, bracket, changed)
+    return expression
+
+
+def elementary(expression: Expression) -> Expression:
+    """Return an expression whose powers of half a number are roots, and other broken ones exponentials.
+
+    Examples
+    --------
+    >>> from symflex.expressions import format_expression, parse
+    >>> from symflex.errors import Text
+    >>> format_expression(elementary(parse(Text.alone("text", "x^1.5 + 10^(-x)"))))
+    'sqrt(x)^3 + exp(-x*log(10))'
+    """
+    for node in nodes(expression):
+        if not isinstance(node, Power) or Name("s") in nodes(node):
+            continue
+        base, exponent = elementary(node.base), node.exponent
+        twice = 2 * fold(
+            exponent, number=float, name=lambda _: nan, power=lambda *_: nan, call=lambda *_: nan
+        )
+        if twice % 2 == 0:
+            continue
+        whole: Expression = Call("exp", product_of([exponent, Call("log", base)]))
+        if twice % 1 == 0:
+            whole = power(Call("sqrt", base), number(int(twice)))
+        expression = replace_node(expression, node, whole)
     return expression
 
 

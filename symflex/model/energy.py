@@ -165,7 +165,7 @@ def with_motion(
     loads = {x.name for x in (*draft.signals, *energy)} | inputs
     nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
     nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
-    rest = read_operating_point(reader, sections["operating_point"], {*taken, *loads})
+    rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes)
     linear = linearised(
         reader,
         (*draft.signals, *energy),

@@ -21,7 +21,7 @@ from itertools import count
 from random import Random
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import arb, arb_mat
 
 from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.balls import precision, stays_inside
@@ -37,6 +37,7 @@ from symflex.expressions import (
     Power,
     Product,
     Quotient,
+    Sum,
     fold,
     format_expression,
     is_number,
@@ -69,7 +70,8 @@ if TYPE_CHECKING:
 
 SOLVE = "solve"
 EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
-SMOOTH = f"write powers with whole exponents, and {', '.join(FUNCTIONS)}, abs of what has a sign"
+SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, atan, and abs and sgn of what has a sign"
+DELAYED = 'write x\' for the derivative of x; what is delayed is a signal of its own: x_d = "exp(-s*T)*x"'
 TRIALS = 200
 """Random points, of which three are to be in the domain of all functions."""
 AGREEING = 3
@@ -78,6 +80,8 @@ STEPS = 60
 """Newton steps, from a value a person gave."""
 DIGITS = 40
 """Of a parameter that has no formula."""
+LONGEST = 500
+"""Parts of a value at rest in which values above it are put."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +109,10 @@ class Linearised:
     solved: Mapping[str, Fraction] = field(default_factory=dict)  # parameters that have a value alone
 
 
-def read_operating_point(reader: Reader, section: TableValue | None, taken: Collection[str]) -> AtRest | None:
-    """Return the values of ``[operating_point]``; ``taken`` are all names that mean something."""
+def read_operating_point(
+    reader: Reader, section: TableValue | None, taken: Collection[str], moving: Collection[str]
+) -> AtRest | None:
+    """Return the values of ``[operating_point]``; ``taken`` are names of what is constant."""
     if section is None:
         return None
     values, definitions, solve = dict[str, Expression](), list[Definition](), tuple[str, ...]()
@@ -121,12 +127,21 @@ def read_operating_point(reader: Reader, section: TableValue | None, taken: Coll
         literal = literal_value(value)
         if literal is not None and literal != 0:
             # A number alone would fit any unit.
-            base = entry.key.replace(".", "_").replace("'", "_rate")
-            name = next(n for i in count() if (n := f"{base}_{i}") not in taken)
+            name = _unused(entry.key, {*taken, *moving})
             definitions.append(Definition(name, value, "", entry.key_span))
             value = Name(name, span=value.span)
+        if len(nodes(value)) < LONGEST:
+            value = replace_values(value, {Name(n): v for n, v in values.items()})
         values[entry.key] = number(0) if literal == 0 else value
-    return AtRest(values, solve, tuple(definitions), section.span)
+    unknown = {p: _unused(p, {*taken, *moving}) for p in solve if p in moving and p not in values}
+    values |= {p: Name(name) for p, name in unknown.items()}
+    return AtRest(values, tuple(unknown.get(p, p) for p in solve), tuple(definitions), section.span)
+
+
+def _unused(key: str, taken: Collection[str]) -> str:
+    """Return the first of ``x_0``, ``x_1``, ... that nothing is called."""
+    base = key.replace(".", "_").replace("'", "_rate")
+    return next(n for i in count() if (n := f"{base}_{i}") not in taken)
 
 
 def linearised(
@@ -157,7 +172,17 @@ def linearised(
     point.check_all_named(moving, equations.values())
     if reader.problems:
         raise SpecError(*reader.problems)
-    point.bare = {n for e in equations.values() for n in point.moving_in(e) if isinstance(n, Name)}
+    for x in signals if rest is not None else ():
+        leaves = [n for n in nodes(x.expression) if point.varies(n)]
+        if x.name not in equations and all(isinstance(n, Name) and n.name in moving for n in leaves):
+            point.signals[x.name] = replace_values(x.expression, {Name(LAPLACE): number(0)})
+            point.seen |= {n.name for n in leaves if isinstance(n, Name)}
+    for name, value in point.signals.items():
+        if name in point.values:  # given, and to be right
+            left = point.at_rest(sum_of([Name(name), negative(value)]))
+            point.left_over.append((left, Equation(Name(name), value, span=point.values[name].span)))
+    parts = (*equations.values(), *point.signals.values())
+    point.bare = {n for e in parts for n in point.moving_in(e) if isinstance(n, Name)}
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values() and rest is not None:
         point.check_names(rest)
@@ -194,7 +219,7 @@ class _AboutRest:
         signed: frozenset[str],
     ) -> None:
         self.reader, self.rest, self.inputs, self.constants = reader, rest, inputs, constants
-        self.numbers, self.signed = numbers, signed
+        self.signed = signed
         self.by_value: dict[str, Fraction] = {}
         self.bare: set[Expression] = set()  # names that occur without a derivative
         self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
@@ -203,8 +228,11 @@ class _AboutRest:
         self.constants |= {d.name: d.expression for d in rest.definitions} | dict.fromkeys(
             (*rest.solve, *rest.multipliers)
         )
+        with precision(BITS):
+            self.known = {name: self._value(value, {}, None) for name, value in numbers.items()}
         self.left_over: list[tuple[Expression, Equation]] = []
         self.seen: set[str] = set()
+        self.signals: dict[str, Expression] = {}  # explicit ones, which follow from the others
 
     def varies(self, node: Expression) -> bool:
         """Tell whether a node is a leaf that varies in time."""
@@ -243,11 +271,9 @@ class _AboutRest:
             leaves = [n for n in dict.fromkeys(nodes(whole)) if self.varies(n)]
             self.seen |= {_written(n) for n in leaves} | {n.name for n in leaves if isinstance(n, Derivative)}
             self._infer_rates(equation)
-            slopes = [(n, shorter(self._at_rest(derivative(whole, n)))) for n in leaves]
-            self._check_domain(
-                replace_values(whole, {n: self.values.get(_written(n), number(0)) for n in leaves})
-            )
-            rest = simplified(self._at_rest(whole), {LAPLACE: number(0)})
+            slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
+            self._check_domain(replace_values(whole, {n: self._value_at_rest(_written(n)) for n in leaves}))
+            rest = simplified(self.at_rest(whole), {LAPLACE: number(0)})
             self.left_over.append((shorter(rest), equation))
         except ValueError as error:
             part = error.args[0]
@@ -270,14 +296,13 @@ class _AboutRest:
     def _check_domain(self, whole: Expression) -> None:
         """Note a logarithm or root that has no value for the values that parameters have."""
         with precision(BITS):
-            known = {name: self._value(value, {}, None) for name, value in self.numbers.items()}
             for call in (n for n in nodes(whole) if isinstance(n, Call)):
                 with suppress(KeyError):  # what has no value yet
-                    if not self._value(call, dict(known), None).is_finite():
+                    if not self._value(call, dict(self.known), None).is_finite():
                         message = f"'{format_expression(call)}' has no value at the operating point"
                         self.reader.note("SF224", message, call.span, "correct the values of parameters")
 
-    def moving_in(self, equation: Equation) -> list[Expression]:
+    def moving_in(self, equation: Expression) -> list[Expression]:
         """Return the leaves that vary, of the products that the equation has, but for what follows an s."""
         after_s = {
             id(f)
@@ -299,7 +324,7 @@ class _AboutRest:
             has_s = any(Name(LAPLACE) in nodes(f) for i, f in enumerate(node.factors) if i not in moving)
             if len(moving) > 1 and has_s:
                 message = "s before a product of two quantities that vary can be read in two ways"
-                self.reader.note("SF222", message, node.span, "write x' for the derivative of x")
+                self.reader.note("SF222", message, node.span, DELAYED)
             elif moving and any(orders) and isinstance(leaf := node.factors[moving[0]], Name):
                 others = [f for i, f in enumerate(node.factors) if not orders[i] and i != moving[0]]
                 rewritten[node] = product_of([*others, Derivative(leaf.name, sum(orders), span=leaf.span)])
@@ -310,24 +335,29 @@ class _AboutRest:
     def _infer_rates(self, equation: Equation) -> None:
         """Take the rate of what turns steadily from the equation ``theta' = omega``."""
         for one, other in ((equation.left, equation.right), (equation.right, equation.left)):
-            rate = self._with_primes(one)
-            if isinstance(rate, Derivative) and rate.order == 1 and Name(rate.name) not in self.bare:
-                self.values.setdefault(_written(rate), self._at_rest(other))
+            match self._with_primes(one):
+                case Derivative(name, 1) as rate if name not in self.values and Name(name) not in self.bare:
+                    self.values.setdefault(_written(rate), self.at_rest(other))
 
-    def _at_rest(self, expression: Expression) -> Expression:
+    def at_rest(self, expression: Expression) -> Expression:
         """Return an expression with the values at rest in place of all that varies.
 
         Raises ValueError with an absolute value of unknown sign.
         """
-        leaves = {n: self.values.get(_written(n), number(0)) for n in nodes(expression) if self.varies(n)}
+        leaves = {n: self._value_at_rest(_written(n)) for n in nodes(expression) if self.varies(n)}
         rest = simplified(replace_values(expression, leaves), {_written(n): v for n, v in leaves.items()})
-        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name == "abs"]:
-            is_negative = isinstance(part.argument, Negative)
+        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name in ("abs", "sgn")]:
             size = part.argument.operand if isinstance(part.argument, Negative) else part.argument
-            if not self._is_positive(size):
+            if is_number(size, 0) or not self._is_positive(size):
                 raise ValueError(part)
-            rest = replace_node(rest, part, negative(part.argument) if is_negative else size)
+            sign = number(1 if size is part.argument else -1)
+            rest = replace_node(rest, part, size if part.name == "abs" else sign)
         return simplified(rest, {})
+
+    def _value_at_rest(self, name: str) -> Expression:
+        if name not in self.values and name in self.signals:
+            self.values[name] = self.at_rest(self.signals.pop(name))
+        return self.values.get(name, number(0))
 
     def _is_positive(self, size: Expression) -> bool:
         """Tell whether a size is made of positive parts alone."""
@@ -373,26 +403,35 @@ class _AboutRest:
     def check_at_rest(self) -> None:
         """Solve what is asked for, and note every equation that does not hold at rest."""
         wanted = [*self.rest.multipliers, *self.rest.solve]
-        solved: dict[str, Expression] = {}
-        for residual, equation in self.left_over:
-            rest = simplified(residual, solved)
-            unknown = next((p for p in wanted if Name(p) in nodes(rest)), None)
-            if unknown is None:
-                if not self._vanishes(rest):
-                    self._note_left(rest, equation, None)
-                continue
+        left = [(_without_factor(r, wanted), e) for r, e in self.left_over]
+        while found := [
+            (p, solution, equation)
+            for rest, equation in left
+            for p in wanted
+            if (solution := _solved(rest, p, wanted)) is not None
+        ]:
+            others = [len({Name(p) for p in wanted} & {*nodes(solution)}) for _, solution, _ in found]
+            unknown, solution, equation = found[others.index(min(others))]
+            if unknown in self.signed and unknown in self.known and isinstance(solution, Call):
+                # of two roots, the declared
+                solution = negative(solution) if self.known[unknown] < 0 else solution
             wanted.remove(unknown)
-            solution = _solved(rest, Name(unknown))
-            if solution is not None:
-                if unknown in self.signed and unknown in self.numbers and isinstance(solution, Call):
-                    declared = self._value(self.numbers[unknown], {}, None)
-                    solution = negative(solution) if declared < 0 else solution  # of two roots, the declared
-                self.constants[unknown] = solved[unknown] = solution
-                self.definitions.append(Definition(unknown, solution, "", equation.span))
-            elif (value := self._solved_by_value(rest, unknown)) is not None:
-                self.by_value[unknown] = value
-            else:
-                self._note_left(rest, equation, unknown)
+            self.constants[unknown] = solution
+            self.definitions.append(Definition(unknown, solution, "", equation.span))
+            known = {unknown: solution} if min(others) else {}
+            left = [(simplified(r, known), e) for r, e in left if e is not equation]
+        rows = [(r, e) for r, e in left if any(Name(p) in nodes(r) for p in wanted)]
+        together = [p for p in wanted if any(Name(p) in nodes(r) for r, _ in rows)]
+        rows = rows[: len(together)]
+        if rows and len(rows) == len(together):
+            wanted = [p for p in wanted if p not in together]
+            values = self._solved_by_value([r for r, _ in rows], together)
+            self.by_value = dict(zip(together, values, strict=False))
+            if not values:
+                self._note_left(*rows[0], ", ".join(together))
+        for rest, equation in left:
+            if (rest, equation) not in rows and not self._vanishes(rest):
+                self._note_left(rest, equation, None)
         for name in wanted:
             if name in self.rest.multipliers:
                 self.definitions.append(Definition(name, number(0), "", self.rest.span))
@@ -401,33 +440,42 @@ class _AboutRest:
             self.reader.note("SF407", message, self.rest.span, "leave it out of solve")
 
     def _note_left(self, rest: Expression, equation: Equation, unknown: str | None) -> None:
-        message = f"this does not hold at the operating point: {format_expression(rest)} is left"
-        hint = "correct [operating_point], or name a parameter that follows: solve = [...]"
+        size = ""
+        with precision(BITS), suppress(KeyError):  # of a parameter without a value
+            value = self._value(rest, dict(self.known), None)
+            size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
+        message = f"this does not hold at the operating point: {format_expression(rest)} is left{size}"
+        hint = "correct [operating_point], or name what follows from it: solve = [...]"
         if unknown is not None:
             message = f"'{unknown}' is not found: {format_expression(rest)} has no root next to its value"
             hint = f"give '{unknown}' a value close to the one at rest, and all other parameters theirs"
         self.reader.note("SF407", message, equation.span, hint)
 
-    def _solved_by_value(self, rest: Expression, unknown: str) -> Fraction | None:
-        """Return the root next to a parameter's value, proved by Newton's operator, to forty digits."""
-        slope = derivative(rest, Name(unknown))
-        with precision(BITS):
-            known = {name: self._value(value, {}, None) for name, value in self.numbers.items()}
-
-        def at(where: arb, function: Expression) -> arb:
-            return self._value(function, {**known, unknown: where}, None)
-
+    def _solved_by_value(self, rows: list[Expression], unknowns: list[str]) -> list[Fraction]:
+        """Return the roots next to parameters' values, proved by Newton's operator, to forty digits."""
+        slopes = [derivative(rest, Name(p)) for rest in rows for p in unknowns]
+        n = len(unknowns)
         with precision(BITS):
             try:
-                x = known[unknown].mid()
+
+                def step(box: list[arb]) -> list[arb]:
+                    """Return what Newton's operator subtracts from the middle of a box."""
+                    boxes = self.known | dict(zip(unknowns, box, strict=True))
+                    middles = boxes | {p: boxes[p].mid() for p in unknowns}
+                    matrix = arb_mat(n, n, [self._value(e, dict(boxes), None) for e in slopes])
+                    left = arb_mat(n, 1, [self._value(e, dict(middles), None) for e in rows])
+                    return list(matrix.solve(left).entries())
+
+                x = [self.known[p].mid() for p in unknowns]
                 for _ in range(STEPS):
-                    x = (x - at(x, rest) / at(x, slope)).mid()
-                reach = (abs(x) * arb(10) ** -DIGITS).mid()
-                if not stays_inside(at(x, rest) / at(arb(x, reach), slope), reach):
-                    return None
-            except KeyError:
-                return None
-            return Fraction(x.str(DIGITS, radius=False))
+                    x = [(a - b).mid() for a, b in zip(x, step(x), strict=True)]
+                reach = [(abs(a) * arb(10) ** -DIGITS).mid() for a in x]
+                steps = step([arb(a, r) for a, r in zip(x, reach, strict=True)])
+                if not all(map(stays_inside, steps, reach)):
+                    return []
+            except (KeyError, ZeroDivisionError):
+                return []
+            return [Fraction(a.str(DIGITS, radius=False)) for a in x]
 
     def _vanishes(self, residual: Expression) -> bool:
         if is_number(residual, 0):
@@ -471,22 +519,55 @@ class _AboutRest:
         )
 
 
-def _solved(residual: Expression, unknown: Name) -> Expression | None:
-    """Return the value of a name for which a residual vanishes, if that is linear in it or in its square."""
-    slope = simplified(derivative(residual, unknown), {})
-    constant = simplified(residual, {unknown.name: number(0)})
-    if unknown not in nodes(slope):
+def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
+    """Return the value for which a residual vanishes, if that is linear in it or in its square.
+
+    What it is divided by is free of all that is wanted.
+    """
+    residual = _over_one_line(residual, unknown)
+    slope = simplified(derivative(residual, Name(unknown)), {})
+    if is_number(slope, 0):
+        return None
+    second = simplified(derivative(slope, Name(unknown)), {})
+    below = slope if is_number(second, 0) else second
+    if any(Name(p) in nodes(below) for p in wanted):
+        return None
+    constant = simplified(residual, {unknown: number(0)})
+    if below is slope:
         return negative(_over(constant, slope))
-    second = simplified(derivative(slope, unknown), {})
-    if unknown in nodes(second) or not is_number(simplified(slope, {unknown.name: number(0)}), 0):
+    if not is_number(simplified(slope, {unknown: number(0)}), 0):
         return None
     return Call("sqrt", negative(_over(product_of([number(2), constant]), second)))
+
+
+def _without_factor(residual: Expression, wanted: Collection[str]) -> Expression:
+    """Return what else vanishes, of a product with a wanted name and another: ``X_0*(mu_0 - D)``."""
+    for p in wanted:
+        slope = simplified(derivative(residual, Name(p)), {})
+        other = {Name(n) for n in wanted} & {*nodes(slope)}
+        if other and Name(p) not in other and is_number(simplified(residual, {p: number(0)}), 0):
+            return slope
+    return residual
+
+
+def _over_one_line(residual: Expression, unknown: str) -> Expression:
+    """Return a residual times the denominators of its terms that have an unknown."""
+    terms = residual.terms if isinstance(residual, Sum) else (residual,)
+    for term in terms:
+        part = term.operand if isinstance(term, Negative) else term
+        if isinstance(part, Quotient) and Name(unknown) in nodes(part.denominator):
+            others = [product_of([t, part.denominator]) for t in terms if t is not term]
+            above = part.numerator if part is term else negative(part.numerator)
+            return _over_one_line(sum_of([*others, above]), unknown)
+    return residual
 
 
 def _over(above: Expression, below: Expression) -> Expression:
     """Return a quotient with one line, and without a number that both parts have."""
     if isinstance(below, Negative):
         return negative(_over(above, below.operand))
+    if isinstance(below, Sum) and isinstance(below.terms[0], Negative):
+        return negative(_over(above, sum_of(map(negative, below.terms))))
     if isinstance(below, Quotient):
         above, below = product_of([above, below.denominator]), below.numerator
     factor = next(

@@ -13,6 +13,7 @@ from symflex.report.study import Study
 SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
     "drawing": files.drawing_section,
     "parameters": formulas.parameter_section,
+    "motion": formulas.motion_section,
     "equations": formulas.equation_section,
     "printed": formulas.audit_section,
     "figures": files.figure_section,

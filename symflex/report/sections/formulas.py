@@ -10,7 +10,7 @@ from typing import Final
 from symflex.audit import Audit
 from symflex.audit.text import VERDICTS, audit_document
 from symflex.errors import counted
-from symflex.expressions import Expression
+from symflex.expressions import Attribute, Expression, Name, format_expression, nodes
 from symflex.print.forms import PrintedForm, counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
@@ -42,6 +42,7 @@ from symflex.report.document import (
     Listing,
     Mathematics,
     Notice,
+    Run,
     Section,
     Table,
     Tone,
@@ -85,6 +86,26 @@ def parameter_section(study: Study) -> ChapterPart | None:
 
 
 LONGEST_LATEX: Final = 60_000
+
+
+def motion_section(study: Study) -> ChapterPart | None:
+    """Return the values at rest and the linear equations of a nonlinear model: all else follows from them."""
+    point = study.model.operating_point
+    if point is None:
+        return None
+    labels = model_labels(study.model)
+
+    def shown(left: Expression, right: Expression, primes: str = "") -> tuple[Run, ...]:
+        if any(isinstance(n, Attribute) for side in (left, right) for n in nodes(side)):
+            return (Code(f"{format_expression(left)} = {format_expression(right)}"),)
+        return (labelled(left, labels), f"{primes} = ", labelled(right, labels))
+
+    rest = list[Run]()
+    for name, value in point.values:
+        still = name.rstrip("'")
+        rest += [", " if rest else "At rest, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
+    blocks = [text(*rest, ". All else deviates from rest:")] if rest else []
+    return ChapterPart("Linear equations", (*blocks, *(text(*shown(e.left, e.right)) for e in point.linear)))
 
 
 def equation_section(study: Study) -> ChapterPart:

@@ -276,8 +276,9 @@ def test_what_does_not_hold_at_rest_is_refused(name):
 
 REFUSED = {
     "x' = sat(x) - u": "SF222",
-    "x' = x^0.5 - u": "SF222",
-    "x' = a^x - u": "SF222",
+    "x' = x^0.5 - u": "SF224",
+    "x' = a^x - u": "SF407",
+    "x' = sgn(x) - u": "SF222",
     "x' = abs(x)*x - u": "SF224",
     "x' = 1/x - u": "SF224",
     "x' = s*x*x - u": "SF222",

@@ -55,3 +55,16 @@ outputs = { X = "x" }
 [elements]
 one  = { type = "mass", at = "x", m = "m" }
 """
+
+PENDULUM = """
+symflex = 1
+parameters = { J = "2 kg*m^2", w = "3 N*m", q = "30 deg" }
+inputs  = { tau = { unit = "N*m" } }
+outputs = { Theta = "theta" }
+[equations]
+unknowns  = ["theta"]
+equations = ["J*theta'' + w*sin(theta) = tau"]
+[operating_point]
+theta = "q"
+solve = ["tau"]
+"""

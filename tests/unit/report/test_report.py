@@ -30,8 +30,9 @@ from symflex.report.report import (
     write_chapters,
 )
 from symflex.report.sections import SECTIONS
+from symflex.report.sections.formulas import motion_section
 from symflex.report.study import Study
-from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
+from tests.unit.report.models import HOSTILE, PENDULUM, SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
 
 FONTS = Path(symflex.__file__).parent / "report" / "fonts"
@@ -184,9 +185,19 @@ def test_the_facts_in_the_data_are_those_of_two_masses(small):
     assert (last["zeros_added"], last["poles_added"], last["colocated"]) == (1, 2, False)
 
 
+def test_a_nonlinear_model_has_its_linear_equations_before_what_follows_from_them(tmp_path):
+    path = tmp_path / "pendulum.toml"
+    path.write_text(PENDULUM)
+    rest, equation = motion_section(Study.of(path, "pendulum")).blocks
+    said = "".join(r if isinstance(r, str) else r.latex for r in rest.runs)
+    assert said == r"At rest, \theta = q, \tau = \tau_{0}. All else deviates from rest:"
+    assert equation.runs[0].latex == r"J s^{2} \theta + w \, \cos(q) \, \theta"
+    assert list(SECTIONS).index("motion") < list(SECTIONS).index("equations")
+
+
 def test_every_section_of_the_registry_is_in_a_full_chapter_and_a_single_model_is_not_compared(hostile):
     anchors = set(Page(report_page(hostile)).ids)
-    assert {f"hostile-{key}" for key in SECTIONS if key not in ("loops", "data")} <= anchors
+    assert {f"hostile-{key}" for key in SECTIONS if key not in ("loops", "data", "motion")} <= anchors
     assert "comparison" not in anchors
 
 
