@@ -1,6 +1,6 @@
 """Modelica models: state equations with names, units and descriptions, in letters.
 
-Input: the transfer functions of a model of finitely many states. Output: the text of one model::
+Input: the transfer functions of a model of finitely many states, and dead times. Output: one model::
 
     model Axis "A load on a rail"
       parameter Real m(unit = "kg") = 2;
@@ -13,8 +13,8 @@ Input: the transfer functions of a model of finitely many states. Output: the te
       X = x;
     end Axis;
 
-The equations are those of :mod:`symflex.state_space`, which satisfy the model's identically. Source: Modelica
-Association, Modelica Language Specification 3.6, 2023.
+The equations are those of :mod:`symflex.state_space`, which satisfy the model's identically; a dead time is
+``if time < T then 0 else delay(x, T)``. Source: Modelica Language Specification 3.6, 2023.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from symflex.expressions import Expression, Name, format_expression, product_of,
 from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.state_space import realise
+from symflex.state_space.opened import without_delays
 from symflex.state_space.popov import Vector
 from symflex.transfer import AnyTransferFunction
 
@@ -58,10 +59,13 @@ class ModelicaExporter:
     ) -> Export:
         """Return the model.
 
-        Raises ModelError: SF235 for beams, rods and delays, SF236 for more zeros than poles.
+        Raises ModelError: SF235 for beams, rods and delays between nodes, SF236 for more zeros than poles.
         """
         check_causal(model, "a Modelica model")
-        system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
+        cut, late = without_delays(model)
+        sources = list(dict.fromkeys([*(tf.input.name for tf in tfs), *late]))
+        asked = list(dict.fromkeys([*(tf.output.name for tf in tfs), *(name for name, _ in late.values())]))
+        system = realise(cut, [(output, source) for output in asked for source in sources])
         equations = StateEquations(system)
         groups = {
             "parameter": [p.name for p in model.parameters],
@@ -98,6 +102,10 @@ class ModelicaExporter:
         texts = [
             f"{f'der({left})' if kind else left} = {format_expression(value)};" for kind, left, value in used
         ]
+        for back, (ahead, time) in late.items():
+            by = format_expression(substitute(time, letters))
+            delayed = f"delay({named[f'output {ahead}']}, {by})"
+            texts.append(f"{named[f'input {back}']} = if time < {by} then 0 else {delayed};")
         if any("pi" in text for text in texts):
             lines.append(f"  {PI};")
         for p in model.parameters:
@@ -105,8 +113,11 @@ class ModelicaExporter:
             given = f" = {value}" if value else ""
             name = named[f"parameter {p.name}"]
             lines.append(f"  parameter Real {name}{_unit(p.unit)}{given} {_string(p.doc)}".rstrip() + ";")
-        lines += [f"  input Real {named[f'input {x.name}']}{_unit(x.unit)};" for x in system.inputs]
-        lines += [f"  output Real {named[f'output {x.name}']}{_unit(x.unit)};" for x in system.outputs]
+        inner = {*late, *(name for name, _ in late.values())}
+        for kind, channels in (("input", system.inputs), ("output", system.outputs)):
+            for channel in channels:
+                start = "  " if channel.name in inner else f"  {kind} "
+                lines.append(f"{start}Real {named[f'{kind} {channel.name}']}{_unit(channel.unit)};")
         for state in system.states:
             meaning = _string(format_expression(equations.meaning(state)))
             attributes = _unit(state.unit, "start = 0, fixed = true")

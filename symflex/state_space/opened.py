@@ -14,6 +14,7 @@ from symflex.algebra import LAPLACE
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import (
     Attribute,
+    Equation,
     Expression,
     Name,
     Negative,
@@ -30,7 +31,8 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
-from symflex.model import Model, Signal
+from symflex.library.blocks import BLOCKS
+from symflex.model import Input, Model, Output, Signal
 
 PARTS_LIMIT = 100_000
 """Parts that an expression may have once its definitions are opened."""
@@ -86,6 +88,30 @@ def with_filters_apart(model: Model) -> Model:
     return replace(model, elements=elements, signals=(*signals, *splitter.added), outputs=outputs)
 
 
+def without_delays(model: Model) -> tuple[Model, dict[str, tuple[str, Expression]]]:
+    """Return a model cut at its dead times, whose parts are rational, and where.
+
+    What leaves a dead time is an input of the cut model; by its name, the output that enters there, and T.
+    """
+    apart, late = with_filters_apart(opened(model)), {}
+    times = {b.name: dict(b.values)["T"] for b in apart.blocks if b.block is BLOCKS["delay"]}
+    inputs, outputs, signals = list(model.inputs), list(apart.outputs), list[Signal]()
+    for x in apart.signals:
+        match x.expression:
+            case Product(factors) if delays := [
+                f for f in factors if isinstance(f, Name) and f.name in times
+            ]:
+                late[x.name] = (f"{x.name}_ahead", sum_of(times[f.name] for f in delays))
+                inputs.append(Input(x.name, "signal"))
+                outputs.append(Output(late[x.name][0], product_of(f for f in factors if f not in delays)))
+            case _:
+                signals.append(x)
+    cut = replace(apart, inputs=tuple(inputs), outputs=tuple(outputs), signals=tuple(signals))
+    used = {n.name for _, e in cut.expressions() for n in names(e)}
+    blocks = tuple(b for b in cut.blocks if b.name not in times or b.name in used)
+    return (replace(cut, blocks=blocks) if late else model), late
+
+
 def _opened(expression: Expression, known: Mapping[str, Expression], sizes: Mapping[str, int]) -> Expression:
     used = names_among(expression, known)
     if sum(sizes[name] for name in used) > PARTS_LIMIT:
@@ -128,8 +154,15 @@ class _Splitter:
                 return sum_of(parts)
             case Negative(operand):
                 return negative(self.apart(owner, operand))
+            case Equation(left, right):
+                return replace(expression, left=self.apart(owner, left), right=self.apart(owner, right))
             case Quotient(numerator, denominator):
                 return quotient(self.apart(owner, numerator), denominator)
+            case Product(factors) if over := [
+                f for f in factors if isinstance(f, Quotient) and any(map(self._is_block, nodes(f.numerator)))
+            ]:
+                above = product_of([over[0].numerator, *(f for f in factors if f is not over[0])])
+                return self.apart(owner, quotient(above, over[0].denominator))
             case Product(factors) if any(self._varies(f) for f in factors):
                 applied = [f.name for f in factors if self._is_block(f)]
                 value = product_of(
