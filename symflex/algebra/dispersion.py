@@ -246,5 +246,4 @@ class KernelTable:
         )
 
 
-NO_KERNELS = KernelTable()
-"""The table of a lumped system."""
+NO_KERNELS = KernelTable()  # the table of a lumped system

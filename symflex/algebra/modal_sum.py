@@ -25,11 +25,8 @@ from symflex.algebra.factored import Factored, common_denominator
 from symflex.algebra.ring import PolynomialMemo, Ring, by_powers, coefficients_of
 from symflex.errors import BudgetError, Diagnostic
 
-KEY_LIMIT = 4000
-"""Products of exponentials a sum may have."""
-
-Key = tuple[int, ...]
-"""Which root every slot of a frame takes."""
+KEY_LIMIT = 4000  # products of exponentials a sum may have
+Key = tuple[int, ...]  # which root every slot of a frame takes
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,12 +31,10 @@ TRIES = 2_000
 SQUARES_SEEN = 40
 """Points at which a radicand is a square until it is taken for one: it is none with odds ``2^-40``."""
 
-NEW = -1
-"""Stands for the position of a root that is no generator."""
+NEW = -1  # stands for the position of a root that is no generator
 
 Element = TypeVar("Element", int, "fmpz_mpoly")
-Point = tuple[int, dict[str, int]]
-"""A prime, and a residue for every generator."""
+Point = tuple[int, dict[str, int]]  # a prime, and a residue for every generator
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import gcd
 
-Monomial = tuple[tuple[int, int], ...]
-"""Positions of generators, ascending, with their exponents."""
+Monomial = tuple[tuple[int, int], ...]  # positions of generators, ascending, with their exponents
 
 
 class SparsePolynomial:

@@ -49,8 +49,7 @@ class Step(IntEnum):
 
 _GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
 
-ZERO, ONE = 0, 1
-"""The first two steps of every program are these numbers."""
+ZERO, ONE = 0, 1  # the first two steps of every program are these numbers
 
 
 def _pair_key(kind: int, x: int, y: int) -> int:

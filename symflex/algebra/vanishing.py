@@ -23,8 +23,7 @@ from symflex.algebra.dispersion import Dispersion, KernelTable
 from symflex.algebra.factored import Factored
 from symflex.algebra.ring import Ring, by_powers, degree_in, terms_of
 
-TERMS = (8, 16, 32)
-"""Lengths of Taylor series that are tried."""
+TERMS = (8, 16, 32)  # lengths of Taylor series that are tried
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +108,7 @@ def _next_prime(prime: int) -> int:
 FIELDS = 400
 STEP = 8
 FIRST_PRIME = next(primes())
-BASE = 3
-"""Powers of it stand for exponentials."""
+BASE = 3  # powers of it stand for exponentials
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,8 +244,7 @@ def random_values(names: Sequence[str], random: Random, field: TaylorField) -> d
 
 BRANCHES = 4
 ORIGIN_TERMS = 80
-TRIALS = 4
-"""Values of the parameters that are tried in each field."""
+TRIALS = 4  # values of the parameters that are tried in each field
 
 
 class OriginSeries:

@@ -27,8 +27,7 @@ from typing import Any
 
 import numpy as np
 
-Values = Any
-"""A number, an array of numbers, or lists of these."""
+Values = Any  # a number, an array of numbers, or lists of these
 
 
 def fundamental_minors(

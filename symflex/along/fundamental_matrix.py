@@ -58,29 +58,23 @@ if TYPE_CHECKING:
     from symflex.along.system import Coefficients, Lines, SingularBeginning, VaryingSystem
 
 Derived = TypeVar("Derived", arb_poly, Polynomial)
-Matrix = list[list[Polynomial]]
-"""Entries as polynomials in u."""
-
-GUARD = 32
-"""Bits beyond those asked for: products of a few dozen steps round a few hundred times."""
+Matrix = list[list[Polynomial]]  # entries as polynomials in u
+GUARD = 32  # bits beyond those asked for: products of a few dozen steps round a few hundred times
 BEYOND = 32
 """Polynomials in u are bounded on a disc so many times larger than what they are used on."""
-FEWEST_BITS = 30
-"""Precision of orders in u that hardly matter."""
+FEWEST_BITS = 30  # precision of orders in u that hardly matter
 ASIDE = 1 / 16
 """Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
 CUTS = 4
 """Parts of an octave: a quarter more in abs(u) costs some two bits, far fewer than are kept to spare."""
-HIGHEST_CUT = 1000
-"""Power of two of abs(u) beyond which bounds come near the end of doubles."""
+HIGHEST_CUT = 1000  # power of two of abs(u) beyond which bounds come near the end of doubles
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 TINY = 2.0**-200
 """Share of the largest abs(u), of which a smaller one is not distinguished where much is left to spare."""
 MOST_MEMORY = 4e9
 """Bytes of all steps: a library that asks for more than there is ends the process."""
-SMALL = 2.0**-10
-"""Share of what a value moves by on a ball, that may be left out of its series."""
+SMALL = 2.0**-10  # share of what a value moves by on a ball, that may be left out of its series
 
 
 @dataclass(frozen=True, eq=False)
@@ -437,8 +431,7 @@ def _needed(bits: int, left: float) -> int:
     return min(bits, max(FEWEST_BITS, ceil(left)))
 
 
-Column = list[list[Number]]
-"""Per state its orders in u."""
+Column = list[list[Number]]  # per state its orders in u
 
 
 def _by_recurrence(

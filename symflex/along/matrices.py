@@ -26,8 +26,7 @@ from symflex.expressions import Call
 if TYPE_CHECKING:
     from symflex.along.minors import Minor, MinorSums
 
-BUCKET = 64
-"""Bits are rounded up to a multiple of this, so that few matrices are expanded."""
+BUCKET = 64  # bits are rounded up to a multiple of this, so that few matrices are expanded
 FEWEST_BITS = 192
 """Least precision of an expansion, which roots to 30 digits need; half of it saves a third of the time."""
 LOW = 8.0
@@ -45,10 +44,8 @@ nobody announced is followed with few of them.
 FURTHEST = 3
 HIGHEST_OCTAVE = 400
 """Nobody asks for a frequency [rad/s] beyond this power of two, or below its inverse."""
-PARTS = 4
-"""Parts of an octave on which waves grow about equally far."""
-MORE_ORDERS = 6
-"""Powers of s less the middle of a wide ball that are kept beyond those asked for."""
+PARTS = 4  # parts of an octave on which waves grow about equally far
+MORE_ORDERS = 6  # powers of s less the middle of a wide ball that are kept beyond those asked for
 NOWHERE = acb("nan", "nan")
 
 

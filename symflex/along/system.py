@@ -18,14 +18,12 @@ from typing import Protocol
 
 from flint import acb, acb_poly, arb, arb_poly
 
-Place = tuple[int, int]
-"""Row and column."""
+Place = tuple[int, int]  # row and column
 Polynomial = arb_poly | acb_poly
 Number = arb | acb
 Coefficients = dict[Place, Polynomial]
 """Entries of a matrix that are not zero, as polynomials in x less the point of expansion."""
-Lines = tuple[int, ...]
-"""Rows or columns of a minor."""
+Lines = tuple[int, ...]  # rows or columns of a minor
 
 
 @dataclass(frozen=True, slots=True)

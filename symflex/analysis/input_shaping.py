@@ -34,17 +34,13 @@ from symflex.roots.root import decimals, figure
 from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.shape/1"
-TOLERANCE = 0.05
-"""Residual vibration V that an EI shaper allows: the usual one in its literature."""
+TOLERANCE = 0.05  # residual vibration V that an EI shaper allows: the usual one in its literature
 MORE_DIGITS = 24
 """Digits of poles beyond those printed: responses to long inputs lose a few to each other."""
-MORE_MODES = 8
-"""Searched beyond those asked for, as some may not oscillate."""
-MOST_IMPULSES = 2187
-"""Most impulses: those of seven modes with three each."""
+MORE_MODES = 8  # searched beyond those asked for, as some may not oscillate
+MOST_IMPULSES = 2187  # most impulses: those of seven modes with three each
 TEXT_DIGITS = 10
-LEAST = 1e-300
-"""The smallest bound that is printed."""
+LEAST = 1e-300  # the smallest bound that is printed
 
 
 def _ei(k: arb) -> tuple[arb, ...]:

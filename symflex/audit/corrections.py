@@ -51,8 +51,7 @@ from symflex.transfer import TransferFunction
 # Limits of the search, which is an offer and need not find anything.
 MOST_PARTS = 150
 MOST_TERMS = 1000
-MOST_WORK = 20_000
-"""Number of terms in all values that parts would need."""
+MOST_WORK = 20_000  # number of terms in all values that parts would need
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15

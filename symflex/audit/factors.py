@@ -134,11 +134,9 @@ def full_angles(field: Arithmetic, ring: Ring, factor: fmpz_mpoly) -> Factored |
     return field.reduced(total)
 
 
-TERMS = (8, 16, 32, 64)
-"""Numbers of terms of a power series, tried in turn."""
+TERMS = (8, 16, 32, 64)  # numbers of terms of a power series, tried in turn
 LARGEST_FACTOR = 60
-MOST_WAVES = 3
-"""Larger factors take too long; the limit is then left open."""
+MOST_WAVES = 3  # larger factors take too long; the limit is then left open
 
 
 def behaviour_at_zero(field: Arithmetic, value: Factored) -> tuple[Factored, Fraction] | None:

@@ -43,8 +43,7 @@ LARGEST_NUMBER_BITS = 20_000
 CIRCULAR = ("cos", "sin", "tan")
 UNIT = "unit(i)"
 """Generator of the imaginary unit, for formulas in omega: ``(-x)^(1/4)`` is ``x^(1/4)*(1 + i)/sqrt(2)``."""
-HOLE = "?"
-"""Generator that stands for a part of a formula whose right value is looked for."""
+HOLE = "?"  # generator that stands for a part of a formula whose right value is looked for
 
 Key = tuple[tuple[str, Fraction], ...]
 Recipe = tuple[tuple[Key, int], ...]

@@ -31,8 +31,7 @@ GRID_POINTS = 300
 REFINEMENTS = 14
 STEPS = 12
 MOST_PEAKS = 12
-UNBOUNDED = 180
-"""Decibels no finite deviation reaches; degrees do not exceed it."""
+UNBOUNDED = 180  # decibels no finite deviation reaches; degrees do not exceed it
 NEGLIGIBLE = 1e-9
 DEFAULT_BAND = (Fraction(1, 10), Fraction(1000))
 _DIRECTIONS = ((4, 3, 5), (3, -4, 5), (12, 5, 13), (5, 12, 13), (15, -8, 17), (8, 15, 17), (24, -7, 25))

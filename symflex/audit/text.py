@@ -14,8 +14,7 @@ from symflex.print.forms import print_form
 from symflex.print.text import INDENT, WIDTH, hanging, wrapped
 
 NOTHING = 1e-30
-NEGLIGIBLE = 1e-6
-"""Decibels or degrees below which a deviation is rounding."""
+NEGLIGIBLE = 1e-6  # decibels or degrees below which a deviation is rounding
 VERDICTS = {
     "equal": "proved equal to the derived function",
     "differs": "DIFFERS from the derived function: proved",

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 
 BITS_PER_DIGIT = math.log2(10)
-MOST_BITS = 20_000
-"""No value asked for so far needed a tenth of it."""
+MOST_BITS = 20_000  # no value asked for so far needed a tenth of it
 
 Settled = TypeVar("Settled")
 

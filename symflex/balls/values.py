@@ -20,10 +20,8 @@ from flint import acb, acb_series, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.balls.precision import precision, series_terms
 
-Value = acb | acb_series
-"""A number, or a power series in the displacement from one."""
-Arithmetic = Any
-"""A ball or a power series, real or complex. Their arithmetic is one."""
+Value = acb | acb_series  # a number, or a power series in the displacement from one
+Arithmetic = Any  # a ball or a power series, real or complex. Their arithmetic is one.
 
 
 Numeral = TypeVar("Numeral", Fraction, arb, float)

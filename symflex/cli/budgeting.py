@@ -31,19 +31,15 @@ if TYPE_CHECKING:
 
 MEMORY: Final = "2 GB"
 MEMORY_VARIABLE: Final = "SYMFLEX_MEMORY"
-SMALLEST_MEMORY: Final = GB // 4
-"""Python and the libraries of a fit take 150 MB."""
+SMALLEST_MEMORY: Final = GB // 4  # Python and the libraries of a fit take 150 MB
 IN_ORDER: Final = 0.85
 """Part of the memory from which loops stop in order: the rest is for single operations and for printing."""
-GRACE: Final = 0.85
-"""Seconds after its time in which a command may stop in order."""
-INTERVAL: Final = 0.05
-"""Seconds between two looks; a process can take 100 MB in between."""
+GRACE: Final = 0.85  # seconds after its time in which a command may stop in order
+INTERVAL: Final = 0.05  # seconds between two looks; a process can take 100 MB in between
 FINISHED: Final = getattr(signal, "SIGUSR1", signal.SIGTERM)
 """Sent by the process that works when it has written everything; not every system has it."""
 STDERR: Final = 2
-LONGEST_WORDS: Final = 200
-"""Letters of a library's last words that are passed on."""
+LONGEST_WORDS: Final = 200  # letters of a library's last words that are passed on
 UNITS: Final = {"MB": 10**6, "GB": GB, "TB": 10**12, "MIB": 2**20, "GIB": 2**30, "TIB": 2**40}
 SIZE: Final = re.compile(r"\s*(\d{1,9}(?:\.\d{1,9})?)\s*([MGT]i?B)\s*", re.ASCII | re.IGNORECASE)
 

@@ -109,8 +109,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
     return code
 
 
-LONG = 5_000
-"""Terms beyond which a print is announced: it takes seconds, or minutes."""
+LONG = 5_000  # terms beyond which a print is announced: it takes seconds, or minutes
 
 
 def chosen_representation(representation: str, form: str | None) -> str:

@@ -273,8 +273,7 @@ def _parameter_json(parameter: ParameterPort) -> dict[str, object]:
     }
 
 
-LONGEST_FACTOR = 16
-"""Characters of an exact factor beyond which it is said about how large it is."""
+LONGEST_FACTOR = 16  # characters of an exact factor beyond which it is said about how large it is
 
 
 @click.command("units")

@@ -13,12 +13,9 @@ from typing import TYPE_CHECKING, TextIO
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-DELAY = 1.0
-"""Seconds before anything is drawn: what is done by then needs no bar."""
-INTERVAL = 0.1
-"""Seconds between two drawings."""
-FIRST_WORD = 2.0
-"""Seconds before a command without a bar says that it works."""
+DELAY = 1.0  # seconds before anything is drawn: what is done by then needs no bar
+INTERVAL = 0.1  # seconds between two drawings
+FIRST_WORD = 2.0  # seconds before a command without a bar says that it works
 COLUMNS = 79
 BAR = 20
 
@@ -151,8 +148,7 @@ class Waiting:
         self.drawn = len(line)
 
 
-_waiting: Waiting | None = None
-"""The one of the command that runs."""
+_waiting: Waiting | None = None  # the one of the command that runs
 
 
 @contextmanager

@@ -36,8 +36,7 @@ LARGE = 1e-9
 """Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
 SMALLEST = float_info.min / float_info.epsilon
 """Share of the largest coefficient below which another one is less than its rounding."""
-PAIR = 2
-"""Poles of a section of second order, and zeros."""
+PAIR = 2  # poles of a section of second order, and zeros
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,8 +27,7 @@ from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.derivative import differentiated
 from symflex.codegen.program.evaluate import nearest_double
 
-WIDTH = 100
-"""Columns of generated JavaScript."""
+WIDTH = 100  # columns of generated JavaScript
 
 KEYWORDS = frozenset(
     """
@@ -53,8 +52,7 @@ PARTS = parts_of("javascript.js")
 
 RESERVED = KEYWORDS | NAMES | {name for names in PARTS for name in names}
 
-LONGEST = 60
-"""Characters of an expression that is used more than once, from which it gets a name."""
+LONGEST = 60  # characters of an expression that is used more than once, from which it gets a name
 
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 
@@ -76,8 +74,7 @@ class Real:
         return self.text if self.binding >= tightest else f"({self.text})"
 
 
-Part = Real | None
-"""One part of a complex number; ``None`` is exactly zero."""
+Part = Real | None  # one part of a complex number; None is exactly zero
 
 
 def _literal(value: float) -> Part:

@@ -16,8 +16,7 @@ from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import default_value, identifiers
 from symflex.codegen.program.nodes import ONE, CodePiece, Laplace, Piecewise
 
-WIDTH = 92
-"""Columns, as Julia's own style has it."""
+WIDTH = 92  # columns, as Julia's own style has it
 
 KEYWORDS = frozenset(
     "abstract as baremodule begin break catch const continue do else elseif end export false finally for "

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
-ROOT_DIGITS = 15
-"""Digits to which roots are found for a table; it prints fewer."""
+ROOT_DIGITS = 15  # digits to which roots are found for a table; it prints fewer
 
 LOOP_TITLES = {
     "locus": "Root locus",

@@ -29,11 +29,8 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import constant_symbols, plain_printer
 from symflex.transfer import AnyTransferFunction, TransferFunction
 
-WIDTH = 88
-"""Columns of generated MATLAB."""
-
-LONGEST = 63
-"""Characters that MATLAB tells identifiers apart by."""
+WIDTH = 88  # columns of generated MATLAB
+LONGEST = 63  # characters that MATLAB tells identifiers apart by
 
 KEYWORDS = frozenset(
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
@@ -57,13 +54,11 @@ FUNCTIONS = frozenset(
 WORDS = frozenset({"s", "G", "given", "value"})
 """Variables of the generated code; parameters leave them to it."""
 
-TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})
-"""What no function of the file may hide."""
+TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})  # what no function of the file may hide
 
 PARTS = parts_of("matlab.m")
 
-NAMES = frozenset({"default_parameters"}.union(*PARTS))
-"""Names of the functions that others call."""
+NAMES = frozenset({"default_parameters"}.union(*PARTS))  # names of the functions that others call
 
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
@@ -77,16 +72,14 @@ EXPANSION = (
 
 _LINK = re.compile(r"<(?=[A-Za-z/])")
 
-ROOM = WIDTH - 4
-"""Columns of help texts."""
+ROOM = WIDTH - 4  # columns of help texts
 
 OTHER_FIELDS = frozenset(
     "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
 )
 """Other fields of the struct that the main function returns."""
 
-SYSTEM_ROLES = ("system", "coefficients")
-"""The two functions of a rational transfer function."""
+SYSTEM_ROLES = ("system", "coefficients")  # the two functions of a rational transfer function
 
 
 # ------------------------------------------------------------------------------------------- expressions

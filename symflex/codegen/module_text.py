@@ -26,8 +26,7 @@ FORMULA_TERMS, KERNEL_TERMS, NESTED_SIZE = 1000, FORMULA_LENGTH // 16, 300
 """Terms up to which a formula is formatted, without kernels and with them (a product of two takes some
 twenty characters), and operations up to which a nested form is."""
 
-NAMED = 12
-"""Members of a network that a docstring names: three lines."""
+NAMED = 12  # members of a network that a docstring names: three lines
 
 FOLLOWED = (
     "Waves are followed piece by piece along members whose coefficients vary. The faster they oscillate, the "

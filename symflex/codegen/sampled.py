@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Export
     from symflex.state_space.sampled import Sampling
 
-SHOWN_POLES = 8
-"""Poles in z that a comment lists."""
+SHOWN_POLES = 8  # poles in z that a comment lists
 
 METHODS = {
     "zoh": "the input held from one to the next, exactly",

@@ -142,11 +142,8 @@ class StateEquations:
         return tuple(self._arranger.coefficient(factor) for factor in factors.values())
 
 
-TERM_LIMIT = 20_000
-"""Terms of all entries together; beyond that the text would be megabytes."""
-
-EQUATION_LINES = 60
-"""Lines of equations in the docstring."""
+TERM_LIMIT = 20_000  # terms of all entries together; beyond that the text would be megabytes
+EQUATION_LINES = 60  # lines of equations in the docstring
 
 WORK, FEWEST = 400 * 12**3, 20
 """Frequencies times the cube of the order, which a measurement may cost, and its fewest frequencies."""

@@ -53,20 +53,14 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import FieldProblem, Model
 
-LENGTH: Final = 150.0
-"""Length of a row of fields [points]."""
-SHORTEST: Final = 0.22
-"""Share of the row that each takes at least."""
+LENGTH: Final = 150.0  # length of a row of fields [points]
+SHORTEST: Final = 0.22  # share of the row that each takes at least
 LEADING: Final = 3.0
-APART: Final = 14.0
-"""Least distance of two columns of conditions [points]."""
+APART: Final = 14.0  # least distance of two columns of conditions [points]
 OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
 """What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
-BENDING: Final = 4
-"""Order in x of a beam's equation."""
-
-STRING: Final = (0.0,)
-"""Depths of a string, a line without any."""
+BENDING: Final = 4  # order in x of a beam's equation
+STRING: Final = (0.0,)  # depths of a string, a line without any
 STIFF_SECTIONS: Final = {unit_of(unit).dimension for unit in ("Pa", "N*m^2")}
 """Dimensions of a modulus, and of what resists bending or torsion."""
 

@@ -23,14 +23,11 @@ if TYPE_CHECKING:
 
     from symflex.drawing.geometry import Drawing, Point
 
-CELL: Final = 2.5
-"""Width of the grid on which wires are routed [points]."""
-CLEAR: Final = 1.6
-"""Space between a wire and what it passes."""
+CELL: Final = 2.5  # width of the grid on which wires are routed [points]
+CLEAR: Final = 1.6  # space between a wire and what it passes
 BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 """What a corner, a dashed wire that is crossed, and another line that is, cost in cells of length."""
-LONGEST: Final = 300.0
-"""Cost of a way that would rather confuse."""
+LONGEST: Final = 300.0  # cost of a way that would rather confuse
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
 Cell = tuple[int, int]
 

@@ -21,20 +21,14 @@ if TYPE_CHECKING:
 
     from symflex.drawing.scheme import DrawnNetwork
 
-BRIDGE: Final = 0.5
-"""What it costs that a part joins no neighbours, besides what it spans."""
-MEMBER: Final = 3.0
-"""How much more that is of a member, which is long and looks stiff at corners."""
-MOST_MOVES: Final = 40
-"""Rounds of moving single nodes; small networks need three or four."""
-LARGEST: Final = 40
-"""Nodes of a network whose order is improved; longer ones are chains."""
+BRIDGE: Final = 0.5  # what it costs that a part joins no neighbours, besides what it spans
+MEMBER: Final = 3.0  # how much more that is of a member, which is long and looks stiff at corners
+MOST_MOVES: Final = 40  # rounds of moving single nodes; small networks need three or four
+LARGEST: Final = 40  # nodes of a network whose order is improved; longer ones are chains
 LANES: Final = {"rotation": 1, "translation": 2, "planar": 2, "plane": 2}
 """Which domain stands to the left of which, where a part joins both; circuits stand at 0."""
-LONGEST: Final = 8
-"""Links of a chain that is drawn as a whole."""
-KEPT: Final = 2
-"""Links at either end of a longer one."""
+LONGEST: Final = 8  # links of a chain that is drawn as a whole
+KEPT: Final = 2  # links at either end of a longer one
 
 
 def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ...]:

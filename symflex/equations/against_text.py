@@ -22,8 +22,7 @@ from symflex.library.elements import LinearForm
 from symflex.model.linearity import integer_exponent
 
 FAULT = "SF991"
-Point = tuple["Mapping[str, int]", int]
-"""A number for every generator, and the prime."""
+Point = tuple["Mapping[str, int]", int]  # a number for every generator, and the prime
 
 
 def compare(expression: Expression, read: int | None, leaf: Callable[[Expression], int], prime: int) -> None:

@@ -77,8 +77,7 @@ GENERATOR_LIMIT = 1_000
 UNKNOWN_LIMIT = 2_500
 """Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix, which
 is 50 MB of doubles."""
-SPARSE_LIMIT = 500_000
-"""Names, and unknowns, of equations over a sparse ring."""
+SPARSE_LIMIT = 500_000  # names, and unknowns, of equations over a sparse ring
 
 
 def assemble(

@@ -31,8 +31,7 @@ from symflex.library.partial_fractions import Matrix
 
 Value = TypeVar("Value")
 
-Lumped = tuple[int, int, int]
-"""Row, column, entry."""
+Lumped = tuple[int, int, int]  # row, column, entry
 Element = tuple[int, tuple[int, ...], int, tuple[int, ...], tuple[int, ...]]
 """First row, entries of coefficients, entry of the length, unknowns at the start and at the end."""
 Group = tuple[tuple[tuple[int, int], ...], tuple[int, ...], tuple[Element, ...]]

@@ -35,10 +35,8 @@ if TYPE_CHECKING:
     Term = tuple[Combination, str, Combination]  # powers, then "sin" or "cos" of an angle, or ""
     Terms = Mapping[Term, Fraction]
 
-MOST_TERMS: Final = 500
-"""Beyond them a product is left alone: nobody reads as many."""
-LONGEST: Final = 500
-"""Parts of an expression that is tried."""
+MOST_TERMS: Final = 500  # beyond them a product is left alone: nobody reads as many
+LONGEST: Final = 500  # parts of an expression that is tried
 ONE: Final[Term] = ((), "", ())
 HALF: Final = Fraction(1, 2)
 

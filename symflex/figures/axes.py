@@ -187,12 +187,10 @@ def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np
         return np.asarray(np.where(size > limit, finite / size * limit, finite), np.complex128)
 
 
-Limits = tuple[float, float]
-"""The lower and the higher end of an axis."""
+Limits = tuple[float, float]  # the lower and the higher end of an axis
 LARGEST = 1e30
 """Ends of an axis: far below what single precision holds, in which readers of pages compute."""
-NARROWEST = 1e-6
-"""Least length of an axis over its ends: its ticks have six digits."""
+NARROWEST = 1e-6  # least length of an axis over its ends: its ticks have six digits
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,8 +241,7 @@ def root_figure(axes: Axes) -> Figure:
     return figure
 
 
-FREE = AxisLimits()
-"""Every axis is as the figure chooses it."""
+FREE = AxisLimits()  # every axis is as the figure chooses it
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,10 +53,8 @@ if TYPE_CHECKING:
 
 HEIGHT_INCHES: Final = 3.2
 LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2
-UNIT_INCHES: Final = 1.05
-"""Height of the panel of every unit but the first."""
-RATIO: Final = 1.25
-"""Height of the panel of magnitudes over that of phases."""
+UNIT_INCHES: Final = 1.05  # height of the panel of every unit but the first
+RATIO: Final = 1.25  # height of the panel of magnitudes over that of phases
 PHASE_MARGIN: Final = 1.12
 PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
 """Degrees between ticks: the first that leaves fewer ticks than :data:`PHASE_TICKS`."""
@@ -67,8 +65,7 @@ UNDAMPED_REACH: Final = 0.01
 """Values this close to such a root, relative to its frequency, do not count for the limits."""
 ASYMPTOTE: Final = 0.4
 """Width of asymptotes [pt]; they are drawn of functions of finite order, whose limits hold on s = j omega."""
-UNDAMPED_MARGIN_DB: Final = 15.0
-"""Room beyond the damped values where peaks are cut off."""
+UNDAMPED_MARGIN_DB: Final = 15.0  # room beyond the damped values where peaks are cut off
 
 
 def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:

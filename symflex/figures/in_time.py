@@ -45,13 +45,11 @@ VISIBLE: Final = 1e-3
 """Radius over the largest value from which its band is drawn: about the width of a line."""
 PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 POINTS: Final = 801
-DIGITS: Final = 6
-"""Digits of values, far more than a line shows."""
+DIGITS: Final = 6  # digits of values, far more than a line shows
 RESIDUAL_INCHES: Final = 2.3
 SPAN: Final = (0.5, 1.5)
 RATIOS: Final = 401
-TICK: Final = 5
-"""Percent of residual vibration that designers ask for."""
+TICK: Final = 5  # percent of residual vibration that designers ask for
 
 
 def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:

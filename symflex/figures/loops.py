@@ -90,12 +90,10 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
 }
 """Shape, colour and size of marks."""
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
-CLOSE: Final = 0.3
-"""Narrowest width shown, over the height."""
+CLOSE: Final = 0.3  # narrowest width shown, over the height
 FAR_OUT, ZEROS_OUT, AGREE = 2.0, 1.3, 1.001
 """Over the curves shown: poles that hardly move are left out, zeros shown, proved poles theirs."""
-POINTED: Final = 0.06
-"""Length of a curve over the height shown from which on it has an arrow."""
+POINTED: Final = 0.06  # length of a curve over the height shown from which on it has an arrow
 
 
 def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
@@ -255,15 +253,12 @@ Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
 """Values along the imaginary axis, and what is known of the poles."""
 WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
-REACHES: Final = (1.5, 2.5)
-"""Half the side of the square shown of a loop gain, about -1."""
-OBLONG: Final = 4.0
-"""Limits asked for whose ratio exceeds this have a scale each."""
+REACHES: Final = (1.5, 2.5)  # half the side of the square shown of a loop gain, about -1
+OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale each
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
 """Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
-WITHIN: Final = 0.9
-"""An arrow stands in so much of what is shown."""
+WITHIN: Final = 0.9  # an arrow stands in so much of what is shown
 
 
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:

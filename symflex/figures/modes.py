@@ -56,12 +56,9 @@ PANELS_IN_COLUMN: Final = 3
 NAMES_LIMIT: Final = 12
 NAME_INCHES: Final = 0.06
 MARGIN: Final = 1.2
-SWING: Final = 0.15
-"""How far the largest displacement is drawn in a plan, as a share of its size."""
-VISIBLE: Final = 0.1
-"""Share of the largest motion from which what moves in quadrature is drawn."""
-LEAST: Final = 1e-6
-"""Numbers from here on are written out."""
+SWING: Final = 0.15  # how far the largest displacement is drawn in a plan, as a share of its size
+VISIBLE: Final = 0.1  # share of the largest motion from which what moves in quadrature is drawn
+LEAST: Final = 1e-6  # numbers from here on are written out
 FINER, MOST_POINTS = 6, 8000
 """Points drawn for every one that no wave is missed by, which makes a hundred a half wave; and in all."""
 UNIT_NAMES: Final = {"m": "displacement", "rad": "angle", "V": "voltage", "": "signal"}

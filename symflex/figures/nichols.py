@@ -28,8 +28,7 @@ CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)
 REACH_DB: Final = 40.0
 WIDEST: Final = 1080.0
 """Magnitudes [dB] and phases [deg] shown at most, unless others are asked for."""
-NOTE: Final = 5.5
-"""Type of the contours' numbers [pt]."""
+NOTE: Final = 5.5  # type of the contours' numbers [pt]
 
 
 def draw_nichols(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 Vector = tuple[float, float]
 
 AT_REST: Final = 1e-9
-APART: Final = 0.3
-"""Space between members that no node joins, as a share of the length of one."""
+APART: Final = 0.3  # space between members that no node joins, as a share of the length of one
 
 
 @dataclass(frozen=True, slots=True)

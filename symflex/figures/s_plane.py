@@ -29,23 +29,18 @@ if TYPE_CHECKING:
 
 GAP_RATIO: Final = 5.0
 """Neighbouring natural frequencies further apart than this do not belong together."""
-DECADES: Final = 100.0
-"""Resonances are shown up to so many times the lowest."""
+DECADES: Final = 100.0  # resonances are shown up to so many times the lowest
 CROWDED: Final = 0.15
 """Roots nearer to the origin than this share of those shown are one blot: an inset shows them."""
-REAL_REACH: Final = 2.5
-"""Real roots are shown up to so many times the highest resonance shown."""
+REAL_REACH: Final = 2.5  # real roots are shown up to so many times the highest resonance shown
 UNSTABLE_REACH: Final = 10.0
 """Poles in the right half-plane are shown up to so many times what else is; the others at the border."""
-MARGIN: Final = 0.2
-"""Room around the roots shown, over their size."""
-MARGIN_FOR_NOTES: Final = 0.5
-"""The same at a side where notes name the roots outside."""
+MARGIN: Final = 0.2  # room around the roots shown, over their size
+MARGIN_FOR_NOTES: Final = 0.5  # the same at a side where notes name the roots outside
 RIM: Final = (0.95, 1.03)
 """A root so near the frame, relative to its distance from the origin, would be cut by it."""
 WIDER: Final = 1.085
-WIDENINGS: Final = 8
-"""Times the view may be widened so that no root is cut by its frame."""
+WIDENINGS: Final = 8  # times the view may be widened so that no root is cut by its frame
 PLAIN_LIMIT: Final = 1e5
 ROUNDING: Final = 1e-12
 """Share of a root's size that four operations in doubles may lose, with room."""
@@ -217,16 +212,12 @@ def _number(value: float) -> str:
 
 
 POINTS_PER_INCH: Final = 72.0
-MARK_POINTS: Final = 3.2
-"""Half the size of a cross or circle, with its line."""
-PAD_POINTS: Final = 1.5
-"""Space between a note and the frame."""
-LISTED: Final = 5
-"""Roots that are named at one arrow; of the others their number is told."""
+MARK_POINTS: Final = 3.2  # half the size of a cross or circle, with its line
+PAD_POINTS: Final = 1.5  # space between a note and the frame
+LISTED: Final = 5  # roots that are named at one arrow; of the others their number is told
 NOTE_LINE_POINTS: Final = 8.5
 LEAST_NOTE_POINTS: Final = 6.0
-ARROW: Final = 0.13
-"""Length of an arrow over the smaller side of its panel."""
+ARROW: Final = 0.13  # length of an arrow over the smaller side of its panel
 SHIFTS: Final = 8
 """How many heights of a note it may be moved from its arrow to where nothing stands."""
 TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
@@ -236,8 +227,7 @@ GRID: Final = 3.0
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Signs of roots that are named at an arrow; the curves of a locus lead to poles at the last gain."""
 
-Box = tuple[float, float, float, float]
-"""Left, bottom, right, top [points]."""
+Box = tuple[float, float, float, float]  # left, bottom, right, top [points]
 
 
 @dataclass(frozen=True, slots=True)

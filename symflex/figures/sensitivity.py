@@ -40,8 +40,7 @@ if TYPE_CHECKING:
     from symflex.loops import AnyLoop
 
 HEIGHT_INCHES: Final = 2.4
-LOWEST_DB: Final = 63.0
-"""Magnitudes are shown from so far below 0 dB."""
+LOWEST_DB: Final = 63.0  # magnitudes are shown from so far below 0 dB
 
 
 def draw_sensitivity(loop: AnyLoop, canvas: Canvas) -> Figure:

@@ -23,8 +23,7 @@ STABLE: Final = "#DDEBF5"
 """A tint, pale enough for every line on it."""
 HEIGHT_INCHES: Final = 2.9
 STRIP_INCHES: Final = 1.7
-LEGIBLE: Final = 0.01
-"""Least share of the area of a region in which its count stands."""
+LEGIBLE: Final = 0.01  # least share of the area of a region in which its count stands
 MOST_PIXELS: Final = 1024
 
 

@@ -28,12 +28,10 @@ if TYPE_CHECKING:
 
 
 COLUMN_INCHES: Final = 3.5
-PAGE_INCHES: Final = 7.16
-"""A column and the text of a page in journals of the IEEE."""
+PAGE_INCHES: Final = 7.16  # a column and the text of a page in journals of the IEEE
 NOTE_POINTS: Final = 7.0
 TITLE_POINTS: Final = 8.0
-LINE_INCHES: Final = 0.13
-"""Height of a line of a title."""
+LINE_INCHES: Final = 0.13  # height of a line of a title
 TITLE_SPACING: Final = 0.95
 DOTS_SHOWN: Final = 120
 """Dots per inch of a figure in a notebook: a column is then as wide as its lines of text."""

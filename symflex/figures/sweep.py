@@ -56,24 +56,19 @@ if TYPE_CHECKING:
     Family = tuple[Labelled, int]  # the parameter that lines run along, and its axis
 
 PANEL_INCHES: Final = 2.1
-DECADES: Final = 15.0
-"""Values that span more than this factor stand on a logarithmic axis."""
+DECADES: Final = 15.0  # values that span more than this factor stand on a logarithmic axis
 BAND: Final = (5, 95)
 MEDIAN: Final = 50
 THREE_DIGITS: Final = 1e3
-PLAIN: Final = 1e5
-"""Numbers from here on are written with a power of ten."""
-FEW_DECADES: Final = 300.0
-"""Largest range whose decades are divided."""
+PLAIN: Final = 1e5  # numbers from here on are written with a power of ten
+FEW_DECADES: Final = 300.0  # largest range whose decades are divided
 OVERDAMPED: Final = 1.5
 """Real roots are shown as far to the left as so many times the highest imaginary part."""
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
-FEW_LINES: Final = 12
-"""Lines per mode that are distinguished by how pale they are."""
+FEW_LINES: Final = 12  # lines per mode that are distinguished by how pale they are
 PALEST: Final = 0.3
-CROWD: Final = 4000
-"""Points of a cloud beyond which marks become dots."""
+CROWD: Final = 4000  # points of a cloud beyond which marks become dots
 
 
 def draw_sweep(

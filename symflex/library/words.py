@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 from symflex.errors import nearest
 
-MISSPELT = 0.85
-"""Likeness of a word with a slip in it."""
+MISSPELT = 0.85  # likeness of a word with a slip in it
 
 
 @dataclass(frozen=True, slots=True)

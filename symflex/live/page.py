@@ -41,14 +41,11 @@ from symflex.print.mathml import EQUALS, label_mathml, math_element, transfer_fu
 from symflex.roots import Modes, PoleZeroMap, Progress, Root
 from symflex.transfer import AnyTransferFunction
 
-SCRIPTS: Final = ("discs.js", "roots.js", "page.js")
-"""Files of the script, in their order."""
+SCRIPTS: Final = ("discs.js", "roots.js", "page.js")  # files of the script, in their order
 FACTOR: Final = 10
 """A slider without a ``range`` goes from the declared value over this to the declared value times this."""
-LARGEST_DRAWING: Final = 60
-"""Elements of a model that is drawn."""
-LONGEST_FORMULA: Final = 60_000
-"""Characters of MathML that a page shows: some forty lines."""
+LARGEST_DRAWING: Final = 60  # elements of a model that is drawn
+LONGEST_FORMULA: Final = 60_000  # characters of MathML that a page shows: some forty lines
 SHOWN: Final = 0.6
 """How large a drawing is beside the formula, as a share of its size in a report."""
 MAX_WIDTH: Final = re.compile(r' style="max-width:([0-9.]+)in"')

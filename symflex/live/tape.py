@@ -52,8 +52,7 @@ from symflex.transfer import AnyTransferFunction, BoundTransferFunction, Transfe
 MODES = 10
 """Number of modes that a page follows; the edge of its window lies between that and the next ones."""
 
-ULP = 2.0**-52
-"""Bound of the relative error of a number that is rounded to a double."""
+ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a double
 
 
 def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
 
 Limits = tuple[Fraction | None, Fraction | None]
-NEAREST_ZERO = 70
-"""Halvings of the range towards zero; what is left is looked at as one piece."""
+NEAREST_ZERO = 70  # halvings of the range towards zero; what is left is looked at as one piece
 EACH_RATIO = 3.7
 MOST_FAILED = 8
 NARROW_BITS = 20
@@ -44,15 +43,11 @@ is undecided."""
 ZERO = Fraction(0)
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined where there may be boundaries without end."""
-INSIDE = 16
-"""Gains that are tried where the declared one is not in the range."""
-SHORT = 10**6
-"""Denominator of an end of the domain that is a short number."""
+INSIDE = 16  # gains that are tried where the declared one is not in the range
+SHORT = 10**6  # denominator of an end of the domain that is a short number
 EDGE_BITS = 128
-EDGE_STEPS = 1000
-"""Precision of an end of the domain, and steps towards it."""
-BEYOND = 1 + 1e-9
-"""How far a search goes beyond its end, which is a double."""
+EDGE_STEPS = 1000  # precision of an end of the domain, and steps towards it
+BEYOND = 1 + 1e-9  # how far a search goes beyond its end, which is a double
 
 
 @dataclass(frozen=True, eq=False)

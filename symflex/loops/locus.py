@@ -34,21 +34,16 @@ if TYPE_CHECKING:
     from symflex.roots.pole_zero_map import Exclusion
     from symflex.transfer import BoundTransferFunction
 
-Traceable = LoopFunction | LoopInDisc
-"""What poles are followed in."""
+Traceable = LoopFunction | LoopInDisc  # what poles are followed in
 DEFAULT_MODES = 5
-STEPS = 120
-"""Gains in all, close at the beginning: a step is then 10 % longer than the last."""
-FIRST_SHARE = 1e-5
-"""The first step, of the whole range."""
+STEPS = 120  # gains in all, close at the beginning: a step is then 10 % longer than the last
+FIRST_SHARE = 1e-5  # the first step, of the whole range
 NEWTON_STEPS = 25
 CONVERGED = 1e-12
 FAREST = 0.05
 """How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
-BEND = 0.2
-"""How far a curve may turn from step to step [rad]."""
-SHORTEST = 0.004
-"""Steps shorter than this, relative to the same, may turn as they will."""
+BEND = 0.2  # how far a curve may turn from step to step [rad]
+SHORTEST = 0.004  # steps shorter than this, relative to the same, may turn as they will
 HALVINGS = 9
 WIDER = (1.4, 1.15, 1.02)
 """Than all poles that are marked, a disc in which those of a network are followed."""

@@ -51,14 +51,10 @@ if TYPE_CHECKING:
     from symflex.model import Model, ModelParameter
     from symflex.roots import PoleZeroMap, Region
 
-DEFAULT_MODES = 5
-"""Which the disc holds where no frequency is given."""
-DIGITS = 15
-"""Of poles that are marked in figures."""
-LOOP_GAIN_BITS = 64
-"""Of values that are drawn."""
-WIDER = 1.05
-"""Radius of the disc of series over the frequency up to which poles are searched."""
+DEFAULT_MODES = 5  # which the disc holds where no frequency is given
+DIGITS = 15  # of poles that are marked in figures
+LOOP_GAIN_BITS = 64  # of values that are drawn
+WIDER = 1.05  # radius of the disc of series over the frequency up to which poles are searched
 SHARES = (0.999, 0.993, 0.98, 0.965, 0.955)
 """Shares of that radius: on circles of these poles are counted if one lies on the outermost."""
 BEYOND = "poles of a network are counted in a disc"

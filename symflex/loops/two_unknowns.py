@@ -27,16 +27,11 @@ if TYPE_CHECKING:
 
     Weights = Callable[[arb], Sequence[arb_series]]
 
-DEEPEST = 50
-"""Halvings of the range of gains."""
-SHORT = 6
-"""Halvings of the range of gains until its pieces tell how large functions are."""
-MOST_BOXES = 128
-"""Boxes of gains at one interval of frequencies."""
-MOST_INTERVALS = 8_000
-"""Intervals of frequencies in one search."""
-INFLATED = 1.3
-"""So that a root on an edge lies inside."""
+DEEPEST = 50  # halvings of the range of gains
+SHORT = 6  # halvings of the range of gains until its pieces tell how large functions are
+MOST_BOXES = 128  # boxes of gains at one interval of frequencies
+MOST_INTERVALS = 8_000  # intervals of frequencies in one search
+INFLATED = 1.3  # so that a root on an edge lies inside
 
 
 @dataclass(frozen=True, slots=True)

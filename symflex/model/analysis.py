@@ -359,8 +359,7 @@ def _where(
     return tuple(definitions) if len(definitions) == len(items) and (inner or not entry) else None
 
 
-NUMBERS = Line({}, frozenset(), frozenset(), {})
-"""Knows the value of numbers alone."""
+NUMBERS = Line({}, frozenset(), frozenset(), {})  # knows the value of numbers alone
 
 
 def in_own_names(analysis: Analysis) -> Published:

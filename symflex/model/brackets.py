@@ -45,8 +45,7 @@ if TYPE_CHECKING:
 
     from symflex.errors import Span
 
-OPENED_LIMIT = 3_000
-"""Parts of an equation with its brackets opened: some hundred lines."""
+OPENED_LIMIT = 3_000  # parts of an equation with its brackets opened: some hundred lines
 
 
 def open_brackets(

@@ -51,8 +51,7 @@ if TYPE_CHECKING:
     Decay = Callable[[Expression, int], Expression]
     Radical = tuple[Fraction, Expression, Expression]  # e, a and b of ``(a*s + b)^e``
 
-SIZE_LIMIT = 1_000
-"""Nodes of a definition that is written out."""
+SIZE_LIMIT = 1_000  # nodes of a definition that is written out
 HALF = 2
 """The denominator of powers of which a constant may be a factor: its root is a function of constants."""
 MOST_SHEETS = 12

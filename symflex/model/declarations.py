@@ -40,8 +40,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.model.spec import KeyValue, Value
 
-SHOWN_CIRCLE = 8
-"""Names of a circle of definitions that a message lists."""
+SHOWN_CIRCLE = 8  # names of a circle of definitions that a message lists
 ASSUMPTIONS = ("positive", "nonnegative", "real")
 
 

@@ -80,8 +80,7 @@ EXTREME_EXPONENT = 10**6
 TIMED = PARAMETER = 2
 """What :class:`Measure` calls a number that is a pole or a time, and a parameter with a unit."""
 
-LONGEST_TERM = 32
-"""Characters up to which a message repeats a term of a sum."""
+LONGEST_TERM = 32  # characters up to which a message repeats a term of a sum
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 Key = TypeVar("Key")
 Place = tuple[str, int, int]
 """An unknown, its point modulo the prime (zero along x), and the order of the derivative."""
-Form = dict["Place | Variable | None", int]
-"""A linear form; ``None`` is the constant one."""
+Form = dict["Place | Variable | None", int]  # a linear form; None is the constant one
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,7 @@ Degree = Literal["constant", "linear", "unknown"]
 
 EXPONENT_LIMIT = 64
 """As in the text of an expression, see :mod:`symflex.expressions.limits`."""
-SHOWN_PROBLEMS = 20
-"""More of one expression than anybody reads."""
+SHOWN_PROBLEMS = 20  # more of one expression than anybody reads
 ORDER_LIMIT = 24
 """Highest derivative at a point; those beyond the field's own order follow from its equations."""
 DELAY_HINT = "write a delay in [signals] as exp(-s*T), with T free of s, or as a block of type delay"

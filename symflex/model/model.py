@@ -47,8 +47,7 @@ ONE: Final = ExactValue(Fraction(1))
 J: Final = ExactValue(Fraction(1), is_imaginary=True)
 IMAGINARY: Final = "j"
 """The name of the imaginary unit: it means that where the model gives it no other meaning."""
-PAIRS_SHOWN: Final = 6
-"""Number of transfer functions that a message lists."""
+PAIRS_SHOWN: Final = 6  # number of transfer functions that a message lists
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,10 +24,8 @@ Made = TypeVar("Made")
 NAMED = "a formula cannot hold a value with a unit: declare it in [parameters]"
 LOSS_WORDS = ("loss", "loss_factor", "tan_delta", "damping", "structural", "g")
 """What a key for a loss factor is called elsewhere."""
-SHOWN = 40
-"""Characters of a value that a message repeats."""
-MAX_PROBLEMS = 100
-"""More than anybody reads at once."""
+SHOWN = 40  # characters of a value that a message repeats
+MAX_PROBLEMS = 100  # more than anybody reads at once
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 
 

@@ -47,8 +47,7 @@ WHERE_J = (
     "j, with j^2 = -1, is for loss factors such as 'k*(1 + j*eta)' and for complex coefficients: it is not "
     "allowed in lengths and outputs; for j*omega write s"
 )
-LISTED_NAMES = 8
-"""Names that a hint lists."""
+LISTED_NAMES = 8  # names that a hint lists
 COMPARED_NAMES = 500
 """Names among which the nearest to a misspelt one is sought: comparing so many takes 3 ms a mistake."""
 

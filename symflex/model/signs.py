@@ -376,10 +376,8 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
             raise UsageError(Diagnostic("SF209", f"with {name} = {shown:.6g}, {message}"))
 
 
-PIECES = 64
-"""Number of pieces of a member: a value that varies along x is tried between any two."""
-SHORTEST = 2.0**-10
-"""Piece of an interval beyond which no sign is looked for."""
+PIECES = 64  # number of pieces of a member: a value that varies along x is tried between any two
+SHORTEST = 2.0**-10  # piece of an interval beyond which no sign is looked for
 
 
 def _ball(number: Fraction) -> arb:

@@ -42,8 +42,7 @@ def escape_html(text: str) -> str:
 TEXT: Final = "left"
 NUMBER: Final = "right"
 
-LONGEST: Final = 200
-"""Rows that are shown; the number of those that are not is said."""
+LONGEST: Final = 200  # rows that are shown; the number of those that are not is said
 
 
 def html_table(

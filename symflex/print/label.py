@@ -42,8 +42,7 @@ from symflex.print.width import (
     greek_width,
 )
 
-WIDEST_LABEL: Final = 12.0
-"""Width in em beyond which a label gives way to the name in small type."""
+WIDEST_LABEL: Final = 12.0  # width in em beyond which a label gives way to the name in small type
 _GREEK: Final = dict(zip(GREEK, "αβγδϵεζηθϑικλμνξπϖρϱσςτυϕφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
 _ACCENTS: Final = dict(zip(ACCENTS, "˙¨¯^~→ˇ˘´`‾_", strict=True))
 _SYMBOLS: Final = dict(zip(SYMBOLS, "ℓℏ′∞⋆∗∘∥⊥∗†⋅×±∓…", strict=True))
@@ -215,8 +214,7 @@ def read_label(latex: str) -> Label | None:
     )
 
 
-_STACKED: Final = 22
-"""Characters in a line of a stacked name."""
+_STACKED: Final = 22  # characters in a line of a stacked name
 _TINY_SIZE: Final = 0.55
 _UNDERSCORE: Final = 0.5
 

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
 
 MATRICES = ("mass", "damping", "stiffness")
-WIDTH = 80
-"""Columns of a terminal."""
+WIDTH = 80  # columns of a terminal
 
 
 def motion_json(model: Model) -> dict[str, object]:

@@ -52,8 +52,7 @@ if TYPE_CHECKING:
 
 PRECISIONS: Final = (64, 192, 576)
 """Bits at which points are tried that are not decided with fewer."""
-LONGEST_TEXT: Final = 5000
-"""Characters of one form that are parsed, at some 10 microseconds each."""
+LONGEST_TEXT: Final = 5000  # characters of one form that are parsed, at some 10 microseconds each
 ENOUGH: Final = 24
 """Bits of a value that leave a wrong form no place to hide, as points have no meaning."""
 INSIDE: Final = Fraction(3, 8)

@@ -169,8 +169,7 @@ PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TI
 """Columns of tables on web pages."""
 PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)
 """Columns of LaTeX tables; the multiplicity is a column there if one is not 1."""
-MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)
-"""Columns of LaTeX tables of modes."""
+MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)  # columns of LaTeX tables of modes
 TERMINAL_COLUMNS: Final = (
     RootColumn("Re", (), "rad/s", _TOLD_REAL.text),
     RootColumn("Im", (), "rad/s", _TOLD_IMAGINARY.text, is_mirrored=True),

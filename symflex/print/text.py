@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 INDENT = "  "
-NARROWEST = 12
-"""Columns below which breaking a line further would not help to read it."""
-SHALLOW = 8
-"""Columns up to which a broken sum stands to the right of its parenthesis."""
+NARROWEST = 12  # columns below which breaking a line further would not help to read it
+SHALLOW = 8  # columns up to which a broken sum stands to the right of its parenthesis
 
 
 def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:

@@ -12,10 +12,8 @@ from symflex.model import Model
 from symflex.model.unused import unnamed_definitions, unused_name
 from symflex.transfer.of_model import NEVER_LARGE, assemble_for_checks, derive_all
 
-FEW_UNKNOWNS = 1_000
-"""Unknowns up to which a dense matrix of numbers takes a quarter of a second."""
-MOST_WARNINGS = 100
-"""As many as problems, of which a reader stops at as many too."""
+FEW_UNKNOWNS = 1_000  # unknowns up to which a dense matrix of numbers takes a quarter of a second
+MOST_WARNINGS = 100  # as many as problems, of which a reader stops at as many too
 
 
 def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnostic, ...]:

@@ -79,15 +79,12 @@ def widest(*widths: Width) -> Width:
     return Width(max(w.text for w in widths), max(w.script for w in widths), max(w.tiny for w in widths))
 
 
-EM_MM: Final = 10 * 25.4 / 72.27
-"""One em of a ten point font [mm]."""
-SCRIPT: Final = 0.9
-"""Width of a superscript in a table, in proportion to the full size."""
+EM_MM: Final = 10 * 25.4 / 72.27  # one em of a ten point font [mm]
+SCRIPT: Final = 0.9  # width of a superscript in a table, in proportion to the full size
 NOTHING: Final = always(0.0)
 DIGIT_SIZES: Final = Width(0.501, 0.399, 0.341)
 THIN_SIZES: Final = Width(0.167, 0.137, 0.117)
-OPERATOR_SIZES: Final = Width(1.223, 0.626, 0.542)
-"""A plus or minus between its operands."""
+OPERATOR_SIZES: Final = Width(1.223, 0.626, 0.542)  # a plus or minus between its operands
 RELATION_SIZES: Final = Width(1.334, 0.626, 0.542)
 COMMA_SIZES: Final = Width(0.445, 0.238, 0.23)
 CDOT_SIZES: Final = Width(0.723, 0.238, 0.23)
@@ -95,10 +92,8 @@ STAR_SIZES: Final = Width(0.946, 0.41, 0.369)
 MINUS_SIZES: Final = Width(0.778, 0.626, 0.542)
 SLASH_SIZES: Final = Width(0.501, 0.41, 0.369)
 PRIME_SIZES: Final = Width(0.231, 0.23, 0.23)
-SCRIPT_SPACE: Final = always(0.05)
-"""What follows a subscript or superscript."""
-FRACTION_EDGES: Final = always(0.241)
-"""Beside a fraction."""
+SCRIPT_SPACE: Final = always(0.05)  # what follows a subscript or superscript
+FRACTION_EDGES: Final = always(0.241)  # beside a fraction
 FENCE_SIZES: Final = (Width(0.389, 0.313, 0.271), Width(0.278, 0.227, 0.202), Width(0.501, 0.41, 0.369))
 r"""A parenthesis, bracket and brace."""
 BIG_FENCES: Final = (0.459, 0.417, 0.584)
@@ -119,8 +114,7 @@ CDOT: Final = CDOT_SIZES.text
 MINUS: Final = MINUS_SIZES.text
 QUAD: Final = 1.0
 SLASH: Final = SLASH_SIZES.text
-WIDEST: Final = 1.2
-"""No character is wider; for those without an entry."""
+WIDEST: Final = 1.2  # no character is wider; for those without an entry
 _LETTERS: Final = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 
 

@@ -35,8 +35,7 @@ def code_point(character: str) -> str:
     return f" (U+{ord(character):04X} {unicodedata.name(character, 'without a name')})"
 
 
-IMAGINARY_NAMES = ("i", "j", "im", "I")
-"""What other programs call the imaginary unit."""
+IMAGINARY_NAMES = ("i", "j", "im", "I")  # what other programs call the imaginary unit
 IMAGINARY_UNIT = "the imaginary unit is j, as in 'k*(1 + j*eta)'; elements take a loss factor as eta_s"
 
 

@@ -33,8 +33,7 @@ from symflex.report.document import (
 )
 from symflex.report.report import Report
 
-OVERVIEW: Final = "models"
-"""Anchor of the section that follows the table of contents on its page."""
+OVERVIEW: Final = "models"  # anchor of the section that follows the table of contents on its page
 HEADINGS: Final = ("section", "subsection", "subsubsection", "paragraph")
 CONTENTS_DEPTH: Final = 1
 

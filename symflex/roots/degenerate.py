@@ -42,14 +42,12 @@ POINT_DIGITS = 50
 """Digits of degenerate points: more than those that tell roots of the equations from them."""
 NARROW = 128
 """Binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones."""
-WIDER = 100
-"""Doublings of the radius of the disc in which the determinants are bounded."""
+WIDER = 100  # doublings of the radius of the disc in which the determinants are bounded
 SPARE = 8
 """Values on the circle beyond those that the bound takes: orders from about so high on are not counted."""
 MOST_POINTS = 64
 """Values beyond which roots are not counted, as the bound is crude where waves grow thousandfold."""
-BITS = 1024, 4096
-"""Precision of the coefficients; each order takes ``NARROW`` bits."""
+BITS = 1024, 4096  # precision of the coefficients; each order takes NARROW bits
 
 
 def degenerate_points(bound: BoundTransferFunction) -> list[Root]:

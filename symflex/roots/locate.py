@@ -195,8 +195,7 @@ UNSEEN_WAVES = "a distributed part that is uncontrollable or unobservable may ha
 UNSEEN_ON_AXIS = (
     "a distributed part that is uncontrollable or unobservable may have poles on the imaginary axis"
 )
-DEFAULT_MODES = 5
-"""Number of modes if neither the model nor the user gives it."""
+DEFAULT_MODES = 5  # number of modes if neither the model nor the user gives it
 
 
 def default_region(bound: AnyBoundFunction) -> Region:

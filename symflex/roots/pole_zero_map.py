@@ -23,14 +23,12 @@ if TYPE_CHECKING:
 
 
 SCHEMA = "symflex.roots/1"
-REFINEMENTS = 4
-"""Doublings of the digits before a root counts as on the boundary."""
+REFINEMENTS = 4  # doublings of the digits before a root counts as on the boundary
 ROUNDS = 20
 """Searches that go further, because poles and zeros that coincide are hidden, until enough modes are left."""
 
 AT_REST = "at s = 0"
-MOST_NAMES = 3
-"""Nodes and signals that one line of hidden motion names."""
+MOST_NAMES = 3  # nodes and signals that one line of hidden motion names
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to decide"
 NONE_FOUND = "no pole was found, and those elsewhere may lie on the imaginary axis"
 NONE_ON_AXIS = "none of those found lies on the imaginary axis, but others may"

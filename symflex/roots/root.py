@@ -13,22 +13,15 @@ from flint import acb, arb, fmpz
 from symflex.balls import opposite, precision
 from symflex.expressions.format import decimal_exponent
 
-GUARD_BITS = 32
-"""Bits kept beyond those of what is computed with."""
-FLOAT_BITS = 128
-"""Precision of frequencies and comparisons: more than twice the bits of a double."""
-PLAIN_FROM = -5
-"""Decimal exponent from which numbers are written without one."""
-NEARLY_ZERO = "~0"
-"""What people read where a number is not told from zero."""
+GUARD_BITS = 32  # bits kept beyond those of what is computed with
+FLOAT_BITS = 128  # precision of frequencies and comparisons: more than twice the bits of a double
+PLAIN_FROM = -5  # decimal exponent from which numbers are written without one
+NEARLY_ZERO = "~0"  # what people read where a number is not told from zero
 ROUNDING = 1e-15
 """What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
-NEIGHBOURS = 8
-"""Modes of nearly the same frequency among which images of a root are looked for."""
-FEWEST_ALONE = 3
-"""Digits below which a number that stands alone says how far it may be off."""
-HUNDRED = 100
-"""Two digits are fewer."""
+NEIGHBOURS = 8  # modes of nearly the same frequency among which images of a root are looked for
+FEWEST_ALONE = 3  # digits below which a number that stands alone says how far it may be off
+HUNDRED = 100  # two digits are fewer
 TOUCHING = "some roots could not be told apart"
 """Reason why roots that are all enclosed are not all certified."""
 

@@ -45,10 +45,8 @@ from symflex.transfer import BoundTransferFunction
 EITHER_SHEET = "a root lies so close to the branch cut that its sheet is not decided"
 SINGULAR = "at its branch point s = 0 the function is infinite"
 SQUARE = 2
-WIDER = 1 + 1e-9
-"""Factor by which a radius exceeds that of the last root."""
-MORE = 3
-"""How many times as many modes are searched on all sheets as are wanted on one."""
+WIDER = 1 + 1e-9  # factor by which a radius exceeds that of the last root
+MORE = 3  # how many times as many modes are searched on all sheets as are wanted on one
 
 
 def locate_on_sheet(

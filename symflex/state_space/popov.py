@@ -30,19 +30,15 @@ from symflex.algebra import Radicals, Ring
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
-Key = tuple[int, int]
-"""A column and a power of s. Unknowns come first, then inputs."""
+Key = tuple[int, int]  # a column and a power of s. Unknowns come first, then inputs.
 
 Position = TypeVar("Position", Key, int)
 
 Row = dict[Key, "FieldElement"]
 """A sum of ``coefficient * s^power * column``, without coefficients that are zero."""
 
-DERIVATIVE = 4
-"""What a derivative adds to the weight of an unknown."""
-
-SIZE_LIMIT = 100_000
-"""Terms that the coefficients of one row may hold together."""
+DERIVATIVE = 4  # what a derivative adds to the weight of an unknown
+SIZE_LIMIT = 100_000  # terms that the coefficients of one row may hold together
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,8 +265,7 @@ class FieldElement:
         return f"({self.num})/({self.den})"
 
 
-Vector = dict[int, FieldElement]
-"""Entries other than zero, by position."""
+Vector = dict[int, FieldElement]  # entries other than zero, by position
 
 
 def combined(left: Vector, right: Vector, factor: FieldElement | None = None) -> Vector:

@@ -22,17 +22,13 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.state_space.popov import FieldElement, Vector, applied, combined, transposed
 from symflex.state_space.realise import Combination, State, StateSpace
 
-SIZE_LIMIT = 5_000
-"""Terms that a basis may hold on the way."""
+SIZE_LIMIT = 5_000  # terms that a basis may hold on the way
 
 LARGEST = 1000
 """Numerators and denominators up to this size are looked for before anything is solved with symbols."""
 
-Basis = dict[int, Vector]
-"""Vectors in reduced echelon form, by pivot."""
-
-FEW = 2
-"""Terms of a combination that is named after them."""
+Basis = dict[int, Vector]  # vectors in reduced echelon form, by pivot
+FEW = 2  # terms of a combination that is named after them
 
 
 def minimal(system: StateSpace) -> StateSpace:

@@ -35,13 +35,11 @@ from symflex.state_space.realise import StateSpace
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Balls = Callable[[int], tuple[arb_mat, ...]]
-"""A, B, C and D in balls of so many bits."""
+Balls = Callable[[int], tuple[arb_mat, ...]]  # a, B, C and D in balls of so many bits
 FIRST_BITS, LAST_BITS = 192, 6144
 NOTHING_BITS = 150
 """An entry this many bits smaller than the largest counts as zero if its sign cannot be decided."""
-MOST_SAMPLES = 1000
-"""Largest delay in samples: it takes as many states."""
+MOST_SAMPLES = 1000  # largest delay in samples: it takes as many states
 METHODS = ("zoh", "tustin", "matched")
 """Zero-order hold, bilinear transformation, and roots matched, which is of one transfer function."""
 

@@ -31,8 +31,7 @@ from symflex.transfer.of_model import derive_all, derive_as
 Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]
 
-POINTS_LIMIT = 1_000_000
-"""Points of one sweep."""
+POINTS_LIMIT = 1_000_000  # points of one sweep
 DIGITS = 15
 """Significant digits of values between limits: as many as a double tells apart, so that files hold all."""
 WORKING_DIGITS = 40
@@ -180,8 +179,7 @@ def _decimal(value: Fraction) -> Decimal:
 
 
 Array = npt.NDArray[Any]
-Rows = dict[str, Array]
-"""Arrays by name; their first axis counts points."""
+Rows = dict[str, Array]  # arrays by name; their first axis counts points
 
 CODE_LENGTH = 5
 

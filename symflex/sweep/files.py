@@ -31,10 +31,8 @@ from symflex.sweep.design import Array, Rows
 from symflex.sweep.points import MARGINS, VERDICTS
 from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
 
-NEW_YEAR = (1980, 1, 1, 0, 0, 0)
-"""The date of every file in an archive."""
-SIZE_LIMIT = 2**30
-"""Bytes of a file that is read, and of what it holds."""
+NEW_YEAR = (1980, 1, 1, 0, 0, 0)  # the date of every file in an archive
+SIZE_LIMIT = 2**30  # bytes of a file that is read, and of what it holds
 ARRAYS_LIMIT = 10_000
 HEADER = "header"
 CHARACTERS = "characters"

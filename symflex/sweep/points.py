@@ -35,8 +35,7 @@ from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, code
 from symflex.sweep.similarity import Similarities, Similarity
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any
 
-LARGEST = 1023
-"""Exponent of two beyond which nothing is told."""
+LARGEST = 1023  # exponent of two beyond which nothing is told
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +100,10 @@ def _nearest(mantissa: int, exponent: int) -> float:
 
 
 RootKind = Literal["poles", "zeros"]
-LADDER = (20, 40, 80)
-"""Digits, until the nearest doubles are known."""
+LADDER = (20, 40, 80)  # digits, until the nearest doubles are known
 SIMILAR_DIGITS = 40
 SCALE_BITS = 192
-REMEMBERED = 256
-"""Points that stand for all similar ones, of which so many are kept."""
+REMEMBERED = 256  # points that stand for all similar ones, of which so many are kept
 FAMILY_BYTES = 7
 
 
@@ -337,8 +334,7 @@ def solve_response(task: Task) -> Solver:
 
 
 MARGINS = ("gain_margin_up", "gain_margin_down", "phase_margin", "crossover")
-Pair = tuple[float, float]
-"""Centre and radius."""
+Pair = tuple[float, float]  # centre and radius
 
 
 def solve_margins(task: Task) -> Solver:

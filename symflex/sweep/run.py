@@ -121,11 +121,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
 
 
-CHUNKS = 200
-"""Into about how many a sweep is cut."""
+CHUNKS = 200  # into about how many a sweep is cut
 LARGEST_CHUNK = 1000
-AHEAD = 4
-"""Chunks per worker that are handed out before any is back."""
+AHEAD = 4  # chunks per worker that are handed out before any is back
 MOST_BETWEEN = (40, 400)
 """Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
 MINUTE = 60.0

@@ -34,18 +34,14 @@ from symflex.model.linearity import integer_exponent
 from symflex.transfer.enclose import later
 
 ZERO = acb(0)
-FEW_TERMS = 16
-"""A polynomial of so many terms is summed term by term."""
-TERMS = 40
-"""Terms of a Taylor step, which is halved until the last of them are small."""
+FEW_TERMS = 16  # a polynomial of so many terms is summed term by term
+TERMS = 40  # terms of a Taylor step, which is halved until the last of them are small
 TAYLOR_BITS = 80
 """Bits by which the last terms are smaller than the states, twice what values are compared with."""
-LAST_TERMS = 3
-"""A coefficient may vanish by symmetry; so many in a row do not."""
+LAST_TERMS = 3  # a coefficient may vanish by symmetry; so many in a row do not
 MOST_STEPS = 64
 """Taylor steps along a member, halved ones counted, beyond which it is not followed: a horn takes four."""
-FIRST_STEPS = 4
-"""Steps that a member is cut into at first."""
+FIRST_STEPS = 4  # steps that a member is cut into at first
 
 
 class SingularPointError(Exception):

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 FIRST_BITS = 96
 LAST_BITS = 6144
-DOUBLE_BITS = 54
-"""One more than the significand of a double."""
+DOUBLE_BITS = 54  # one more than the significand of a double
 NEAR = (200, 220)
 """Negative powers of two between which the behaviour at a point is read off, where there is no number."""
 

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
 SIGNS = (1, -1)
 ZERO = acb(0)
-PAIR = 2
-"""Terms of a series to first order: those for which roots of dispersions are found."""
+PAIR = 2  # terms of a series to first order: those for which roots of dispersions are found
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,8 +289,7 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
 
 
 NOWHERE = acb("nan", "nan")
-NARROW = 2.0**-30
-"""Relative radius of balls whose square root needs no special care."""
+NARROW = 2.0**-30  # relative radius of balls whose square root needs no special care
 
 
 def square_root(x: Value) -> Value:
@@ -329,17 +327,14 @@ def square_root(x: Value) -> Value:
 
 FINER = 2**30
 """Parts of the least distance of two roots to which they are isolated at the second try."""
-ROOM = 2
-"""Box that is tried about a root, over the step to the root of an outermost polynomial."""
+ROOM = 2  # box that is tried about a root, over the step to the root of an outermost polynomial
 WIDENINGS = 6
 """Boxes that are tried about one root, each so much wider than the last: 1.5^6 is eleven times the first."""
 GROWTH = 1.5
 STEPS = 8
 """Newton steps that narrow a box at most; few are taken, as each has to leave a part of it."""
-HALF = 0.5
-"""Steps that leave more than this of a box no longer double its digits."""
-LITTLE = 7 / 8
-"""Boxes that Newton's operator makes no smaller than this share are left."""
+HALF = 0.5  # steps that leave more than this of a box no longer double its digits
+LITTLE = 7 / 8  # boxes that Newton's operator makes no smaller than this share are left
 
 
 def characteristic_roots(coefficients: Sequence[Value], *, even: bool = False) -> tuple[Value, ...] | None:

@@ -109,10 +109,8 @@ class Opening:
         return opened
 
 
-SMALL = 100_000
-"""Number of terms up to which the engine composes at once."""
-HELD = 4
-"""How many times as many terms as are allowed may be held before they are added up."""
+SMALL = 100_000  # number of terms up to which the engine composes at once
+HELD = 4  # how many times as many terms as are allowed may be held before they are added up
 
 
 def compose_rational(

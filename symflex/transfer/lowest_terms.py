@@ -94,8 +94,7 @@ def _pieces(
     return [(f, e) for f, e in pieces if e > 0 and not f.is_constant()]
 
 
-LARGE = 40
-"""Number of terms of the larger polynomial from which the proof is tried first."""
+LARGE = 40  # number of terms of the larger polynomial from which the proof is tried first
 LINE = Ring((LAPLACE,))
 
 

@@ -49,16 +49,11 @@ SOLVED: Final = (("-1/4", "0"),)
 FIRST_BITS: Final = 64
 SOLVED_BITS: Final = 96
 """Bits with which the test points of laws that vary along x are solved; with half of them it may take two."""
-TINY: Final = 2.0**-40
-"""Share of s by which a law that is solved at s may be varied."""
-LARGE: Final = 1000
-"""Terms or steps from which a function is evaluated at two points only."""
-PARTS: Final = 64
-"""Values are multiples of one over this."""
-TRIES: Final = 12
-"""Draws of parameters before those are taken that lie near the declared ones."""
-STRICT: Final = 8
-"""Draws with another side of 1 for all parameters but one; later ones have any."""
+TINY: Final = 2.0**-40  # share of s by which a law that is solved at s may be varied
+LARGE: Final = 1000  # terms or steps from which a function is evaluated at two points only
+PARTS: Final = 64  # values are multiples of one over this
+TRIES: Final = 12  # draws of parameters before those are taken that lie near the declared ones
+STRICT: Final = 8  # draws with another side of 1 for all parameters but one; later ones have any
 NEAR: Final = 16
 """How many times a declared value is larger than the step to the value taken for it."""
 DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))

@@ -26,8 +26,7 @@ from symflex.equations.elimination.singular import matrix_of
 from symflex.library.elements import LinearForm, Variable
 from symflex.transfer.equations_at import EquationsAt
 
-MOST_ORDER = 4
-"""Highest power of s, and of a delay, that is looked for in a quotient."""
+MOST_ORDER = 4  # highest power of s, and of a delay, that is looked for in a quotient
 Point = dict[str, int]
 
 

@@ -21,8 +21,7 @@ Status = Literal["proved", "almost surely", "not shown"]
 WIDTH = 80
 INDENT = "  "
 DIGITS = 6
-LISTED = 6
-"""Parts, and real zeros, that are listed one by one."""
+LISTED = 6  # parts, and real zeros, that are listed one by one
 NAMES = 8
 CONTEXT = {
     "colocated": "colocated",

@@ -52,8 +52,7 @@ if TYPE_CHECKING:
 
 SYMBOLIC_ELEMENTS = 12
 """Lumped models up to this size keep their symbols, so that factors print in them."""
-LONGEST = 100
-"""Characters of a factor that is printed."""
+LONGEST = 100  # characters of a factor that is printed
 
 
 System = Determinants | PrimePoints

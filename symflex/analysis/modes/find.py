@@ -33,13 +33,10 @@ from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 DIGITS = 15
 SPARE_DIGITS = 15
-ROUNDS = 6
-"""How often the digits of the pole are doubled until those of the shape suffice."""
+ROUNDS = 6  # how often the digits of the pole are doubled until those of the shape suffice
 SPARE_BITS = 64
-DIMENSIONS = 6
-"""Shapes of one pole that are sought at most."""
-NEAR = 1e-8
-"""Relative distance within which two estimates are the same root."""
+DIMENSIONS = 6  # shapes of one pole that are sought at most
+NEAR = 1e-8  # relative distance within which two estimates are the same root
 NEIGHBOURHOOD = Fraction(1, 4)
 
 

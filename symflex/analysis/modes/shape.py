@@ -258,8 +258,7 @@ TIE = 1 + 1e-9
 """A displacement must be larger by this factor to replace an earlier one as the reference."""
 SECTIONS = 40
 """Steps of golden section: the interval shrinks to 4e-9 of itself, finer than doubles resolve a maximum."""
-GOLDEN = 0.6180339887498949
-"""(sqrt(5) - 1)/2."""
+GOLDEN = 0.6180339887498949  # (sqrt(5) - 1)/2
 
 
 @dataclass(frozen=True, slots=True)

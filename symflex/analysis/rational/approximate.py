@@ -123,10 +123,8 @@ def _no_more_than(zeros: Sequence[Root], poles: int) -> tuple[Root, ...]:
 
 
 DEFAULT_MODES = 5
-DIGITS = 30
-"""Digits of roots and residues: twice what a double holds."""
-SCANNED_DECADES = 3
-"""The error is sampled from a thousandth of the lowest natural frequency on."""
+DIGITS = 30  # digits of roots and residues: twice what a double holds
+SCANNED_DECADES = 3  # the error is sampled from a thousandth of the lowest natural frequency on
 
 
 def approximate(
@@ -209,10 +207,8 @@ def _bands(kept: KeptRoots, band: tuple[float, float] | None) -> tuple[float, fl
 
 
 BITS = 256
-FINEST = 2.0**-80
-"""Accuracy of zeros, relative to the smallest."""
-BITS_PER_ROOT = 24
-"""Coefficients of a polynomial cancel where its roots span decades."""
+FINEST = 2.0**-80  # accuracy of zeros, relative to the smallest
+BITS_PER_ROOT = 24  # coefficients of a polynomial cancel where its roots span decades
 
 
 Form = Callable[["AnyBoundFunction", KeptRoots, int], Approximant]

@@ -39,13 +39,10 @@ if TYPE_CHECKING:
     from symflex.analysis.rational.laurent import PrincipalPart
 
 
-DIP = 0.1
-"""Distance from a zero, relative to its distance from 0, within which its dip is filled."""
-AXIS_GAP = 1e-7
-"""Distance kept from poles on the imaginary axis, relative to theirs from 0."""
+DIP = 0.1  # distance from a zero, relative to its distance from 0, within which its dip is filled
+AXIS_GAP = 1e-7  # distance kept from poles on the imaginary axis, relative to theirs from 0
 POINTS = 400
-BISECTIONS = 60
-"""More than a double has bits."""
+BISECTIONS = 60  # more than a double has bits
 
 
 @dataclass(frozen=True, slots=True)
@@ -428,8 +425,7 @@ SCHEMA = "symflex.rational/1"
 INDENT = "  "
 ESTIMATE = "some poles or zeros could not be told apart, or are not proved"
 DIGITS = 10
-JSON_DIGITS = 17
-"""So many give a double back exactly."""
+JSON_DIGITS = 17  # so many give a double back exactly
 
 Row = tuple[str, ...]
 

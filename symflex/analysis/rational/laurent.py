@@ -59,23 +59,17 @@ from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 from symflex.transfer.double_value import DOUBLE_BITS
 from symflex.transfer.enclose_kernels import KernelValues
 
-FINER = (1, 2, 4)
-"""Times the digits asked for, to which the determinants of a network are known."""
+FINER = (1, 2, 4)  # times the digits asked for, to which the determinants of a network are known
 FIRST_BITS = 192
-LAST_BITS = 12288
-"""Precision of the first attempt, and where doubling it ends: six times."""
+LAST_BITS = 12288  # precision of the first attempt, and where doubling it ends: six times
 DETECTION_BITS = 768
 """Precision at which a coefficient whose ball holds zero counts as zero if nothing proves it."""
-DOUBLE_DIGITS = 17
-"""Digits that tell a double from its neighbours."""
-SLACK = 16
-"""Terms that roots of vanishing coefficients may cost."""
-LONGEST = 160
-"""Terms of the longest series tried."""
+DOUBLE_DIGITS = 17  # digits that tell a double from its neighbours
+SLACK = 16  # terms that roots of vanishing coefficients may cost
+LONGEST = 160  # terms of the longest series tried
 NEWTON_STEPS = 16
 """Each doubles the digits: eight take a double to the last precision; a poor start has as many again."""
-COINCIDENT = 2
-"""Zeros on top of a pole that are looked for."""
+COINCIDENT = 2  # zeros on top of a pole that are looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -490,8 +484,7 @@ def _are_conjugate(a: Root, b: Root) -> bool:
     return not a.is_real and bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(opposite(b.im)))
 
 
-BRANCHES = 4
-"""Branches of a wavenumber about a point where it vanishes."""
+BRANCHES = 4  # branches of a wavenumber about a point where it vanishes
 
 
 def local_values(

@@ -26,10 +26,8 @@ from symflex.transfer.equations_at import EssentialSingularityError
 
 Taylor = Callable[[acb, int], list[acb] | None]
 """The Taylor coefficients of a function at a point, as many as are wanted."""
-WIDER = 1.1
-"""Than what holds the points asked for, the disc."""
-FEWEST_MODES = 3
-"""Modes in a disc of which only the behaviour at 0 is asked for."""
+WIDER = 1.1  # than what holds the points asked for, the disc
+FEWEST_MODES = 3  # modes in a disc of which only the behaviour at 0 is asked for
 
 
 @dataclass(frozen=True, eq=False)

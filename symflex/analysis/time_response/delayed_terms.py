@@ -29,8 +29,7 @@ from symflex.transfer import BoundTransferFunction
 
 Delay = tuple[tuple[int, Fraction], ...]
 """Positions of independent durations, ascending, and what each is multiplied with; not zero."""
-Amplitude = dict[tuple[int, ...], Fraction]
-"""Per exponents of s and of the constants, a number."""
+Amplitude = dict[tuple[int, ...], Fraction]  # per exponents of s and of the constants, a number
 NO_DELAY: Delay = ()
 
 

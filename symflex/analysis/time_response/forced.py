@@ -40,10 +40,8 @@ if TYPE_CHECKING:
 
 MORE_DIGITS = 10
 """Digits of the ramp's response beyond those printed: after many bends large terms cancel each other."""
-BITS = 256
-"""Precision of the sums: rounding adds nothing to the balls of what is summed."""
-FORCED = "forced"
-"""Name of an input that is given by samples."""
+BITS = 256  # precision of the sums: rounding adds nothing to the balls of what is summed
+FORCED = "forced"  # name of an input that is given by samples
 
 
 def forced_response(

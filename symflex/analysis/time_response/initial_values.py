@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response.sample_times import SampleTimes
 
-BITS = 256
-"""Precision of sums: rounding adds nothing to the balls of their terms."""
+BITS = 256  # precision of sums: rounding adds nothing to the balls of their terms
 _QUANTITY = re.compile(r"(?P<s>s(\^(?P<order>\d))?\*)?(?P<quantity>\w+(\.\w+)?)")
 
 

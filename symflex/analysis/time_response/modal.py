@@ -47,10 +47,8 @@ if TYPE_CHECKING:
 
 SEARCHED_TOO_LONG = "SF505"
 """The code of a search that ends by itself, next to roots that accumulate; the user's own budgets end all."""
-BITS = bits_for_digits(2 * EFFORT.pole_digits)
-"""Precision of sums."""
-CONTINUATION = (-1, 4, -6, 4)
-"""Factors on the last four of a smooth sequence that give the next."""
+BITS = bits_for_digits(2 * EFFORT.pole_digits)  # precision of sums
+CONTINUATION = (-1, 4, -6, 4)  # factors on the last four of a smooth sequence that give the next
 
 BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused]] = {
     "lossless modes": lossless_modes,

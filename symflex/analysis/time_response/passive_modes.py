@@ -61,10 +61,8 @@ from symflex.transfer.of_model import assemble, derive_all
 if TYPE_CHECKING:
     from symflex.analysis.time_response.sample_times import SampleTimes
 
-STEP, RAMP = 1, 2
-"""Impulses, integrated so often."""
-OUTPUT, INPUT = "displacement", "reaction"
-"""Names in a model whose names begin differently."""
+STEP, RAMP = 1, 2  # impulses, integrated so often
+OUTPUT, INPUT = "displacement", "reaction"  # names in a model whose names begin differently
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,8 +34,7 @@ REAL_FUNCTIONS = {
 """What C calls each of the elementary functions of a real number."""
 
 
-LANE_FUNCTIONS = ("tan", "exp")
-"""Functions of real numbers that there are without branches."""
+LANE_FUNCTIONS = ("tan", "exp")  # functions of real numbers that there are without branches
 
 
 class Kind(Enum):
@@ -254,15 +253,11 @@ FUNCTIONS = frozenset(
 LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
 """Arguments and variables that every function has under these names."""
 
-RESERVED = KEYWORDS | MACROS
-"""What a member of the structure of parameters cannot be called."""
-
-TAKEN = RESERVED | FUNCTIONS | LOCALS
-"""What a variable cannot be called besides."""
+RESERVED = KEYWORDS | MACROS  # what a member of the structure of parameters cannot be called
+TAKEN = RESERVED | FUNCTIONS | LOCALS  # what a variable cannot be called besides
 
 
-WIDTH = 88
-"""Columns of generated C."""
+WIDTH = 88  # columns of generated C
 
 STEP = "    "
 

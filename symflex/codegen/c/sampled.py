@@ -7,8 +7,7 @@ from symflex.codegen.c.module import COMMENT, prefix_of, source_and_header
 from symflex.codegen.export import Export
 from symflex.codegen.sampled import SampledLanguage, StepFile, StepFunction
 
-ROOM = WIDTH - 3
-"""Columns of a comment."""
+ROOM = WIDTH - 3  # columns of a comment
 
 
 def c_steps(file: StepFile) -> Export:

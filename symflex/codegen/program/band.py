@@ -52,11 +52,8 @@ BEYOND, FURTHER, ENOUGH = 5, Fraction(3, 2), Fraction(6, 5)
 """How far beyond the band roots are found: in modes, and in frequencies of a band given in Hz; and how
 far beyond it the highest of as many zeros as poles has to lie."""
 
-ROUNDS = 3
-"""How often roots are sought further away where what they leave is not smooth."""
-
-DIGITS = 36
-"""Digits of the roots: more than two doubles hold."""
+ROUNDS = 3  # how often roots are sought further away where what they leave is not smooth
+DIGITS = 36  # digits of the roots: more than two doubles hold
 
 FIRST_NODES, MOST_NODES = 24, 192
 """Points on the positive half of the band at which what is left is taken; the next try has twice as many."""

@@ -44,8 +44,7 @@ if TYPE_CHECKING:
     from symflex.equations.line_network import LineNetwork
 
 
-TERM_LIMIT = 20_000
-"""Terms a program may be made of; beyond that its text would be megabytes."""
+TERM_LIMIT = 20_000  # terms a program may be made of; beyond that its text would be megabytes
 
 HEADROOM, FAR_FROM = 180, 1e15
 """Decades a power of s may reach in double precision, of 308 in all: coefficients have the rest; and

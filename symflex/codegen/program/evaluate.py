@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-CONSTANT_BITS = 256
-"""Precision of powers of pi before they are rounded to a double."""
+CONSTANT_BITS = 256  # precision of powers of pi before they are rounded to a double
 
 NUMPY_FUNCTIONS = {
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")

@@ -114,8 +114,7 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
     return forge.multiply([*outside, forge.add(summands)])
 
 
-FACTOR_LIMIT = 400
-"""Number of terms up to which a polynomial is factored."""
+FACTOR_LIMIT = 400  # number of terms up to which a polynomial is factored
 
 WORK_LIMIT, DEPTH_LIMIT = 300_000_000, 150
 """Exponents looked at before the search for structure is given up, about two seconds, and splits inside one

@@ -17,8 +17,7 @@ from flint import fmpz_mpoly
 
 from symflex.algebra.ring import Ring, by_powers
 
-SERIES_ERROR = log(1e-19)
-"""Logarithm of the first term left out, over the largest."""
+SERIES_ERROR = log(1e-19)  # logarithm of the first term left out, over the largest
 
 
 @dataclass(frozen=True, slots=True)

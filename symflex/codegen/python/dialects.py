@@ -48,8 +48,7 @@ COPIED = (
 
 _COPIES = ("copies",)
 
-_OWN = "|".join(f.__name__ for f in COPIED)
-"""Names of functions that call each other."""
+_OWN = "|".join(f.__name__ for f in COPIED)  # names of functions that call each other
 
 
 @dataclass(frozen=True, slots=True)

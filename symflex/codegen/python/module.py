@@ -35,8 +35,7 @@ LINTS = {
 }
 """Rules of ruff that modules do not follow, whose names and texts are the model's."""
 
-LITERAL_WIDTH = 60
-"""Characters of a string literal on one line."""
+LITERAL_WIDTH = 60  # characters of a string literal on one line
 
 MEASURED = (
     "The error is that of the same operations in numpy; another library's rounding differs in the last digit."

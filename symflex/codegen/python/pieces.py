@@ -305,8 +305,7 @@ class TracedText(PrivateText):
         return [*lines, *statement("return", value, "    ")]
 
 
-WIDTH = 88
-"""Columns of generated Python."""
+WIDTH = 88  # columns of generated Python
 
 
 @dataclass(frozen=True)

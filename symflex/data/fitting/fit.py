@@ -39,16 +39,14 @@ from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
 
 SLOPES = tuple(range(-4, 5))
-FEWEST_LINES = 8
-"""Of a response that is fitted."""
+FEWEST_LINES = 8  # of a response that is fitted
 WEAK = 0.5
 """Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
 WEAK_ROUNDED, MOST_ROUNDED = 0.2, 0.25
 """The same, and the share of the noise, where numbers of few digits make it: steps look like resonances."""
 LARGE = 2.0
 """Sum of squares per degree of freedom from which coherence does not explain the residual."""
-MEDIAN = 1.177
-"""Median of the size of a complex Gaussian error whose parts have the deviation 1."""
+MEDIAN = 1.177  # median of the size of a complex Gaussian error whose parts have the deviation 1
 DECADE = 10.0
 """Frequency over that of an end of the band, or the other way round, from which a pole is far outside."""
 CLEAN, UNLIKE, MOST_AVERAGES, FEWEST_JUDGED = 0.99, 0.5, 500, 112
@@ -56,20 +54,15 @@ CLEAN, UNLIKE, MOST_AVERAGES, FEWEST_JUDGED = 0.99, 0.5, 500, 112
 that there may be where data do not say, lines that 14 pairs of poles leave enough scatter to judge it by."""
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
-NAMED_LINES = 6
-"""Wild lines whose frequencies are listed."""
+NAMED_LINES = 6  # wild lines whose frequencies are listed
 ROUNDS = 3
 """Rounds in which lines are left out or taken back; they end earlier when nothing changes."""
 MOST_LINES, FEWEST_OF_EACH = 1000, 300
 """On which numbers of poles are compared: of all responses together, and of each at least."""
-DROWNED = 0.5
-"""Deviation of each part over the magnitude from which a line shows noise."""
-DROWNED_DB = 6.0
-"""Misfit of a fit without poles from which noise is as large as the response."""
-OVERDAMPED = 2.0
-"""Damping ratio of a pair of zeros that had better be called two real ones."""
-LEAST_DAMPING = 0.05
-"""Damping ratios of zeros below this are not held against their own error."""
+DROWNED = 0.5  # deviation of each part over the magnitude from which a line shows noise
+DROWNED_DB = 6.0  # misfit of a fit without poles from which noise is as large as the response
+OVERDAMPED = 2.0  # damping ratio of a pair of zeros that had better be called two real ones
+LEAST_DAMPING = 0.05  # damping ratios of zeros below this are not held against their own error
 DEFAULTS = FitOptions()
 SMOOTH = 3.0
 """A Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`."""

@@ -35,16 +35,14 @@ from symflex.data.fitting.observation import FittedLines, score_covariance
 from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
 
-STEPS = 100
-"""Evaluations of each residual; a search that takes more has lost its way."""
+STEPS = 100  # evaluations of each residual; a search that takes more has lost its way
 TOLERANCE = 1e-9
 """Relative, of parameters and cost: far below any standard error, far above rounding."""
 ROUGH = 1e-5
 """The same of a search that another one follows: a thousandth of what tells two fits apart."""
 CAP = 0.05
 """Added to the deviation in the logarithmic residual, so that no single line pulls a poor start astray."""
-LARGEST_LAG = 3
-"""Lines apart: one more than a Hann window correlates."""
+LARGEST_LAG = 3  # lines apart: one more than a Hann window correlates
 HANN_SHARES = (4 / 9, 1 / 36, 0.0)
 """Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window.
 
@@ -52,8 +50,7 @@ They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1
 """
 SINGULAR = 1e-12
 """Reciprocal condition number below which the inverse in doubles has four digits at most."""
-FLAT = 0.25
-"""Damping ratio of a pair of zeros from which no sharp trough shows where it lies."""
+FLAT = 0.25  # damping ratio of a pair of zeros from which no sharp trough shows where it lies
 NEXT_TERM = 0.5
 """Deviation of further terms of what lies outside the band, over those of the zeros there, at its end."""
 NULL_PART = 1e-3

@@ -18,28 +18,21 @@ import numpy as np
 
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
 
-FEWEST = 12
-"""Lines from which wild ones are looked for."""
-REACH = 4
-"""Lines on either side that one is compared with."""
-WILD = 8.0
-"""How many times as far as the worst of those a wild line deviates."""
-MOST_WILD = 0.02
-"""Share of the lines that may be wild: if more are, the model lacks something."""
+FEWEST = 12  # lines from which wild ones are looked for
+REACH = 4  # lines on either side that one is compared with
+WILD = 8.0  # how many times as far as the worst of those a wild line deviates
+MOST_WILD = 0.02  # share of the lines that may be wild: if more are, the model lacks something
 LEAST_OFF = 0.1
 """Deviation of the logarithm below which a line cannot hide a resonance and is left to the fit."""
 NARROW = 0.1
 """Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
-MOST_DIGITS = 7
-"""Numbers with so many digits, or fewer, count as rounded."""
+MOST_DIGITS = 7  # numbers with so many digits, or fewer, count as rounded
 EXACT, SMALLEST = 1e-9, 1e-13
 """Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
 STEP_REACH, STEP = 8, 6.5
 """Lines on either side of a step of the gain, and how many of their deviations it is at least."""
-FIRST_SHARE = 4
-"""Part of the lines of a thinner grid, its inverse, that is spread evenly."""
-CAP = 0.05
-"""Added to the deviation, so that a grid does not follow what a start does not need."""
+FIRST_SHARE = 4  # part of the lines of a thinner grid, its inverse, that is spread evenly
+CAP = 0.05  # added to the deviation, so that a grid does not follow what a start does not need
 
 
 def wild_lines(omega: Real, values: Complex) -> Whole:

@@ -25,8 +25,7 @@ from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
 from symflex.quantities import parse_unit
 
-STEP = 1e-6
-"""Of the logarithms by which derivatives are taken."""
+STEP = 1e-6  # of the logarithms by which derivatives are taken
 
 KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)): "kg^(-1/2)*m^(-1)"}
 """Units of mode shapes by the exponents of kg and m in a motion over a force, and over a torque."""
@@ -37,8 +36,7 @@ WEAK = 0.5
 """Standard error of a damping ratio over its value from which a resonance has no mode shape."""
 RIGHT_ANGLE = 90.0
 MOST_STEPS = 200
-SINGULAR = 1e13
-"""Condition of the normal equations from which a covariance means nothing."""
+SINGULAR = 1e13  # condition of the normal equations from which a covariance means nothing
 
 MOST_TURNED = 45.0
 """Degrees off the positive real axis beyond which a value at the driven point is not a modal constant."""

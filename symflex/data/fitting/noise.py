@@ -21,20 +21,15 @@ from symflex.data.fitting.problem import FitProblem, StructurelessFit
 from symflex.data.fitting.resonances import Complex, Real
 from symflex.data.fitting.starts import generous_fit
 
-STEPS = 60
-"""Multiplicative steps for the shares of the variance; none of them makes it worse."""
-POWERS = (0, 2, 4, -2, -4)
-"""Powers of the frequency that describe the variance of the noise."""
+STEPS = 60  # multiplicative steps for the shares of the variance; none of them makes it worse
+POWERS = (0, 2, 4, -2, -4)  # powers of the frequency that describe the variance of the noise
 LEAST = 1e-9
 """Relative deviation below which no line is taken to be known: a thousandth of it is rounding on the way."""
 MOST_PAIRS = 14
 """Most pairs of poles of the function without structure, if the number of resonances is open."""
-LINES_PER_PARAMETER = 2.0
-"""Real values that each parameter of that function takes at least."""
-PATIENCE = 2
-"""Numbers of pairs tried after the best one."""
-FEWEST = 5
-"""Lines from which the noise is guessed at all."""
+LINES_PER_PARAMETER = 2.0  # real values that each parameter of that function takes at least
+PATIENCE = 2  # numbers of pairs tried after the best one
+FEWEST = 5  # lines from which the noise is guessed at all
 DECIBEL, DEGREE = np.log(10) / 20, np.pi / 180
 LARGEST = 20.0
 """Power of an error, over what is expected of it, beyond which it counts as no more than this."""

@@ -26,8 +26,7 @@ STRANGE, MOST_DAMPED = 10.0, 2.0
 """What a BIC has to gain by a pair of zeros that is hardly one, and the damping ratio from which it is."""
 FAR_OUTSIDE = 30.0
 """Frequency over the end of the band beyond which a pole bends nothing inside that a gain cannot."""
-REAL = 1e-9
-"""Of a zero's magnitude: the imaginary part from which a zero is one of a pair."""
+REAL = 1e-9  # of a zero's magnitude: the imaginary part from which a zero is one of a pair
 
 
 @dataclass(frozen=True, eq=False)

@@ -56,20 +56,16 @@ FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
 FAR_OFF = 100.0
 """Sum of squares per degree of freedom from which poles are missing, whatever the start."""
-LOWER = 0.5
-"""How far the BIC has to fall for another start to count as better."""
+LOWER = 0.5  # how far the BIC has to fall for another start to count as better
 NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
 WELL_BELOW = 0.1
 """The same of records, in units of the noise that they show where they are quietest."""
 MOST_NUMERATORS, MOST_STARTS = 3, 4
 """The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
-MOST_SHAPES = 12
-"""Numerators over each choice of poles among which the simplest is looked for."""
-NARROW_BAND = 1.1
-"""Ratio of the ends of a band in which a power of s is hardly more than a gain."""
-SAME = 1e-3
-"""Relative distance below which two starts have the same poles."""
+MOST_SHAPES = 12  # numerators over each choice of poles among which the simplest is looked for
+NARROW_BAND = 1.1  # ratio of the ends of a band in which a power of s is hardly more than a gain
+SAME = 1e-3  # relative distance below which two starts have the same poles
 MOST_RISE = 1.5
 """Zeros moved to the other half-plane are a start where the misfit rises by no more than this factor."""
 CLEAR = 6.0

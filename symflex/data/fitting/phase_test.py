@@ -33,18 +33,14 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances, Values
 
 Verdict = Literal["minimum", "undetermined", "nonminimum", "assumed"]
 
-LIMIT_DEGREES = 10.0
-"""Phases part beyond this, or beyond the noise where that is larger."""
-SIGNIFICANT = 4.0
-"""Standard deviations of the phase that noise alone is not taken to reach."""
+LIMIT_DEGREES = 10.0  # phases part beyond this, or beyond the noise where that is larger
+SIGNIFICANT = 4.0  # standard deviations of the phase that noise alone is not taken to reach
 MOST_NOISE: Final = np.pi / 2
 """Those beyond which a phase says nothing: what leads and what lags are the same."""
-SMOOTHED_LINES = 5
-"""Width of the running median; single lines that are off do not count."""
+SMOOTHED_LINES = 5  # width of the running median; single lines that are off do not count
 SHORTEST_RUN, LONGEST_GAP = 4, 10
 """Lines that a band where phases part has at least, and has between two that are one."""
-LOWEST_DAMPING = 1e-4
-"""Of mirrored zeros, whose logarithms are searched for."""
+LOWEST_DAMPING = 1e-4  # of mirrored zeros, whose logarithms are searched for
 MOST_LAG: Final = np.pi / 2
 """The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
 WORSE: Final = 1.25

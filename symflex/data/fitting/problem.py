@@ -12,10 +12,8 @@ from symflex.data.fitting.observation import FittedLines, Observation, observe
 from symflex.data.fitting.resonances import Complex, Free, Resonances, Values, Whole
 from symflex.data.measurement import MeasuredResponse
 
-FEWEST_FOR_SLOPE = 5
-"""Lines from which a power of s is guessed."""
-EXACT = 3e-6
-"""Relative deviation of six digits: no instrument has it."""
+FEWEST_FOR_SLOPE = 5  # lines from which a power of s is guessed
+EXACT = 3e-6  # relative deviation of six digits: no instrument has it
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,8 +31,7 @@ from symflex.transfer.of_model import assemble, check_solvable
 
 DIGITS = 9
 FREE_NAMES = ("U", "Y")
-LONGEST = 32
-"""Characters of a name that is made of a text."""
+LONGEST = 32  # characters of a name that is made of a text
 COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields")
 """Sections of a base that are copied; its outputs are multiplied, and its figures show another model."""
 

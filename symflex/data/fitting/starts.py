@@ -31,53 +31,40 @@ if TYPE_CHECKING:
 
 LEAST_PROMINENCE = 0.02
 """Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
-NOISE_MULTIPLE = 5.0
-"""A peak stands out by so many times the scatter from line to line."""
+NOISE_MULTIPLE = 5.0  # a peak stands out by so many times the scatter from line to line
 TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05
 """omega_z over omega_p, and the damping ratio, that the paper calls typical."""
-LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5
-"""Damping ratios of a start are kept between these."""
-MATCHING_STEPS = 30
-"""Of the iteration that matches height and depth in turn."""
-SMOOTHED = 5
-"""Lines through which a parabola is laid (Savitzky and Golay 1964)."""
-APART = 3
-"""Lines between a peak that shows up later and those that are known."""
+LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5  # damping ratios of a start are kept between these
+MATCHING_STEPS = 30  # of the iteration that matches height and depth in turn
+SMOOTHED = 5  # lines through which a parabola is laid (Savitzky and Golay 1964)
+APART = 3  # lines between a peak that shows up later and those that are known
 
 # Of vector fitting and AAA.
-ITERATIONS = 25
-"""Of vector fitting, which mostly settles in fewer."""
-FIRST_DAMPING = 0.01
-"""Of the poles that vector fitting begins with, as its authors recommend."""
+ITERATIONS = 25  # of vector fitting, which mostly settles in fewer
+FIRST_DAMPING = 0.01  # of the poles that vector fitting begins with, as its authors recommend
 UNMOVED = 1e-4
 """Relative change of the poles at which vector fitting has settled: least squares go on from there."""
-SETTLED = 1e-6
-"""The least of its free constant."""
-SPARE = 2
-"""Poles, or pairs of them, more than are looked for, which noise or a delay may take up."""
+SETTLED = 1e-6  # the least of its free constant
+SPARE = 2  # poles, or pairs of them, more than are looked for, which noise or a delay may take up
 GENEROUS = 10
 """Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
 REPHASED = 6
 """Rounds in which magnitudes without a phase take that of the function fitted to them."""
-LARGEST_START = 0.3
-"""Damping ratio beyond which a pole counts less and less as a resonance."""
+LARGEST_START = 0.3  # damping ratio beyond which a pole counts less and less as a resonance
 FREE_POWERS = (-2, -1, 0, 1, 2)
 """Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
 
-REAL = 1e-9
-"""Share of a pole's magnitude from which its imaginary part makes it one of a pair."""
+REAL = 1e-9  # share of a pole's magnitude from which its imaginary part makes it one of a pair
 
 FEW_POWERS = (0, 1)
 """The same where poles outside the band are to be found: what they add looks like powers of s."""
 
 # Of delays.
-PER_TURN = 5
-"""Delays tried per turn of the phase at the highest line."""
+PER_TURN = 5  # delays tried per turn of the phase at the highest line
 MOST_TURNS = 40.0
 LEAST_TURNS = 2.0
 """Of the phase at the highest line: how far the delays tried reach, at most and at least."""
-MOST_LINES = 300
-"""Lines on which delays are compared."""
+MOST_LINES = 300  # lines on which delays are compared
 
 
 # ------------------------------------------------------------------ from the magnitude alone

@@ -272,8 +272,7 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
     return ", ".join(parts)
 
 
-LARGE: Final = 1e7
-"""What is larger is printed with a power of ten."""
+LARGE: Final = 1e7  # what is larger is printed with a power of ten
 HEAD: Final = ("", "frequency [Hz]", "std. error", "damping ratio", "std. error", "")
 
 

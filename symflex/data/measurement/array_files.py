@@ -28,13 +28,11 @@ import numpy as np
 import numpy.typing as npt
 
 CUT = "it is cut short"
-SHOWN = 80
-"""Characters of a message that repeats what a file says."""
+SHOWN = 80  # characters of a message that repeats what a file says
 LAST_CHARACTER: Final = 0x10FFFF
 SURROGATES: Final = (0xD800, 0xDFFF)
 """The range of Unicode, and the halves of pairs in it that are not characters (Unicode 15, section 3.9)."""
-DIMENSIONS_LIMIT = 32
-"""Of numpy 1; version 2 takes 64."""
+DIMENSIONS_LIMIT = 32  # of numpy 1; version 2 takes 64
 
 
 def require(is_met: bool, reason: str) -> None:
@@ -268,23 +266,18 @@ def _attributes(reader: ByteReader, items: int) -> Attributes:
 _HEADER, _VERSION, _VERSION_5, _VERSION_7_3 = 128, 124, 1, 2
 _STORED: Final = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 _TEXT_KINDS: Final = {2: "utf-8", 16: "utf-8", 4: "utf-16", 17: "utf-16", 18: "utf-32"}
-_MATRIX, _COMPRESSED = 14, 15
-"""Data types of elements: an array, and a compressed element."""
+_MATRIX, _COMPRESSED = 14, 15  # data types of elements: an array, and a compressed element
 _CELL, _STRUCT, _OBJECT, _CHAR, _NUMERIC, _OPAQUE = 1, 2, 3, 4, range(6, 16), 17
 _COMPLEX_FLAG = 0x0800
 _STORED_4: Final = ("f8", "f4", "i4", "i2", "u2", "u1")
 _TEXT_4, _LAST_MOPT = 1, 4999
 """Version 4 begins with the decimal digits MOPT: machine, 0, kind of number, kind of matrix."""
-_NAME_LIMIT = 63
-"""Characters of a name in MATLAB."""
-VARIABLES_LIMIT: Final = 10_000
-"""Also of cells, and of lines of a text."""
-TEXT_LIMIT = 1000
-"""Characters of a line: of texts, numpy gives each the room of the longest."""
+_NAME_LIMIT = 63  # characters of a name in MATLAB
+VARIABLES_LIMIT: Final = 10_000  # also of cells, and of lines of a text
+TEXT_LIMIT = 1000  # characters of a line: of texts, numpy gives each the room of the longest
 _OTHER: Final[npt.NDArray[Any]] = np.empty(0, object)
 """What stands for a sparse matrix and the like, whose content nobody asks for."""
-DEEPEST = 8
-"""Levels of structures in structures, and of cells."""
+DEEPEST = 8  # levels of structures in structures, and of cells
 
 
 @dataclass(frozen=True, slots=True)

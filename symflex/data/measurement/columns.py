@@ -66,8 +66,7 @@ UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, *_LEVELS, *_OHMS))
 _SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()|^(r|i)(?= \S+\.[vi]$)", re.I)
 _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
 """Functions by which circuit simulators name columns: VDB(out), P(V(out)), r out.v."""
-LISTED = 12
-"""Names of columns in a message; of more there are dots."""
+LISTED = 12  # names of columns in a message; of more there are dots
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
 _JOINED = re.compile(
     r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)|(?<=^[GHYZ])(?=(?:re|im)(?:al|ag)?\b)|(?<=^Re|^Im)(?=[A-Z]\d*$)"
@@ -116,15 +115,12 @@ FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
 DECADE: Final = 10.0
 """Ratio of the largest and smallest of positive numbers up to which they may well be dB."""
-LEAST_LEVELS: Final = 1.0
-"""Range [dB] below which positive numbers are rather ratios."""
+LEAST_LEVELS: Final = 1.0  # range [dB] below which positive numbers are rather ratios
 SAME_SIZE: Final = 0.02
 MOST_ALIKE: Final = 0.9
 """Relative deviation up to which a column is another one, of few digits, and in how many of its lines."""
-MOST_LISTED: Final = 6
-"""Columns that are not used and are listed by name."""
-ROUNDED_COHERENCE: Final = 1.01
-"""Up to which coherence was rounded upwards."""
+MOST_LISTED: Final = 6  # columns that are not used and are listed by name
+ROUNDED_COHERENCE: Final = 1.01  # up to which coherence was rounded upwards
 EVENLY, HELD = 0.02, 0.1
 """Median deviation of the steps of a time, of their median; share of equal neighbours that signals have."""
 FILLED: Final = 0.95
@@ -142,8 +138,7 @@ MOST_DECADES: Final = 18
 ROUND: Final = 1e-7
 """Relative deviation from a decimal of three digits, below which a number was meant to be one."""
 LONGEST_NAME: Final = 200
-BEYOND: Final = 7.0
-"""How far a magnitude is continued beyond its ends: a factor e^7 in frequency."""
+BEYOND: Final = 7.0  # how far a magnitude is continued beyond its ends: a factor e^7 in frequency
 
 
 @dataclass(frozen=True, slots=True)
@@ -942,8 +937,7 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
 
 SINCE_1970: Final = 1e11
 """Numbers above which an axis without a name is rather a time in milliseconds than a frequency."""
-MOST_COMPARED: Final = 1000
-"""Lines by which readings are compared."""
+MOST_COMPARED: Final = 1000  # lines by which readings are compared
 _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
 """Words of ``--columns`` that make a response in pairs."""
 

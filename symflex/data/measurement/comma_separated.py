@@ -65,12 +65,10 @@ _IMPLIED: Final = {
 """Columns of files without a header, by the end of their names (loudspeaker programs)."""
 _Rewritten = tuple[bytes, Callable[[Span | None], Span | None], tuple[str, ...]]
 """A text of columns, the function that says where what stands in it comes from, and what was guessed."""
-MOST_TURNED: Final = 12
-"""Lines of a table that are columns."""
+MOST_TURNED: Final = 12  # lines of a table that are columns
 MOST_UNNAMED: Final = 4
 """Such lines that may lack names: they are the frequency, two parts of values, and coherence."""
-NEAR: Final = 60
-"""Lines above the numbers among which the names of columns are looked for."""
+NEAR: Final = 60  # lines above the numbers among which the names of columns are looked for
 
 
 def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:

@@ -43,12 +43,9 @@ SEGMENTS: Final = 8
 """Segments into which a record is cut by default, without overlap; with half an overlap there are 15."""
 LONGEST_SEGMENT: Final = 16_384
 """Samples of a segment: a fit of more lines takes longer than it tells."""
-LEVELS: Final = 0.02
-"""Share of a step or pulse by which a level may be off."""
-PULSE: Final = 0.1
-"""Share of a record in which a pulse ends."""
-SETTLED: Final = 1e-4
-"""The same, below which what is left needs no window, noise or not."""
+LEVELS: Final = 0.02  # share of a step or pulse by which a level may be off
+PULSE: Final = 0.1  # share of a record in which a pulse ends
+SETTLED: Final = 1e-4  # the same, below which what is left needs no window, noise or not
 BELOW_NOISE: Final = 0.1
 """Share of the smallest amplitude that noise lets see to which a window takes what is left."""
 AT_REST: Final = 0.02
@@ -57,8 +54,7 @@ EXCITED: Final = 1e-3
 """Share of the largest amplitude of the input's spectrum below which a line is not excited."""
 EXCITED_AGAIN: Final = 0.03
 """The same of a periodic input, where harmonics of a sine are below, and of what a window fades out."""
-SAME_PERIOD: Final = 0.99
-"""Correlation of an input with itself from which it repeats."""
+SAME_PERIOD: Final = 0.99  # correlation of an input with itself from which it repeats
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
 SWEPT: Final = 0.4
@@ -70,8 +66,7 @@ STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
 DIES_AWAY: Final = 0.3
 """Rms of the second half of a free decay over that of the first half, at most."""
-ENDS: Final = 0.05
-"""Share of a record by whose samples its ends are judged."""
+ENDS: Final = 0.05  # share of a record by whose samples its ends are judged
 
 
 @dataclass(frozen=True)

@@ -57,12 +57,10 @@ BESIDE: Final = 3
 """Column of the time where what is known of a record stands in those before it (oscilloscopes)."""
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
-LARGEST_EXPONENT: Final = 400
-"""Of a decimal: far beyond what doubles hold."""
+LARGEST_EXPONENT: Final = 400  # of a decimal: far beyond what doubles hold
 MOST_DIGITS: Final = 10**15
 """Denominator of a time beyond which its last digits are those of a binary number."""
-EVEN: Final = 1e-6
-"""Share of their distance by which times of an array may be off even ones."""
+EVEN: Final = 1e-6  # share of their distance by which times of an array may be off even ones
 
 
 @dataclass(frozen=True)

@@ -163,15 +163,12 @@ class MeasuredResponse:
 
 MAX_BYTES: Final = 50_000_000
 MAX_LINES: Final = 1_000_000
-MAX_RESPONSES: Final = 100
-"""Larger files are refused before they fill the memory."""
+MAX_RESPONSES: Final = 100  # larger files are refused before they fill the memory
 MOST_LEFT_OUT: Final = 0.1
 """Share of lines without a number that are left out; more may be a column that was misread."""
-MAX_ERRORS: Final = 20
-"""Problems of one file that are listed."""
+MAX_ERRORS: Final = 20  # problems of one file that are listed
 FEWEST_LINES, FEWEST_TO_SCATTER = 3, 8
-MOST_AVERAGES = 1e9
-"""Of a number of averages, beyond which it is a mistake."""
+MOST_AVERAGES = 1e9  # of a number of averages, beyond which it is a mistake
 SHOWN_NAMES = 8
 SLOWEST, FASTEST = 1e-18, 1e18
 """Limits of a frequency [Hz]: the fourth power of a ratio of two, squared, is still a double."""

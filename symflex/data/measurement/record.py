@@ -33,24 +33,18 @@ from symflex.errors import DataError, Diagnostic, UsageError
 
 Real = npt.NDArray[np.float64]
 
-SEARCHED: Final = 300
-"""Lines among which the names of columns and the first row are sought."""
-BEGIN: Final = 4
-"""Samples by which it is judged where a record begins."""
+SEARCHED: Final = 300  # lines among which the names of columns and the first row are sought
+BEGIN: Final = 4  # samples by which it is judged where a record begins
 LONG: Final = 100.0
 """Sampling time [s] from which a time without a unit may be in milliseconds or microseconds."""
-FEWEST_SAMPLES: Final = 32
-"""Fewer make no response."""
+FEWEST_SAMPLES: Final = 32  # fewer make no response
 JITTER: Final = 0.02
 """Share of the sampling time by which times may be off even ones without a word: a clock's last digit."""
-UNEVEN: Final = 0.5
-"""The same, from which a sample is missing."""
+UNEVEN: Final = 0.5  # the same, from which a sample is missing
 SATURATED: Final = 4
 """Samples one after the other at an end of a channel's range, from which it looks cut off."""
-LEVELS: Final = 10
-"""Different values of a step or of a square wave, and of nothing else."""
-SAME: Final = 1 - 1e-12
-"""Correlation from which a channel is a multiple of another."""
+LEVELS: Final = 10  # different values of a step or of a square wave, and of nothing else
+SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of another
 
 _INPUT = re.compile(
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"

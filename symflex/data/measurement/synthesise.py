@@ -25,8 +25,7 @@ Complex = npt.NDArray[np.complex128]
 
 OVERLAP_WORTH: Final = 0.947
 """Independent averages per record at half an overlap with a Hann window: 1/(1 + 2/36) (Welch 1967)."""
-SAMPLING: Final = 2.56
-"""Sampling rate over the highest line, as is usual in analysers."""
+SAMPLING: Final = 2.56  # sampling rate over the highest line, as is usual in analysers
 SENSOR_DAMPING: Final = 0.7
 LOWEST_HZ: Final = 1e-15
 HIGHEST_HZ: Final = 1e15
@@ -184,5 +183,4 @@ def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: Me
     return np.asarray(CubicSpline(frequency[coarse], values)(frequency))
 
 
-INTERPOLATED: Final = 16
-"""The response is evaluated at least at this many points per line shown."""
+INTERPOLATED: Final = 16  # the response is evaluated at least at this many points per line shown

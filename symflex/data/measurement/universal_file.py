@@ -30,20 +30,17 @@ from symflex.errors.optional import installed
 
 MARK: Final = b"    -1"
 _MARKS: Final = re.compile(rb"    -1[^\S\n]*(?:\n|\Z)")
-HEADER_LINES: Final = 11
-"""Records of a dataset 58 before its data."""
+HEADER_LINES: Final = 11  # records of a dataset 58 before its data
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
 POWERS: Final = (2, 9)
 """Function types of datasets 58; those of powers are an auto spectrum and a power spectral density."""
-FREQUENCY_AXIS: Final = 18
-"""Data type of an abscissa that is a frequency."""
+FREQUENCY_AXIS: Final = 18  # data type of an abscissa that is a frequency
 SPECIFIC_TYPES: Final = {
     8: ("X", "m"), 9: ("F", "N"), 11: ("V", "m/s"), 12: ("A", "m/s^2"), 13: ("F", "N"), 15: ("P", "Pa"),
 }  # fmt: skip
 """Letter and SI unit of a quantity by its specific data type."""
 DIRECTIONS: Final = {0: "", 1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
-SI: Final = 1
-"""Code of a dataset 164 for metres, newtons and seconds."""
+SI: Final = 1  # code of a dataset 164 for metres, newtons and seconds
 FUNCTIONS: Final = {
     0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 6: "coherence",
     7: "auto correlation", 8: "cross correlation", 9: "power spectral density", 12: "spectrum",
@@ -57,8 +54,7 @@ ORDINATE_TYPES: Final = (2, 4, 5, 6)
 """Real in single and double precision, complex in single and double precision."""
 
 
-_Place = tuple[int, int]
-"""The line where a dataset 58 begins, and which of all datasets it is."""
+_Place = tuple[int, int]  # the line where a dataset 58 begins, and which of all datasets it is
 
 
 def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:

@@ -269,8 +269,7 @@ def expansion_order(rows: tuple[SparseRow, ...], columns: tuple[int, ...]) -> tu
     return tuple(order)
 
 
-LARGEST = 700.0
-"""Logarithms beyond this overflow a double."""
+LARGEST = 700.0  # logarithms beyond this overflow a double
 
 
 def expanded_terms(equations: Equations, elimination: Elimination) -> float:

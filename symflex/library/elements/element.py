@@ -92,8 +92,7 @@ class LinearForm:
         return LinearForm(tuple((v, c * scale) for v, c in self.terms if not scale.is_zero))
 
 
-Terms = dict[Variable, "Factored"]
-"""The coefficients of a linear combination, by its variables."""
+Terms = dict[Variable, "Factored"]  # the coefficients of a linear combination, by its variables
 
 
 def put_in(terms: Terms, known: Mapping[Variable, Terms]) -> Terms:

@@ -193,8 +193,7 @@ def _carried(use: ElementUse, length: Factored, rows: tuple[EquationRow, ...]) -
     )
 
 
-REACTIONS = {"x": "f_x", "y": "f", "theta": "tau"}
-"""What holds a component of a planar node."""
+REACTIONS = {"x": "f_x", "y": "f", "theta": "tau"}  # what holds a component of a planar node
 
 
 def _hold(use: ElementUse, held: Mapping[str, str]) -> Stamp:

@@ -35,8 +35,7 @@ PREFIXES: Final = {"e9": "G", "e6": "M", "e3": "k", "e-3": "m", "e-6": "u", "e-9
 NUMBER: Final = re.compile(
     r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?)(meg|mil|[tgkmunpfµμ])?([a-zµμ\u2126]*)", re.I
 )
-INNER: Final = re.compile(r"(\d+)(meg|[kmunpr])(\d+)", re.I)
-"""Values such as 4k7."""
+INNER: Final = re.compile(r"(\d+)(meg|[kmunpr])(\d+)", re.I)  # values such as 4k7
 IN_EXPRESSION: Final = re.compile(
     r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)(meg|mil|[tgkmunpfµ])?\b", re.I
 )

@@ -53,12 +53,10 @@ if TYPE_CHECKING:
     from symflex.print.forms.kept import KeptDefinitions
 
 
-GROUP_LIMIT = 5_000
-"""Number of terms up to which a polynomial is nested for print."""
+GROUP_LIMIT = 5_000  # number of terms up to which a polynomial is nested for print
 DEEPEST_NEST = 60
 """Degree in all parameters up to which a sum is nested: each level of print takes out one of them."""
-FACTOR_LIMIT = 400
-"""Number of terms up to which a coefficient is factored for print."""
+FACTOR_LIMIT = 400  # number of terms up to which a coefficient is factored for print
 
 
 @dataclass(frozen=True)
@@ -390,18 +388,12 @@ def _is_trinomial_square(terms: Mapping[tuple[int, ...], int]) -> bool:
     return b * b == 4 * a * c and all(2 * m == f + n for f, m, n in zip(first, middle, last, strict=True))
 
 
-SMALL = 400
-"""Number of terms up to which every arrangement of a sum is tried."""
-SHORT = 4
-"""Number of terms up to which a nested sum is compared with the plain one."""
-FEW = 40
-"""Number of terms up to which the open loop is looked for in a closed one."""
-SECOND = 2
-"""Degree in s up to which a polynomial prints by powers of s."""
-NESTED = 1.3
-"""How many times as long as a nested polynomial one by powers of s may be."""
-READABLE = 4
-"""Depth of parentheses that reads easily."""
+SMALL = 400  # number of terms up to which every arrangement of a sum is tried
+SHORT = 4  # number of terms up to which a nested sum is compared with the plain one
+FEW = 40  # number of terms up to which the open loop is looked for in a closed one
+SECOND = 2  # degree in s up to which a polynomial prints by powers of s
+NESTED = 1.3  # how many times as long as a nested polynomial one by powers of s may be
+READABLE = 4  # depth of parentheses that reads easily
 
 Sides = tuple[Expression, Expression]
 
@@ -584,8 +576,7 @@ def _is_nested(term: Expression) -> bool:
     return len(inner) == 1 and bool({*inner[0]} & {*factors})
 
 
-MOST_WAYS = 16
-"""Ways to write factors by the law of a wavenumber that are made."""
+MOST_WAYS = 16  # ways to write factors by the law of a wavenumber that are made
 ARRANGED = 4
 """The shortest of them: their sums are arranged, and what takes fewest characters is printed."""
 

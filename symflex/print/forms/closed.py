@@ -50,8 +50,7 @@ from symflex.print.forms.arrange import ProductPrinter, Sides, length_sides
 from symflex.print.forms.naming import Naming
 from symflex.transfer import TransferFunction
 
-Line = tuple[Expression, Expression]
-"""What is defined, and what it is."""
+Line = tuple[Expression, Expression]  # what is defined, and what it is
 Places = Mapping[Factored, Sequence[tuple[int, int, Expression]]]
 """Per length the rows and columns of entries of a fundamental matrix, and what they are called."""
 ONE: Final = number(1)

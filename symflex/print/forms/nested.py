@@ -50,14 +50,10 @@ from symflex.transfer import NestedTransferFunction
 if TYPE_CHECKING:
     from symflex.equations.elimination.star_mesh import Waves
 
-DEEPEST = 8
-"""Levels of an expression from which it gets a name."""
-LONGEST_PRODUCT = 24
-"""Factors beyond which a product is continued in a line of its own."""
-SHORT = 3
-"""Factors up to which a product of parameters is written out wherever it occurs."""
-LONGEST_SUM = 100
-"""Terms beyond which a sum is."""
+DEEPEST = 8  # levels of an expression from which it gets a name
+LONGEST_PRODUCT = 24  # factors beyond which a product is continued in a line of its own
+SHORT = 3  # factors up to which a product of parameters is written out wherever it occurs
+LONGEST_SUM = 100  # terms beyond which a sum is
 BAR = 20
 """Characters that a fraction within a side may save, and of a product that needs no line to be used once."""
 STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}

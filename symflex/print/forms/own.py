@@ -42,8 +42,7 @@ from symflex.transfer.enclose import principal_values
 
 POINTS: Final = 3
 EXPONENTS: Final = (1, 2, -1, -2)
-MOST: Final = 3
-"""Names in one product."""
+MOST: Final = 3  # names in one product
 SIMPLE: Final = 64
 """The largest denominator of a number beside names, and the part of values between 1 and 2."""
 

@@ -36,8 +36,7 @@ if TYPE_CHECKING:
 
 
 S: Final = Name(LAPLACE)
-SQUARE: Final = 2
-"""The order of a root that has a sign of its own in print."""
+SQUARE: Final = 2  # the order of a root that has a sign of its own in print
 
 
 @dataclass(frozen=True, slots=True)

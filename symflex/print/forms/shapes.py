@@ -56,26 +56,19 @@ from symflex.transfer.enclose import enclosure, principal_values
 if TYPE_CHECKING:
     from symflex.print.forms.printed import PrintedForm
 
-LARGEST: Final = 4000
-"""Parts of a form up to which it is shaped: nobody reads longer ones."""
-FAR: Final = 1e60
-"""A frequency at which every sum has the sign of its highest power of s."""
+LARGEST: Final = 4000  # parts of a form up to which it is shaped: nobody reads longer ones
+FAR: Final = 1e60  # a frequency at which every sum has the sign of its highest power of s
 DIGITS: Final = 7
 """Significant digits of a decimal that reads better than a shorter whole number elsewhere."""
-MOST: Final = 15
-"""The same where whole numbers have as many."""
+MOST: Final = 15  # the same where whole numbers have as many
 FEW_DOUBLES: Final = 2
 """Numbers of more digits in a model that are printed with all of them, such as 1/60 as a double."""
-TOO_LONG: Final = 10**30
-"""A whole number in which nobody looks for numbers as they were typed."""
+TOO_LONG: Final = 10**30  # a whole number in which nobody looks for numbers as they were typed
 LARGE: Final = 10**5
 """A whole number from which a polynomial in s reads better with s^n alone in front."""
-MORE: Final = 1.3
-"""How many times as long a form with decimals may be."""
-SCALED: Final = ("monic", "constant")
-"""Forms that say what a coefficient is divided by."""
-LINE: Final = 4
-"""Characters by which one line in place of two has to be shorter than these."""
+MORE: Final = 1.3  # how many times as long a form with decimals may be
+SCALED: Final = ("monic", "constant")  # forms that say what a coefficient is divided by
+LINE: Final = 4  # characters by which one line in place of two has to be shorter than these
 RATIOS: Final = (("sinh", "cosh", "tanh"), ("sin", "cos", "tan"))
 S: Final = Name(LAPLACE)
 PI: Final = Name("pi")

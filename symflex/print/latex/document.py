@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
 TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
 """Width of the text of the document, and of fragments unless asked otherwise."""
-DOCUMENT: Final = "document.tex"
-"""Name of the file of a document that is compiled."""
+DOCUMENT: Final = "document.tex"  # name of the file of a document that is compiled
 _LONGEST_HIDDEN: Final = 0.5
 _COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()
 _FOR_EQUATIONS: Final = "amsmath"

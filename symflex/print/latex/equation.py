@@ -26,14 +26,12 @@ _OVER: Final = "_over_"
 
 RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
 
-NOTEBOOK_MM: Final = 190.0
-"""Width of an equation in a notebook, in type of ten points."""
+NOTEBOOK_MM: Final = 190.0  # width of an equation in a notebook, in type of ten points
 LONGEST_IN_NOTEBOOK: Final = 20_000
 
 # TeX keeps a whole display in its memory.
 _LINES_PER_DISPLAY: Final = 300
-_TAG: Final = 2.9
-"""A number of three digits and the least room before it."""
+_TAG: Final = 2.9  # a number of three digits and the least room before it
 _PARENTHESES: Final = 0.781
 _Sides = tuple[str, float, "Expression"]
 """The left side of an equation with its width [em], and the right one."""

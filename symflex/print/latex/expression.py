@@ -120,8 +120,7 @@ DEEPEST_INDENT: Final = 3
 _LONG: Final = 0.5
 _LONGEST_LEAD: Final = 0.25
 _LONGEST_TAIL: Final = 0.15
-_SQUARE_ROOT: Final = 1.26
-"""The exponent 1/2."""
+_SQUARE_ROOT: Final = 1.26  # the exponent 1/2
 
 
 class Glue(NamedTuple):

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
 
 
-VALUE_DIGITS: Final = 7
-"""Significant digits of a value that is not a shorter decimal."""
+VALUE_DIGITS: Final = 7  # significant digits of a value that is not a shorter decimal
 ROOT_DIGITS: Final = 6
 """Significant digits of a root, where its radius certifies them and the column has room."""
 LONGEST_MEANING: Final = 400
@@ -217,8 +216,7 @@ def _cell(column: RootColumn, entry: PrintedRoot, decimal: str) -> str:
     return f"{{${decimal.replace('+-', chr(92) + 'pm')}$}}" if "+-" in decimal else decimal
 
 
-LINES_PER_PART: Final = 40
-"""A table with more lines is set in parts."""
+LINES_PER_PART: Final = 40  # a table with more lines is set in parts
 SIZES: Final = (("", 1.0), (r"\small", 0.93), (r"\footnotesize", 0.86))
 """Commands, and how wide letters are then, of those of ten points."""
 _SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"

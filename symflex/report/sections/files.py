@@ -163,8 +163,7 @@ def data_section(study: Study) -> ChapterPart | None:
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
 
 
-TARGETS: Final = ("numpy", "c")
-"""Keys of ``EXPORTERS`` that a report writes."""
+TARGETS: Final = ("numpy", "c")  # keys of EXPORTERS that a report writes
 HEAD: Final = ("frequency_hz", "re", "im", "magnitude_db", "phase_deg")
 
 

@@ -29,14 +29,10 @@ from symflex.roots.counting.winding import (
 from symflex.roots.functions.entire import Entire
 from symflex.roots.functions.kernel_function import ROOM, angle
 
-BITS = 64
-"""Precision of turns, of which only the nearest integer is wanted."""
-LAST_BITS = 2048
-"""Largest precision: if a factor is still lost with it, a root is on the path."""
-FIRST_STEP = 0.2
-"""Length of the first step [in z]."""
-SMALLEST = 1e-12
-"""Step [in z] below which a root is said to lie on the path."""
+BITS = 64  # precision of turns, of which only the nearest integer is wanted
+LAST_BITS = 2048  # largest precision: if a factor is still lost with it, a root is on the path
+FIRST_STEP = 0.2  # length of the first step [in z]
+SMALLEST = 1e-12  # step [in z] below which a root is said to lie on the path
 LOSSY = 0.01
 """Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
 

@@ -24,24 +24,18 @@ from symflex.roots.functions.kernel_function import ROOM
 RING = log(2)
 LARGEST_RING = 120
 """Octaves searched for the lowest root, from that of one wave: more than 36 decades."""
-FAR = 60.0
-"""Logarithm of a frequency beyond all that matter."""
-SAME_ORDER = 0.05
-"""Difference of a count from the order at 0, in turns, that rounding may cause."""
-LONGEST_STEP = 0.4
-"""Longest step of a path [in z]."""
+FAR = 60.0  # logarithm of a frequency beyond all that matter
+SAME_ORDER = 0.05  # difference of a count from the order at 0, in turns, that rounding may cause
+LONGEST_STEP = 0.4  # longest step of a path [in z]
 PHASE_STEP = 2.0
 """Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
 DISAGREEMENT = 0.3
 """Largest difference between ln F at the end of a step and what the slopes at both ends predict."""
-BEND = 2.0
-"""Largest change of ln F over a step that a change of slope may cause."""
+BEND = 2.0  # largest change of ln F over a step that a change of slope may cause
 SMALLEST_STEP = 1e-13
 """Smallest step of a path [in z]; a path that needs a shorter one meets a root."""
-NEARLY_WHOLE = 0.05
-"""Difference from an integer, in turns, that rounding may cause."""
-WORK_LIMIT = 5_000_000
-"""Terms evaluated in one search."""
+NEARLY_WHOLE = 0.05  # difference from an integer, in turns, that rounding may cause
+WORK_LIMIT = 5_000_000  # terms evaluated in one search
 SHORTER = "ask for fewer modes or a smaller region"
 TOO_LONG = "the search for roots takes too long"
 
@@ -233,20 +227,13 @@ def continuous_step(start: Sample, end: Sample, step: complex) -> float | None:
     return change.imag
 
 
-GOAL = 1.15
-"""Deviation that the next step aims at."""
-GROWTH = 1.5
-"""Most that one step may be longer than the last, or shorter."""
-SHRINKING = 0.5
-"""Least that is tried of a step that was too long."""
-NEARER = 0.5
-"""Share of a step that was too long to try next: deviations grow exponentially."""
-FORGETTING = 1.1
-"""Growth of that bound with every step."""
-WIDENED = 1 + 2.0**-40
-"""Makes up for the rounding of half a step."""
-SPREAD = 2.0**-50
-"""Relative width that makes up for the rounding of a step's middle."""
+GOAL = 1.15  # deviation that the next step aims at
+GROWTH = 1.5  # most that one step may be longer than the last, or shorter
+SHRINKING = 0.5  # least that is tried of a step that was too long
+NEARER = 0.5  # share of a step that was too long to try next: deviations grow exponentially
+FORGETTING = 1.1  # growth of that bound with every step
+WIDENED = 1 + 2.0**-40  # makes up for the rounding of half a step
+SPREAD = 2.0**-50  # relative width that makes up for the rounding of a step's middle
 
 
 def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:

@@ -138,8 +138,7 @@ class Count:
 
 NEIGHBOURHOOD = 0.05
 """Size of a neighbourhood where roots accumulate, relative to its distance from 0."""
-WIDER = 1e-3
-"""How far beyond its limits, in ln, a ring is searched."""
+WIDER = 1e-3  # how far beyond its limits, in ln, a ring is searched
 
 
 def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
@@ -267,8 +266,7 @@ def _log(size: float) -> float:
     return log(size) if size > 0 else -inf
 
 
-SAME = 0.5
-"""Largest distance from a whole number of an order that is read off doubles."""
+SAME = 0.5  # largest distance from a whole number of an order that is read off doubles
 DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 

@@ -15,8 +15,7 @@ from typing import Protocol
 
 from flint import acb, arb
 
-FactorBall = tuple[acb, acb, int]
-"""Value and derivative of a factor, and its exponent."""
+FactorBall = tuple[acb, acb, int]  # value and derivative of a factor, and its exponent
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,20 +35,13 @@ from symflex.roots.problem import is_complex
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose_kernels import KernelValues
 
-FIRST_BITS = 64
-"""First precision of values; more if it does not suffice."""
-LAST_BITS = 4096
-"""Largest precision: a value that is not settled with it is at a root."""
-SETTLED_BITS = 24
-"""Accuracy asked of every factor before its sign, phase or slope is used."""
-ORIGIN = -140.0
-"""ln(abs(s)) where the order of a root at 0 is read off."""
-SERIES_TERMS = (20, 80)
-"""Lengths of the series about 0 in which the first term is sought."""
-BRANCH_BITS = 256
-"""Precision of one value that is compared on all branches."""
-ANYWHERE = (0.7, 1.3)
-"""Real and imaginary part of a frequency like any other."""
+FIRST_BITS = 64  # first precision of values; more if it does not suffice
+LAST_BITS = 4096  # largest precision: a value that is not settled with it is at a root
+SETTLED_BITS = 24  # accuracy asked of every factor before its sign, phase or slope is used
+ORIGIN = -140.0  # ln(abs(s)) where the order of a root at 0 is read off
+SERIES_TERMS = (20, 80)  # lengths of the series about 0 in which the first term is sought
+BRANCH_BITS = 256  # precision of one value that is compared on all branches
+ANYWHERE = (0.7, 1.3)  # real and imaginary part of a frequency like any other
 BRANCHES = (1, 2, 4)
 """Powers in which the choice of a wavenumber may cease to matter; four roots have no other."""
 SINGLE: Final = {"wave": 2, "bending": 4}

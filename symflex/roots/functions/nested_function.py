@@ -15,10 +15,8 @@ from symflex.roots.functions.entire import Sample
 from symflex.transfer import BoundNested
 from symflex.transfer.double_value import FIRST_BITS, LAST_BITS
 
-SETTLED_BITS = 30
-"""Precision of a value and its slope: more than a step along a path needs."""
-LOW = -200.0
-"""ln of a frequency [rad/s] below all roots but those at rest."""
+SETTLED_BITS = 30  # precision of a value and its slope: more than a step along a path needs
+LOW = -200.0  # ln of a frequency [rad/s] below all roots but those at rest
 
 
 @dataclass(eq=False)

@@ -20,10 +20,8 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import LossyRoot, Root, count_modes, overlap, root_at_zero
 
-CRAMER = "cramer"
-"""What stands in a certificate: the determinants of Cramer's rule, in discs."""
-WIDER = 1.01
-"""How far beyond the region the disc reaches."""
+CRAMER = "cramer"  # what stands in a certificate: the determinants of Cramer's rule, in discs
+WIDER = 1.01  # how far beyond the region the disc reaches
 GROWTH = 1.4
 SPARE = 1
 """Roots beyond those asked for that a disc is to hold, so that its circle passes between two."""

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 SPARE_TERMS = 8
 """Terms of a series beyond those that vanish; each pivot of an order takes as many."""
-FEWEST = 4
-"""Columns with fewest entries that are looked at for a pivot."""
+FEWEST = 4  # columns with fewest entries that are looked at for a pivot
 
 
 def _place_constants(cramer: CramerEquations, point: dict[str, int]) -> bool:

@@ -23,8 +23,7 @@ from symflex.algebra.propagators import EXPONENTIAL
 if TYPE_CHECKING:
     from symflex.roots.networks.cramer import CramerEquations
 
-NONE = -1e6
-"""The degree of an entry that is zero: less than any sum of degrees."""
+NONE = -1e6  # the degree of an entry that is zero: less than any sum of degrees
 
 
 def most_zeros(cramer: CramerEquations) -> int | None:

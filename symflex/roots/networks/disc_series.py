@@ -23,20 +23,15 @@ from symflex.balls import ball, precision, series_terms, stays_inside
 from symflex.budget import spend
 
 GUARD_BITS = 64
-MOST_TIMES_BITS = 8
-"""Largest factor on the precision of a series to separate its roots."""
+MOST_TIMES_BITS = 8  # largest factor on the precision of a series to separate its roots
 SMALLEST_ARC = 2.0**-11
 """Shortest arc of a circle on which the argument is followed [rad]; below, a root counts as on it."""
 BISECTIONS = 60
-SERIES_TERMS = 40
-"""Terms of the function about a point of a circle; the others are bounded."""
-LEFT_OUT = 8
-"""Times what coefficients lack, that leaving some out may add: three bits of them."""
-WITHIN = 0.9
-"""Share of its distance to 0 by which the function may move on a step."""
+SERIES_TERMS = 40  # terms of the function about a point of a circle; the others are bounded
+LEFT_OUT = 8  # times what coefficients lack, that leaving some out may add: three bits of them
+WITHIN = 0.9  # share of its distance to 0 by which the function may move on a step
 WIDENINGS = 8
-FEWEST_POINTS = 8
-"""Half of them, on a circle."""
+FEWEST_POINTS = 8  # half of them, on a circle
 
 
 class RootNearCircleError(Exception):

@@ -26,20 +26,14 @@ if TYPE_CHECKING:
     from symflex.roots.functions.entire import Entire
 
 
-LEAST_BITS = 96
-"""Least precision of a box, whatever digits are wanted."""
-BOX_SHARE = 0.4
-"""The box is so many of the bits smaller than the root is large."""
-MOST_TIMES = 16
-"""The first precision; beyond it a root is left to other means."""
+LEAST_BITS = 96  # least precision of a box, whatever digits are wanted
+BOX_SHARE = 0.4  # the box is so many of the bits smaller than the root is large
+MOST_TIMES = 16  # the first precision; beyond it a root is left to other means
 CLOSE = BOX_SHARE + 0.02
 """The last Newton step before a box is drawn is by so many of the bits smaller."""
-FIRST_BITS = 64
-"""Precision of the first Newton steps."""
-STEPS = 80
-"""Newton steps in all."""
-SMALLER = 4
-"""A middle this many times closer to an axis than the box is large is put on it."""
+FIRST_BITS = 64  # precision of the first Newton steps
+STEPS = 80  # Newton steps in all
+SMALLER = 4  # a middle this many times closer to an axis than the box is large is put on it
 PATIENCE = 10
 """Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
 
@@ -211,22 +205,14 @@ def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:
     return min(sizes)[1] if sizes else 0
 
 
-MOST_POINTS = 400
-"""Enough for some 600 digits of one root."""
-CENTRINGS = 3
-"""Least number of times that a disc is moved to the middle of its roots."""
-GUESSED_DIGITS = 14
-"""Digits of the first centre; every Newton step doubles them."""
-GROWTH = 100
-"""Factor on a disc without other roots next to it, and on one that was too small."""
-SHRINKINGS = 5
-"""Shrinkings of a disc until no other root is next to it."""
-WIDER = 5
-"""Radius of a disc that holds one moved to an axis, in radii of that."""
-DIGITS_A_SHRINKING = 2
-"""The logarithm of ``GROWTH``."""
-BRANCH_BITS = 128
-"""Precision of the test whether wavenumbers have branches."""
+MOST_POINTS = 400  # enough for some 600 digits of one root
+CENTRINGS = 3  # least number of times that a disc is moved to the middle of its roots
+GUESSED_DIGITS = 14  # digits of the first centre; every Newton step doubles them
+GROWTH = 100  # factor on a disc without other roots next to it, and on one that was too small
+SHRINKINGS = 5  # shrinkings of a disc until no other root is next to it
+WIDER = 5  # radius of a disc that holds one moved to an axis, in radii of that
+DIGITS_A_SHRINKING = 2  # the logarithm of GROWTH
+BRANCH_BITS = 128  # precision of the test whether wavenumbers have branches
 
 
 def prove_together(

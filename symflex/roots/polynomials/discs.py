@@ -32,13 +32,10 @@ from symflex.budget import spend
 
 Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 
-NEWTON_STEPS = 60
-"""Each doubles the digits of a simple root; more only next to others."""
+NEWTON_STEPS = 60  # each doubles the digits of a simple root; more only next to others
 GROUPING = 2.0**-30
-PELLET_DOUBLINGS = 60
-"""Doublings of a radius until a term outweighs all others."""
-CENTRE_STEPS = 40
-"""That move a disc to the middle of its roots."""
+PELLET_DOUBLINGS = 60  # doublings of a radius until a term outweighs all others
+CENTRE_STEPS = 40  # that move a disc to the middle of its roots
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,22 +224,15 @@ def is_symmetric(group: Sequence[Disc]) -> bool:
     )
 
 
-ITERATIONS = 80
-"""Most iterations for one root; five are enough as a rule."""
-CONVERGED = 1e-13
-"""Relative step after which none follows."""
-STALLED = 1e-6
-"""The same where steps do not become shorter any more: next to other roots."""
-NEARLY_REAL = 1e-8
-"""Relative imaginary part that is taken for zero."""
-RESTART = 1e-3
-"""How far beside the last root the next search begins."""
+ITERATIONS = 80  # most iterations for one root; five are enough as a rule
+CONVERGED = 1e-13  # relative step after which none follows
+STALLED = 1e-6  # the same where steps do not become shorter any more: next to other roots
+NEARLY_REAL = 1e-8  # relative imaginary part that is taken for zero
+RESTART = 1e-3  # how far beside the last root the next search begins
 FRESH_ANGLES = (0.7, 2.5, 1.6)
 """Angles of further starting points if the first leads nowhere [rad]."""
-LARGEST_LOGARITHM = 600.0
-"""Largest logarithm of a modulus in doubles."""
-KICK_EVERY = 20
-"""Steps after which one is turned aside, to leave a cycle."""
+LARGEST_LOGARITHM = 600.0  # largest logarithm of a modulus in doubles
+KICK_EVERY = 20  # steps after which one is turned aside, to leave a cycle
 DOUBLE_BITS = 64
 
 

@@ -31,10 +31,8 @@ if TYPE_CHECKING:
     Goal = Callable[[acb], arb]
 
 
-GUARD_DIGITS = 2
-"""Digits beyond those wanted."""
-EXTRA_BITS = 64
-"""Bits at first, beyond the digits and two bits a degree."""
+GUARD_DIGITS = 2  # digits beyond those wanted
+EXTRA_BITS = 64  # bits at first, beyond the digits and two bits a degree
 GROWTH_WITH_CONSTANTS = 4
 GROWTH_EXACT = 64
 GROWTH_FLOOR = 2048
