@@ -67,12 +67,12 @@ LOSS = Fraction(3, 10)
 
 
 def solve(model: BoundTransferFunction, region: Region, digits: int) -> tuple[Root, ...]:
-    """Return the poles in a region by the engine for lossless functions."""
+    """Return the poles in a region by the engine for undamped functions."""
     return _poles("lossless", model, region, digits)
 
 
 def solve_generally(model: BoundTransferFunction, modes: int, digits: int) -> tuple[Root, ...]:
-    """Return the lowest poles by the engine for any distributed function, not the one for lossless ones."""
+    """Return the lowest poles by the engine for any distributed function, not the one for undamped ones."""
     return _poles("guess-and-prove", model, Modes(modes), digits)
 
 

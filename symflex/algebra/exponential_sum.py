@@ -4,7 +4,7 @@
 
 An exponent is a combination of arguments (q is a wavenumber times a length) with Gaussian integers, an
 amplitude a polynomial with Gaussian integers over a power of two. What evaluates sums stands where it is
-used: in balls and in doubles at any s, on the axes where there are no losses, on arcs.
+used: in balls and in doubles at any s, on the axes where there is no damping, on arcs.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def network_value(entries: list[Values], network: Values, output: int, source: i
 def solved_network(values: Values, network: Values, output: int, source: int) -> Values:
     """Return the same for an array of entries at a few frequencies."""
     if not np.any(values.imag):
-        # Without losses, on the axis: real numbers give the same digits in half the time.
+        # Without damping, on the axis: real numbers give the same digits in half the time.
         values = values.real
     size, height, _, lumped, groups = network
     places = [(row, column) for row, column, _ in lumped]

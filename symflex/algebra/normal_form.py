@@ -179,7 +179,7 @@ class NormalForm:
             spend()
             if len(polynomial) > PAIR_TERMS:
                 message = "the closed form is too large: two wavenumbers depend on too many symbols"
-                hint = "give some parameters numbers, or leave out losses, loads or lengths"
+                hint = "give some parameters numbers, or leave out damping, loads or lengths"
                 raise BudgetError(Diagnostic("SF502", message, None, hint))
             total = self.ring.constant(0)
             for power, part in by_powers(self.ring, polynomial, second).items():

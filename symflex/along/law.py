@@ -136,7 +136,7 @@ class PartedLaw:
                 divisor = divisor / piece
             else:
                 message = "a coefficient with both s and x in a denominator is not available yet"
-                hint = "use one loss time all along x, or divide the member where it changes"
+                hint = "use one damping time constant all along x, or divide the member where it changes"
                 raise ModelError(Diagnostic("SF910", message, None, hint))
         for power, coefficient in by_powers(ring, mixed.expand()).items():
             yield Summand(power, divisor, along * Factored.polynomial(ring, coefficient))

@@ -10,8 +10,8 @@ left half-plane: beyond b a zero gives +pi, a pole -pi.
 Of a distributed system there are infinitely many poles and zeros to sum over. So the argument is followed
 from a small positive s on a quarter circle to the imaginary axis and along it, in steps that are halved until
 values and slopes at both ends agree. A root on the axis is passed on its right, which comes to the same.
-Without losses G(-s) = G(s) or -G(s), and values on the axis are real or imaginary: between roots the argument
-does not turn. If all roots on the axis are known, it is followed to the lowest frequency only.
+Without damping G(-s) = G(s) or -G(s), and values on the axis are real or imaginary: between roots the
+argument does not turn. If all roots on the axis are known, it is followed to the lowest frequency only.
 
 Grids of frequencies, and the band shown when none is asked for, come from certified poles and zeros too: they
 miss no resonance.
@@ -142,7 +142,7 @@ def follow_phase(
 
 
 def _turned_by_roots(roots: PoleZeroMap, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
-    """Return how far the argument of a function without losses turns from the first frequency on.
+    """Return how far the argument of an undamped function turns from the first frequency on.
 
     The result is ``None`` if it is not proved that all roots between the frequencies are known.
     """

@@ -189,7 +189,7 @@ class Analyses(Plotted):
             the number in the model's ``[analysis]``, or five.
         mode : int, optional
             Only the mode of this number, from 1 by natural frequency, both members of a conjugate pair; of a
-            lossless system it is found without those below it.
+            undamped system it is found without those below it.
         band : (float, float), optional
             Only natural frequencies in this band [Hz].
         digits : int

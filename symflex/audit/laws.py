@@ -1,7 +1,7 @@
 """Laws every right formula obeys, and which of them a printed one violates.
 
 The poles of a transfer function are those of the system; a function's behaviour as s tends to zero is the
-static gain or the rigid-body motion; a lossless system answers in phase or in quadrature; where input and
+static gain or the rigid-body motion; an undamped system answers in phase or in quadrature; where input and
 output are colocated, zeros and poles alternate on the imaginary axis (Foster 1924) and none is double.
 """
 
@@ -33,7 +33,7 @@ HALVINGS = 30
 LONGEST_TEXT = 80
 """Characters of a factor that is shown."""
 PROBES = 5
-"""Frequencies at which the phase of a lossless system is looked at."""
+"""Frequencies at which the phase of an undamped system is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +134,7 @@ def _expression_of(reading: FormulaReading, value: Factored) -> Expression | Non
 
 
 def _phase(numbers: Numbers) -> LawCheck | None:
-    """Check that a lossless system's printed answer is in phase or in quadrature."""
+    """Check that an undamped system's printed answer is in phase or in quadrature."""
     low, high = (2 * pi * float(limit) for limit in numbers.band)
     for i in range(PROBES):
         omega = Fraction(f"{low * (high / low) ** ((i + 0.5) / PROBES):.3g}")
@@ -148,7 +148,7 @@ def _phase(numbers: Numbers) -> LawCheck | None:
             if not (printed.real.contains(0) or printed.imag.contains(0) or _is_axial(printed)):
                 angle = float((printed.log().imag * 180 / arb.pi()).mid())
                 detail = (
-                    "a lossless system answers in phase or in quadrature; the printed formula has a phase "
+                    "an undamped system answers in phase or in quadrature; the printed formula has a phase "
                     f"of {angle:.4g} deg at {float(omega):g} rad/s"
                 )
                 return LawCheck("lossless phase", False, "proved", detail)
@@ -209,7 +209,7 @@ def _alternate(events: Sequence[_Event]) -> bool:
 
 
 def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]) -> list[_Event] | None:
-    """Return sign changes of a lossless function on the imaginary axis, ``None`` if it is not lossless."""
+    """Return sign changes of an undamped function on the imaginary axis, ``None`` if it is not undamped."""
     low, high = float(band[0]), float(band[1])
     grid = [low * (high / low) ** (i / (AXIS_POINTS - 1)) for i in range(AXIS_POINTS)]
     component: str | None = None

@@ -44,7 +44,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from the right (t -> 0+).
 
-    If no method proves the response, as for lossless beams with controllers, the lowest 25 modes are
+    If no method proves the response, as for undamped beams with controllers, the lowest 25 modes are
     summed (12 in a large network whose higher modes are small) and the contribution of the others is
     estimated. The first line then says that the values are not certified.
 

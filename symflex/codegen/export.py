@@ -210,7 +210,7 @@ class Outline:
 class Language:
     """A language that numeric code is exported to: the exporter that prints verified programs.
 
-    Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Lossless
+    Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Undamped
     distributed systems get a second one, ``OUT_over_IN_at``: the frequency response, in real arithmetic where
     the language has it.
     """

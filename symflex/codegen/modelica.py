@@ -1,6 +1,6 @@
 """Modelica models: state equations with names, units and descriptions, in letters.
 
-Input: the transfer functions of a model of finitely many states, and dead times. Output: one model::
+Input: the transfer functions of a model of finitely many states, and delays. Output: one model::
 
     model Axis "A load on a rail"
       parameter Real m(unit = "kg") = 2;
@@ -13,7 +13,7 @@ Input: the transfer functions of a model of finitely many states, and dead times
       X = x;
     end Axis;
 
-The equations are those of :mod:`symflex.state_space`, which satisfy the model's identically; a dead time is
+The equations are those of :mod:`symflex.state_space`, which satisfy the model's identically; a delay is
 ``if time < T then 0 else delay(x, T)``. Source: Modelica Language Specification 3.6, 2023.
 """
 

@@ -79,7 +79,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
         solved = _solved(tf, whole, moving[0], (gain, other), delays)
     if solved is None:
         message = f"the characteristic function cannot be solved for {gain} and {other} in letters"
-        hint = "it has to be linear in both, or hold one exp(-s*T) and one gain; waves have no losses"
+        hint = "it has to be linear in both, or contain one exp(-s*T) and one gain; waves must be undamped"
         raise ModelError(Diagnostic("SF801", message, parameters[0].span, hint))
     page, values = solved
     sides, lines, symbols = page.printed(*values)

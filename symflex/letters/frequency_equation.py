@@ -1,4 +1,4 @@
-"""Frequency equations of beams, rods, shafts and strings without losses, and the proved numbers solving them.
+"""Frequency equations of undamped beams, rods, shafts and strings, and the certified numbers solving them.
 
 Input: a transfer function in letters, and its proved roots.
 Output: for each factor an equation in q, a wavenumber times a length, and in ratios of parameters; and with
@@ -55,7 +55,7 @@ Q: Final = "q"
 EXACT: Final = {"cos": "all solutions: q = (2*n - 1)*pi/2", "sin": "all solutions: q = n*pi"}
 """The solutions of an equation that is one function, n = 1, 2, ..."""
 NO_EQUATION: Final = (
-    "a frequency equation takes Euler beams, rods, shafts or strings without losses, tension and delays, of "
+    "a frequency equation takes undamped Euler beams, rods, shafts or strings without tension and delays, of "
     "one wavenumber, whose lengths are multiples of one, and at most three ratios of parameters"
 )
 

@@ -63,7 +63,7 @@ ONE: Final = Fraction(1)
 BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")
 """Units of what groups are ratios to, first choices first."""
 DAMPERS: Final = ("N*s/m", "N*m*s", "Ohm")
-"""Units of losses, which serve in no base as long as there is another choice."""
+"""Units of damping, which serve in no base as long as there is another choice."""
 NAMES: Final = {
     "kg": ("mu", "mass ratio"),
     "N/m": ("kappa", "stiffness ratio"),

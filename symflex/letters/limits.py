@@ -70,7 +70,7 @@ EFFORTS: Final = {"dynamic stiffness": 0, "mechanical impedance": -1, "apparent 
 """The same beside those of the force for a displacement."""
 IN_SPRINGS: Final = {0: "spring line", -1: "damper line", -2: "mass line"}
 STATIC: Final = {0: "static gain", -1: "integrator", -2: "double integrator", 1: "differentiator"}
-RIGHT: Final = "s -> infinity on the positive axis; on s = j*omega only with losses"
+RIGHT: Final = "s -> infinity on the positive axis; on s = j*omega only with damping"
 
 
 Base = TypeVar("Base")

@@ -221,7 +221,7 @@ def timoshenko(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
     """Return Timoshenko's equations of deflection w and rotation theta of the cross-section.
 
     ``kappa G A (w'' - theta') = (rho A s^2 + c_f s + k_f) w`` and
-    ``EI theta'' + kappa G A (w' - theta) = rho I s^2 theta``; Kelvin-Voigt losses multiply E and G alike
+    ``EI theta'' + kappa G A (w' - theta) = rho I s^2 theta``; Kelvin-Voigt damping multiplies E and G alike
     (Timoshenko 1921; Graff 1975, section 3.4).
     """
     one = s**0

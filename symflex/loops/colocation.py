@@ -102,7 +102,7 @@ def dynamic_colocation(
     """Return up to which frequency an output moves with a colocated one, from the same input.
 
     ``phase`` is the largest difference of phase [degrees], below 90, ``magnitude`` that of magnitude [dB].
-    One decibel is 12 %: a gain margin one plans with anyway; phases of lossless structures do not differ at
+    One decibel is 12 %: a gain margin one plans with anyway; phases of undamped structures do not differ at
     all until a zero, so that magnitude is what tells them apart. ``limits`` [Hz] are by default the model's
     band.
 

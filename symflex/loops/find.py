@@ -223,7 +223,7 @@ def _holds_smallest(
     """Tell whether the smallest phase margins were found, as others are not below an angle [rad]."""
     known = [[abs(margin.angle) for margin in phase_margins]] if phase_margins else []
     known += [] if bandwidth is None or bandwidth.phase_margin is None else [[abs(bandwidth.phase_margin)]]
-    # A damper on a structure without losses has 90 degrees at every crossover.
+    # A damper on an undamped structure has 90 degrees at every crossover.
     return all(any(float(angle.lower()) <= beyond for angle in angles) for angles in known)
 
 

@@ -1,6 +1,6 @@
 """For which values of one parameter, or of two, a model is stable.
 
-Input: a model, and one parameter or two that may stand anywhere: gains, delays, lengths, masses, losses.
+Input: a model, and one parameter or two that may stand anywhere: gains, delays, lengths, masses, dampings.
 Output: a :class:`StabilityMap` over one, whose ends are enclosed to all digits, or a :class:`StabilityChart`.
 
 Example: ``m s^2 + b s + k + K k exp(-s T)`` with m = 8, b = 60, k = 20000 and K = 0.1 is stable up to

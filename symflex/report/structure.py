@@ -6,7 +6,7 @@ base; between moving parts one in bending belongs to a link, one in tension or t
 None of them is what an axis touches: a compliance on ground whose force an output or a signal shows, as that
 of a force sensor, is a contact.
 
-How many poles and zeros a lumped model keeps when its compliances are rigid, or its losses taken away: every
+How many poles and zeros a lumped model keeps when its compliances are rigid, or its damping taken away: every
 stiffness (or damping coefficient) is multiplied by one new symbol, and the transfer function is derived with
 that symbol alone among numbers. The leading (or trailing) coefficient in it of numerator and denominator is
 the limit as the symbol grows without bound (or vanishes): an exact polynomial in s, whose degree counts the

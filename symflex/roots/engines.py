@@ -2,7 +2,7 @@
 
     s^2 + 6 s + 5                      guessed by durand-kerner, where that fails by laguerre
     a chain of 200 masses, degree 400  guessed by laguerre
-    a beam without losses              lossless: sign changes on the axes, and a count on an arc
+    an undamped beam                   lossless: sign changes on the axes, and a count on an arc
     the same with a dashpot            guess-and-prove: cells counted in doubles, every root found proved, one
                                        certified count of all of them
     where that count says otherwise    subdivision: every cell is counted with proof
@@ -66,7 +66,7 @@ class Sought:
 
 
 def without_losses(sought: Sought) -> Iterator[LosslessSearch]:
-    """Isolate the roots of a function without losses in one dimension, on both axes; others are refused."""
+    """Isolate the roots of an undamped function in one dimension, on both axes; others are refused."""
     search = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
     if search is not None:
         yield search

@@ -96,7 +96,7 @@ def locate_lossy(
 
 
 def check_searched(bound: AnyBoundFunction) -> None:
-    """Raise UncertifiedError, SF404, for waves or delays with complex coefficients that are no losses."""
+    """Raise UncertifiedError, SF404, for waves or delays with complex coefficients, no loss factors."""
     if bound.source.model.imaginary and not has_loss_factors(bound.source.model):
         message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
         hint = "its frequency response shows them (plot bode)"

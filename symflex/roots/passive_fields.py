@@ -7,11 +7,12 @@ ends by nothing where at each end one of the two vanishes.
     (E I w'')'' + rho A s^2 w = 0, w = w' = 0 at one end, free at the other
     s^2 int rho A |w|^2 + int E I |w''|^2 = 0, so that s^2 is real and negative
 
-Here 1/C and G are polynomials ``k + c s + m s^2`` without negative coefficients, of stiffness, loss and mass,
-and so is what holds an end; over s their real parts are not negative where that of s is positive (Anderson &
-Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2). The same is true of ``s^2 C`` and ``s^2/G``.
-Where ``v' = -(R + L s) i`` and ``i' = -(G + C s) v`` the charge ``i/s`` is a displacement and v its force.
-Where a layer couples displacements G is a symmetric matrix with semidefinite coefficients of 1, s and s^2.
+Here 1/C and G are polynomials ``k + c s + m s^2`` without negative coefficients, of stiffness, damping and
+mass, and so is what holds an end; over s their real parts are not negative where that of s is positive
+(Anderson & Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2). The same is true of ``s^2 C`` and
+``s^2/G``. Where ``v' = -(R + L s) i`` and ``i' = -(G + C s) v`` the charge ``i/s`` is a displacement and v
+its force. Where a layer couples displacements G is a symmetric matrix with semidefinite coefficients of 1, s
+and s^2.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ MOST_STATES = 6
 MOST_TOGETHER = 4
 """Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
 LOSS, INERTIA = 1, 2
-"""The powers of s of a loss and of a mass."""
+"""The powers of s of a damping and of a mass."""
 LINE = 2
 """States of a field whose waves go to and fro."""
 BEAM = 4
@@ -105,7 +106,7 @@ class _Fields:
     def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Sequence[Pair]) -> bool:
         """Tell whether what is stored and lost along a field is not negative, and zero only at rest.
 
-        If fields shall be lossy, what is lost alone is zero only at rest.
+        If fields have to be damped, the damping alone is zero only at rest.
         """
         resting = set[int]()
         for q, p, sign in pairs:
@@ -136,7 +137,7 @@ class _Fields:
 
     @property
     def _counted(self) -> set[int]:
-        """The powers of s whose energy is looked at: of stiffness, loss and mass, or of loss alone."""
+        """The powers of s whose energy is looked at: of stiffness, damping and mass, or of damping alone."""
         return {LOSS} if self.are_lossy else {0, LOSS, INERTIA}
 
     def _keeps(self, value: Factored) -> bool:
@@ -379,7 +380,7 @@ def _moves(value: Factored) -> bool:
 def _bent(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
     """Yield w'''' = a w'' + a' w' + b w as (w'')'' - (a w')' - b w = 0, whose force is w''' - a w'.
 
-    All of it is multiplied by what it was divided by, so that a loss stays with its stiffness. Several beams
+    All of it is multiplied by what it was divided by, so that damping stays with its stiffness. Several beams
     may be joined along x, each b being a matrix.
     """
     n, zero, rows, states = len(matrix), matrix[0][0] * 0, [], []

@@ -3,7 +3,7 @@
 Input: a model with values, an output whose own poles count, names of parameters of which any positive value
 is meant. Output: an :class:`EnergyProof`.
 
-In ``x^H A(s) x/s`` mass, loss and stiffness are each nonnegative where no element supplies energy, and at
+In ``x^H A(s) x/s`` mass, damping and stiffness are each nonnegative where no element supplies energy, and at
 Re(s) > 0 their sum vanishes only where nothing moves: no pole lies there (Anderson & Vongpanitlerd 1973,
 Network Analysis and Synthesis, chapter 2). Fields are treated in :mod:`symflex.roots.passive_fields`.
 

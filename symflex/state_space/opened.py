@@ -89,9 +89,9 @@ def with_filters_apart(model: Model) -> Model:
 
 
 def without_delays(model: Model) -> tuple[Model, dict[str, tuple[str, Expression]]]:
-    """Return a model cut at its dead times, whose parts are rational, and where.
+    """Return a model cut at its delays, whose parts are rational, and where.
 
-    What leaves a dead time is an input of the cut model; by its name, the output that enters there, and T.
+    What leaves a delay is an input of the cut model; by its name, the output that enters there, and T.
     """
     apart, late = with_filters_apart(opened(model)), {}
     times = {b.name: dict(b.values)["T"] for b in apart.blocks if b.block is BLOCKS["delay"]}

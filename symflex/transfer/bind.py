@@ -44,7 +44,7 @@ Given = int | float | Fraction | Decimal | str | ExactValue
 
 LOSSY_TAPER = (
     "a loss factor is",
-    "give a loss time, eta in seconds, in its place; or divide it into uniform members, which take eta_s",
+    "give eta in seconds, a damping time constant; or divide it into uniform members, which take eta_s",
 )
 """What is not available of members that taper, and what to do."""
 NAMES_SHOWN = 40

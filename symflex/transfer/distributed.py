@@ -654,7 +654,7 @@ def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) ->
         size = len(part) * len(above_powers[power]) * len(below_powers[highest - power])
         if ring.bytes_of(size) > MEMORY_LIMIT:
             message = "the closed form is too large: its wavenumbers depend on too many symbols"
-            hint = "leave out losses, foundations or lengths, or split the model"
+            hint = "leave out damping, foundations or lengths, or split the model"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
         total = total + part * above_powers[power] * below_powers[highest - power]
     return Factored.polynomial(ring, total) / below**highest

@@ -44,7 +44,7 @@ CODE_PRODUCTS = 8
 """The same of numeric code of several members: two beams at an angle have 12, and 90 kB of code."""
 QUICK_PRODUCTS = 50
 """The same, beyond which roots are found faster without the expanded form: two links with a motor have 88.
-Below, losses may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
+Below, damping may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
 CODE_MEMBERS = 4
 """Members up to which code of a formula keeps its digits; of ten equal spans it loses all of them."""
 MOST_PRODUCTS = 10_000

@@ -30,20 +30,20 @@ EXPORTED = {
     "sliding-free, tip",
     "cantilever in tension",
     "Timoshenko cantilever as a system of two unknowns",
-    "shaft element with losses",
+    "shaft element with damping",
     "cantilever with delayed velocity feedback",
     "field whose end is a node with a mass and a damper",
     LONGEST,
 }
 """One of each kind of kernel and of each kind of joint, exported to numpy in every run."""
 QUICK = EXPORTED | {
-    "clamped-free with losses, deflection inside",
+    "clamped-free with damping, deflection inside",
     "compressed beam element",
     "beam on an elastic and viscous foundation",
     "Rayleigh beam element with a rigid body",
     "free Timoshenko element, rotation across",
     "string element with a mass and a dashpot at its end",
-    "free-free rod with losses, displacement inside",
+    "free-free rod with damping, displacement inside",
     "massless flexure and an arm",
     "one-link arm, tip",
     "clamped-sliding under a distributed load, moment at the clamp",

@@ -73,7 +73,7 @@ MODELS = {
     "a rod that is a cone": MEMBER.format("rod", f'{STIFF}^2"'),
     "a rod of the third power": MEMBER.format("rod", f'{STIFF}^3"'),
     "a rod of the fourth power": MEMBER.format("rod", f'{STIFF}^4"'),
-    "a rod of the fourth power with losses": MEMBER.format("rod", f'{STIFF}^4", eta = "eta"'),
+    "a rod of the fourth power with damping": MEMBER.format("rod", f'{STIFF}^4", eta = "eta"'),
     "a rod that widens": MEMBER.format("rod", f'{STIFF}^(-2)"'),
     "an exponential rod": MEMBER.format("rod", WIRE),
     "a string whose tension grows": MEMBER.format("string", 'rho = "rho", A = "A", N = "E*A*(2 - x/l)"'),
@@ -93,10 +93,10 @@ MODELS = {
         "(EA*(1 - x/l)^4*w')' = rhoA*(1 - x/l)^4*s^2*w", '"w(0) = u"'
     ),
     "a cubic rod to its edge": FIELD.format("(EA*(1 - x/l)^3*w')' = rhoA*(1 - x/l)^3*s^2*w", '"w(0) = u"'),
-    "a rod to its edge with losses": FIELD.format(
+    "a rod to its edge with damping": FIELD.format(
         "(EA*(1 + eta*s)*(1 - x/l)*w')' = rhoA*(1 - x/l)*s^2*w", '"w(0) = u"'
     ),
-    "a wedge to its edge with losses": FIELD.format(
+    "a wedge to its edge with damping": FIELD.format(
         "(EI*(1 + eta*s)*(1 - x/l)^3*w'')'' + rhoA*(1 - x/l)*s^2*w = 0", CLAMP
     ),
     "a horn's equation of sound": FIELD.format("EA*w'' - 2*EA*c/(l - c*x)*w' = rhoA*s^2*w", ENDS),
@@ -134,9 +134,9 @@ def printed_value(tf, form, values, s):
 
 
 SLOW = (
-    "a rod of the third power", "a rod of the fourth power with losses", "a string of stiffer ends",
+    "a rod of the third power", "a rod of the fourth power with damping", "a string of stiffer ends",
     "a string, exponentially thick", "a hanging string, divided", "a rod of the fourth power to its tip",
-    "a cubic rod to its edge", "a wedge to its edge with losses", "a beam that is a wedge",
+    "a cubic rod to its edge", "a wedge to its edge with damping", "a beam that is a wedge",
     "a beam that is a cone", "an exponential horn's", "an exponential rod", "a rod of the fourth power",
 )  # fmt: skip
 

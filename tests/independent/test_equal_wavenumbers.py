@@ -256,7 +256,7 @@ conditions = [
         (*((0, {k: 1}, 0) for k in (0, 1, 4, 5)), *((1.2, {k: 1}, 0) for k in (2, 6, 7)), (1.2, {3: 3}, 1)),
         {"U": (1.2, 0), "V": (1.2, 4)},
     ),
-    "two rods that a layer with losses joins": Case(
+    "two rods that a layer with damping joins": Case(
         _field(
             "EA = 3, m = 2, k = 5, c = 0.2",
             """unknowns = ["u", "v"]

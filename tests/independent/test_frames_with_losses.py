@@ -77,7 +77,7 @@ def test_a_mode_shape_with_loss_factors_solves_the_dense_equations():
         left = matrix * mp.matrix(moved)
         sizes = [sum(abs(matrix[i, j] * moved[j]) for j in range(6)) for i in range(6)]
         assert all(abs(left[i]) < PROOF * sizes[i] for i in range(6))
-    assert abs(np.imag(moved)).max() > 1e-4  # the losses differ, so not all moves in phase
+    assert abs(np.imag(moved)).max() > 1e-4  # dampings differ, so not all moves in phase
 
 
 def test_sensitivities_of_a_chain_with_loss_factors_follow_from_its_eigenvalues():

@@ -1,4 +1,4 @@
-"""Frames with joints and material loss, of which no closed form fits into memory, against numbers."""
+"""Frames with joints and material damping, of which no closed form fits into memory, against numbers."""
 
 from functools import partial
 

@@ -413,7 +413,7 @@ ENDLESS = [
     (RATE.replace("END", "z").replace("OUTPUT", "s*x"), "stable", True),
     (RATE.replace("END", "z").replace("OUTPUT", "x"), "marginal", False),
     (RATE.replace("END", "ground").replace("OUTPUT", "s*x"), "stable", False),
-    # Without losses a spring leaves all poles on the axis.
+    # Without damping a spring leaves all poles on the axis.
     (ROD.replace("FORCE", "K*(v - x/T)").replace("OUTPUT", "x").replace("END", "z"), "marginal", False),
 ]
 

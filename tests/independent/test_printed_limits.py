@@ -76,7 +76,7 @@ LIMITS = [
         loop("K*(0.5*s + 1.3)/(s^3 + 1.2*s^2 + 1.6*s)"), "K", None, "2.7", None, id="assessing-margins"
     ),
     pytest.param(two_masses(), "v", (2, 3), "2.8864", "575.0339", id="robstab"),
-    # Bequette (2003), Process Control, module M6.3: 1/(10 s + 1) and 5 min of dead time.
+    # Bequette (2003), Process Control, module M6.3: 1/(10 s + 1) and 5 min of delay.
     pytest.param(loop("K/(10*s + 1)*exp(-5*s)"), "K", (0, 10), "3.8", "0.36", id="bequette-2003"),
     pytest.param(resonator(), "T", (0.02, 0.05), "0.03303", str(8.4 * math.pi)[:8], id="peichl-2025"),
 ]

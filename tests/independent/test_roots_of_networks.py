@@ -44,7 +44,7 @@ def growth(network, root):
 
 
 def is_quick(network):
-    """Tell whether no roots accumulate below the second mode, as those of short shafts with losses do."""
+    """Tell whether no roots accumulate below the second mode, as those of short shafts with damping do."""
     return not any(e.kind == "shaft" and dict(e.values).get("eta") for e in network.elements)
 
 

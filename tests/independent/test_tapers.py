@@ -91,7 +91,7 @@ def bound(values):
 
 
 def test_a_tapered_cantilever_answers_as_collocation_does():
-    # Other tapers, theories and losses: test_tapered_members, by Taylor steps.
+    # Other tapers, theories and damping: test_tapered_members, by Taylor steps.
     matrix = beam(lambda x: I_0 * linear(x) ** 3, lambda x: A_0 * linear(x))
     for s in POINTS:
         z = propagated(matrix, 1.0, s, (1.0, 1.0, 1e6, 1e6))

@@ -22,7 +22,7 @@ KINDS = (
     "classics/kelvin_voigt_cantilever",
     "tapers/hanging_string",
 )
-"""Rational, with hidden factors, and with kernels, losses and Bessel functions."""
+"""Rational, with hidden factors, and with kernels, damping and Bessel functions."""
 
 LEAVES = st.one_of(
     st.sampled_from(["s", "m_1", "k", "pi", "e", "E", "e5"]).map(Name),

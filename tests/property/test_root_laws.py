@@ -1,4 +1,4 @@
-"""Laws of poles and zeros: independent counts agree, and those of a lossless driving point alternate."""
+"""Laws of poles and zeros: independent counts agree, and those of an undamped driving point alternate."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def tenths(low=1, high=40):
     return whole(low, high)
 
 
-# ----------------------------------------------------------------------------------- models without losses
+# ----------------------------------------------------------------------------------- undamped models
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 Input: the variables at rest, or a field's conditions. Output: words like "clamped at x_act, free at x_tip".
 
-In a beam that bends without loss the spatial exponents at a real s are ``mu*(+-1 +-j)`` with a real mu: every
-solution grows or decays along x, none travels. Real zeros of noncolocated transfer functions come of such
-nonpropagating bending (Miu 1991).
+In a beam that bends without damping the spatial exponents at a real s are ``mu*(+-1 +-j)`` with a real mu:
+every solution grows or decays along x, none travels. Real zeros of noncolocated transfer functions come of
+such nonpropagating bending (Miu 1991).
 """
 
 from __future__ import annotations

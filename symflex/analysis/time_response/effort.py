@@ -52,14 +52,14 @@ class Effort:
     beside: float = 0.01  # of ln(abs(s)): zeros are sought a little farther than the root that may be one
     next_to: float = 0.05  # how far a mode may be from where those before point to, over the last step
 
-    # Beams without loss
+    # Undamped beams
     cells: int = 360  # balls that one turn is covered with
     paths: int = 24  # thetas at which paths between poles are tried
     depths: int = 64  # balls that a path is covered with
 
     # What is estimated
     estimated_modes: int = 25
-    few_estimated: int = 12  # of a network, tried first: 25 modes of two links with loss take a minute
+    few_estimated: int = 12  # of a network, tried first: 25 modes of two links with damping take a minute
     little: float = 1e-3  # estimated rest over the largest value below which these few are enough
     hopeless: float = 10.0  # the same above which more modes do not help
     too_much: float = 0.3  # the same from which on the modes say nothing at a time

@@ -5,8 +5,8 @@ Input: a bound transfer function, the name of an input, times. Output: an :class
 Ways are asked in the order of :data:`WAYS`, and the first that answers is taken. What others refused for is
 told of a response that is only estimated:
 
-    a servo about a beam without loss    lossless modes: something loses energy, or waves have two wavenumbers
-                                         lossy modes: some waves have no material loss
+    a servo about an undamped beamlossless modes: something loses energy, or waves have two wavenumbers
+                                         lossy modes: some waves have no material damping
                                          passive modes: something in the model may supply energy
                                          estimated modes answer
 """

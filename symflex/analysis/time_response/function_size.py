@@ -65,7 +65,7 @@ class SizeOfExponentials:
 
     @cached_property
     def is_even(self) -> bool:
-        """Whether the function is even or odd in s, as it is without losses."""
+        """Whether the function is even or odd in s, as it is without damping."""
         return all(KernelFunction(self.bound, p).is_even for p in (self.bound.num, self.bound.den))
 
     @property

@@ -1,6 +1,6 @@
 """Beams that lose nothing: their modes one by one, and a bound of all that are left out.
 
-Input: a bound transfer function whose waves are those of bending without loss, over one length.
+Input: a bound transfer function whose waves are those of undamped bending, over one length.
 Output: the terms of modes, and how much those beyond may add up to.
 
 Example: a cantilever. On the imaginary axis, s = 2 j t^2, its denominator over what grows fastest is
@@ -259,7 +259,7 @@ class LosslessModes(ModesBound):
 
 
 def lossless_modes(bound: BoundTransferFunction, integrations: int) -> tuple[LosslessModes, int] | Refused:
-    """Return what bounds the modes of a function of beams without loss, of one length.
+    """Return what bounds the modes of a function of undamped beams, of one length.
 
     A step of a velocity is an impulse of a displacement, and so a function over s is tried as well.
     """

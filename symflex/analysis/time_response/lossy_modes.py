@@ -4,7 +4,7 @@ Input: a bound transfer function. Output: a bound of its response less the terms
 below a radius R. Nothing need be passive: loops, imposed motion, unstable systems and velocities are bounded
 alike.
 
-Example: the tip of a cantilever with loss, ``E I (1 + eta s) w'''' + rho A s^2 w = 0``. Far from 0 its
+Example: the tip of a cantilever with damping, ``E I (1 + eta s) w'''' + rho A s^2 w = 0``. Far from 0 its
 wavenumber goes like s^(1/4), but for a factor that turns cosines into exponentials everywhere but next to the
 negative real axis, where high modes are overdamped. So H is about c s^(-7/4) there, within a share that
 :mod:`~symflex.roots.distributed.far_out` finds, and has no poles.
@@ -113,5 +113,5 @@ def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyB
         if far_out is not None and least is not None:
             bounds.append(LossyBound(function, far_out, log(least)))
     if not bounds:
-        return Refused("some waves have no material loss")
+        return Refused("some waves have no material damping")
     return bounds[-1 if bounds[0].least > bounds[-1].least + log(FAR) else 0], integrations

@@ -1,4 +1,4 @@
-"""Echoes of waves that change their form on the way: where there are losses, or foundations, but also fronts.
+"""Echoes of waves that change their form on the way, by damping or a foundation, but also fronts.
 
 Input: a bound transfer function whose waves all have a speed, and times. Output: enclosed values and jumps.
 

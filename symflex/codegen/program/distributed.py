@@ -130,7 +130,7 @@ class Pieces:
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.
 
-        The result is None with losses, and if it would be very long.
+        The result is None with damping, and if it would be very long.
         """
         if (
             self.tf.model.root
@@ -597,7 +597,7 @@ class _PieceMaker:
         self.work += len(polynomial)
         if self.work > LOCAL_TERMS:
             message = f"the series of {self.tf.name} for small arguments would take too long to find"
-            hint = "give some parameters numbers, or leave out losses, loads or lengths"
+            hint = "give some parameters numbers, or leave out damping, loads or lengths"
             raise BudgetError(Diagnostic("SF503", message, None, hint))
         return self.normal.reduce(polynomial)
 

@@ -7,7 +7,7 @@ Output: per product of terms ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, or the sin
 polynomial in s, the parameters and the wavenumbers. Powers of kernels are multiplied out as for every
 :class:`symflex.algebra.exponential_sum.ExponentialSum`; conjugate exponentials are one term here.
 
-On the imaginary axis of a lossless system every wavenumber is real, imaginary, or on the diagonal, and a
+On the imaginary axis of an undamped system every wavenumber is real, imaginary, or on the diagonal, and a
 transfer function is real up to a power of j: a :class:`RealSum` in the angular frequency.
 """
 
@@ -173,7 +173,7 @@ def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Ter
     return tuple(images)
 
 
-# ------------------------------------------------------------ the imaginary axis of lossless systems
+# ------------------------------------------------------------ the imaginary axis of undamped systems
 
 Gaussian = tuple[Fraction, Fraction]
 ONE: Gaussian = (Fraction(1), Fraction(0))
@@ -207,7 +207,7 @@ class RealAxis:
 
     @property
     def is_real(self) -> bool:
-        """True when all dispersions are waves or bending without loss."""
+        """True when all dispersions are waves or undamped bending."""
         for d in self.table.dispersions:
             if d.kind not in ("wave", "bending") or not d.shift.is_zero:
                 return False
@@ -231,7 +231,7 @@ class RealAxis:
     def coefficient(self, dispersion: Dispersion) -> Factored:
         """Return ``c_0``, with the angular frequency in place of s."""
         characteristic = self.real(dispersion.characteristic[0])
-        assert characteristic is not None  # without losses
+        assert characteristic is not None  # without damping
         value, turn = characteristic
         return -value if turn % 4 else value
 

@@ -310,7 +310,7 @@ class Site:
 
     def _spirals(self, i: int, j: int, step: int) -> tuple[int, int]:
         """Return ``exp((-1 + j) q/step)`` and ``exp((-1 - j) q/step)``."""
-        # The direction comes last: on the imaginary axis a lossless exponent then stays real or imaginary.
+        # The direction comes last: on the imaginary axis an undamped exponent then stays real or imaginary.
         forge, x, part = self.forge, self.angle(i, j), Fraction(1, step)
         up, down = (
             forge.apply("complex_exp", forge.multiply([forge.complex_number(-part, sign * part), x]))

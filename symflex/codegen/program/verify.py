@@ -138,7 +138,7 @@ def choose_programs(
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
-    The second one is for the frequency response, of lossless distributed systems only: where the language
+    The second one is for the frequency response, of undamped distributed systems only: where the language
     ``has_real`` arithmetic for it, it computes that of the angular frequency, else it is the first one.
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.

@@ -223,7 +223,7 @@ class VoiceCoil(ElectricMotor):
 
 
 class PlanetaryGear(Element):
-    """A planetary gear without losses: ``sun + rho*ring = (1 + rho)*carrier``, of the three angles [rad].
+    """An ideal planetary gear: ``sun + rho*ring = (1 + rho)*carrier``, of the three angles [rad].
 
     rho is the number of teeth of the ring over that of the sun; ``tau`` [N m] is the torque delivered to
     the sun, while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at

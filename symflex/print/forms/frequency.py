@@ -1,6 +1,6 @@
-"""The function on the imaginary axis, s = j*omega, in real arithmetic as far as there are no losses.
+"""The function on the imaginary axis, s = j*omega, in real arithmetic as far as there is no damping.
 
-With ``s = j*omega`` the exponents of a lossless beam are ``+-beta`` and ``+-j*beta``: its Krylov-Duncan
+With ``s = j*omega`` the exponents of an undamped beam are ``+-beta`` and ``+-j*beta``: its Krylov-Duncan
 functions are ``(cosh(q) + cos(q))/2``, ``(sinh(q) + sin(q))/(2*beta)``, ... of ``q = beta*l``.
 """
 

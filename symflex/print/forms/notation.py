@@ -237,7 +237,7 @@ def coefficient_name(dispersion: int, order: int) -> str:
 
 
 def speed_squared(dispersion: Dispersion) -> Factored | None:
-    """Return ``s^2/c_0`` of a bending beam when it is free of s: E I/(rho A) without losses."""
+    """Return ``s^2/c_0`` of a bending beam when it is free of s: E I/(rho A) without damping."""
     c0 = dispersion.characteristic[0]
     square = Factored.generator(c0.ring, LAPLACE) ** 2 / c0
     return None if square.depends_on(LAPLACE) else square

@@ -55,8 +55,8 @@ TRADE = 4
 def vaughan_form(tf: TransferFunction) -> PrintedForm:
     """Return the function in ``S = exp(-q)*sin(q)`` and ``C = exp(-q)*cos(q)`` of ``q = sqrt(T*p)``.
 
-    Here ``T = l^2/2`` and ``p = s/a``; with losses p is ``sqrt(c_0)``, which then takes the place of ``s/a``.
-    Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
+    Here ``T = l^2/2`` and ``p = s/a``; with damping p is ``sqrt(c_0)``, which then takes the place of
+    ``s/a``. Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
     """
     return vaughan_draft(tf, Arranged()).finish()
 

@@ -1,1 +1,1 @@
-"""Systems without losses: functions that are real on both axes, and their roots there."""
+"""Undamped systems: functions that are real on both axes, and their roots there."""

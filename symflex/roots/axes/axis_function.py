@@ -1,4 +1,4 @@
-"""Functions without losses on the real and on the imaginary axis of s, where they are real, and their roots.
+"""Undamped functions on the real and on the imaginary axis of s, where they are real, and their roots.
 
 On the real axis ``s = t^2``, on the imaginary one ``s = 2 j t^2``; a function is a sum of products of
 exponentials, sines and cosines with polynomials in t. Its derivative is of the same kind; every proof rests

@@ -1,4 +1,4 @@
-"""Functions without losses as functions of x, the square root of s, and how far their argument turns on arcs.
+"""Undamped functions as functions of x, the square root of s, and how far their argument turns on arcs.
 
 Where every wavenumber is a root of a multiple of s^2, those of bending are proportional to x and those of
 waves to x^2, and a polynomial in kernels is a sum of ``c(x) exp(p x + q x^2)``. On the real axis of s, x is
@@ -7,7 +7,7 @@ oscillating terms with real coefficients.
 
 On an arc of x from 0 to 45 degrees, away from directions in which two terms are equally large, one outweighs
 all others together, and its own argument is known, however far it turns. Next to those directions, which for
-functions without losses are the ends of the arc, lie layers as thin as the arc is long: only these are
+undamped functions are the ends of the arc, lie layers as thin as the arc is long: only these are
 followed in steps.
 """
 
@@ -363,7 +363,7 @@ def _arc_term(exponent: Exponent, amplitude: Amplitude, numbers: Enclosures) -> 
 
 
 def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction | None:
-    """Return a function as one of x, ``None`` where there are losses, delays or waves of another law.
+    """Return a function as one of x, ``None`` where there is damping, delays or waves of another law.
 
     ``bits`` are the precision of its numbers; up to this it can be evaluated.
     """

@@ -1,4 +1,4 @@
-"""Roots of lossless functions on both axes, isolated in one dimension, and modes by their number.
+"""Roots of undamped functions on both axes, isolated in one dimension, and modes by their number.
 
 Sign changes on a grid, in doubles, give guesses; one interval Newton step proves that each is a root, and the
 only one in its interval; the count on an arc, which takes the part of that of Wittrick and Williams (1971)
@@ -88,7 +88,7 @@ class SignChange:
 
 
 class LosslessSearch:
-    """Searches one lossless function, real but for a constant factor on both axes, factor by factor.
+    """Searches one undamped function, real but for a constant factor on both axes, factor by factor.
 
     What is not real is left to a count. ``order`` is that to which the function vanishes at s = 0.
     :meth:`extend` puts what it finds in the closed right upper quadrant into ``roots``; ``reached`` is ln of
@@ -332,6 +332,6 @@ def _polished(source: AxisFunction, low: Doubles, high: Doubles, below: Doubles,
 
 
 def lossless_search(function: KernelFunction, order: int, digits: int) -> LosslessSearch | None:
-    """Return a search for an even function of one value without losses, ``None`` for one with losses."""
+    """Return a search for an even function of one value without damping, ``None`` for one with damping."""
     lossless = lossless_function(function, bits_of(digits))
     return None if lossless is None else LosslessSearch(lossless, order, digits)

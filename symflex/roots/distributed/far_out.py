@@ -47,7 +47,7 @@ ADVANCED = "a delayed term has the highest power of s, so poles in the right hal
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
 DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
-NO_LOSS = "waves without enough loss have poles all along the axis"
+NO_LOSS = "waves without enough damping have poles all along the axis"
 
 PHASES = 128
 """Parts of a turn in which two sums are shown not to vanish together."""
@@ -75,7 +75,7 @@ def right_tail(
 
     Each polynomial of the ring of ``bound`` is multiplied with its scale, a ball and maybe a complex one.
     ``start`` is the smallest radius tried [rad/s]. There is no radius, but the reason, where no one term
-    outweighs the others, as in lossless structures, whose poles lie along the axis without end, or where
+    outweighs the others, as in undamped structures, whose poles lie along the axis without end, or where
     wavenumbers have no formula.
     """
     with precision(BITS):
@@ -421,7 +421,7 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
 def _wave(kernels: KernelValues, law: Dispersion, radius: float) -> tuple[_Power, acb, acb] | None:
     """Return a wavenumber, and minus u and d of ``-u s - d`` which it is beyond a radius.
 
-    None unless ``gamma^2 = u^2 s^2 + b s + c`` with b not negative, of loss. Then d is next to b/(2 u).
+    None unless ``gamma^2 = u^2 s^2 + b s + c`` with b not negative, of damping. Then d is next to b/(2 u).
     """
     square = _polynomial(kernels, -law.characteristic[0]) if law.kind == "wave" else None
     if square is None or len(square) != QUADRATIC + 1:

@@ -88,7 +88,7 @@ def search_right(
         again = Side(bound, part, digits)
         try:
             again.search(region)
-            # Roots of lossless systems lie on the border, and beyond what was asked for it is not followed.
+            # Roots of undamped systems lie on the border, and beyond what was asked for it is not followed.
             proof = None if is_mirrored else again.prove(region)
         except BudgetError as error:
             if is_mirrored:

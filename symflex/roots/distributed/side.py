@@ -207,8 +207,8 @@ class Side:
     def numbered(self, number: int) -> Root | None:
         """Return one mode by its number, from 1, in order of natural frequency; ``None`` without so many.
 
-        Of a lossless function, neither the modes below it are found nor does its number matter; of any other,
-        all below are.
+        Of an undamped function, neither the modes below it are found nor does its number matter; of any
+        other, all below are.
         """
         if self._search is None:
             ordered = [root for root in in_order(self._exact) if not root.is_zero]

@@ -1,4 +1,4 @@
-"""How many frequencies a network without losses has below a given one, proved (Wittrick & Williams 1971).
+"""How many frequencies an undamped network has below a given one, proved (Wittrick & Williams 1971).
 
 The number is that of the members' own frequencies, held at their ends, and of negative pivots of the
 network's dynamic stiffness, less a constant. Bordered by a row that holds what the input drives, the same

@@ -1,4 +1,4 @@
-"""Poles and zeros of any network in a disc about 0: with losses, motors, loops, delays, and outputs anywhere.
+"""Poles and zeros of any network in a disc about 0: damped, with motors, loops, delays, outputs anywhere.
 
 Numerator and denominator are entire functions whose values elimination gives. How fast they grow tells how
 many roots a disc holds, about (Jensen); in one that holds enough they become series, whose roots are counted

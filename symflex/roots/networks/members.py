@@ -1,4 +1,4 @@
-"""A uniform member without losses at one frequency: its stiffness, and how many frequencies it has below.
+"""A uniform undamped member at one frequency: its stiffness, and how many frequencies it has below.
 
 With ``lambda = -s^2 = omega^2`` a member is ``u' = A u + a p``, ``p' = C u - A^T p``: u moves, p is what the
 part beyond x exerts on the part before it, a is compliance, and C the stiffness of a foundation less inertia.

@@ -1,4 +1,4 @@
-"""A network without losses as symmetric equations, real in ``lambda = -s^2``, beside its distributed members.
+"""An undamped network as symmetric equations, real in ``lambda = -s^2``, beside its distributed members.
 
     balance at tip:  k y - f_1 = 0         k + K_11   ...   y      delivered forces follow from
     balance at hub:  m s^2 z - f_2 = 0     ...   -lambda m + ...   the members' dynamic stiffness K
@@ -31,7 +31,7 @@ MASS_BITS = 256
 
 
 class OtherNetworkError(Exception):
-    """The equations are not those of a network without losses; the message says why."""
+    """The equations are not those of an undamped network; the message says why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ def network_of(equations: Equations, output: str, source: str, *, is_passive: bo
     """Return the network between an input and an output; equations have numbers in place of parameters.
 
     Where it ``is_passive``, its inertia is not negative.
-    OtherNetworkError where losses, motors, loops, delays or fields make it none, with what did.
+    OtherNetworkError where damping, motors, loops, delays or fields make it none, with what did.
     """
     return _NetworkReading(equations).network(output, source, is_passive=is_passive)
 

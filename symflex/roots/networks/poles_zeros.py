@@ -1,4 +1,4 @@
-"""Poles and zeros of a transfer function of a network without losses, from counts alone.
+"""Poles and zeros of a transfer function of an undamped network, from counts alone.
 
 A pole is an eigenvalue of the network. What is held at the input, or at the output, has eigenvalues between
 them; a pole that is one of these as well is a mode that is uncontrollable or unobservable, and hidden. Zeros

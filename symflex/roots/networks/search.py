@@ -1,4 +1,4 @@
-"""Eigenvalues of a network without losses, isolated by counts and enclosed to any number of digits.
+"""Eigenvalues of an undamped network, isolated by counts and enclosed to any number of digits.
 
     counts        0 below 50 rad/s, 2 below 100, 1 below 70.7: one eigenvalue on either side
     halving       until an interval with one eigenvalue is a thousandth of it

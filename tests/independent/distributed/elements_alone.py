@@ -75,7 +75,7 @@ ARM_ELEMENTS = elements(
 
 ELEMENTS_IN_BENDING = (
     Case(
-        "beam element with losses, deflection under a moment",
+        "beam element with damping, deflection under a moment",
         BEAM | LOSSES,
         elements(
             clamp='type = "fixed", at = "root"',
@@ -155,7 +155,7 @@ ELEMENTS_IN_BENDING = (
         source='{ force = "tip" }',
     ),
     Case(
-        "Timoshenko element with all losses, clamped and pinned",
+        "Timoshenko element with all damping, clamped and pinned",
         THICK | {"eta": "3e-7 s", "c_f": "900 N*s/m^2", "k_f": "4e6 N/m^2"},
         elements(
             arm=f'{THICK_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", l = "l", between = ["ground", "q"]',
@@ -204,7 +204,7 @@ ELEMENTS_IN_TENSION_AND_TORSION = (
         source='{ force = "tip" }',
     ),
     Case(
-        "rod element with losses on a spring and a damper",
+        "rod element with damping on a spring and a damper",
         ROD | {"eta": "3e-7 s", "c_f": "700 N*s/m^2", "k_f": "4e6 N/m^2", "k": "2e7 N/m", "b": "900 N*s/m"},
         elements(
             bar=f'{ROD_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"',
@@ -223,7 +223,7 @@ ELEMENTS_IN_TENSION_AND_TORSION = (
         source='{ force = "q" }',
     ),
     Case(
-        "shaft element with losses",
+        "shaft element with damping",
         SHAFT | {"eta": "8e-7 s", "c_f": "0.02 N*m*s/m", "k_f": "300 N*m/m"},
         elements(
             axle=f'{SHAFT_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"'

@@ -35,7 +35,7 @@ FIELDS_IN_BENDING = (
         span(clamped, free_with_force, second_end(0)),
     ),
     Case(
-        "clamped-free with losses, deflection inside",
+        "clamped-free with damping, deflection inside",
         BEAM | LOSSES | {"x_s": "0.35 m"},
         ode(DAMPED, "w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*(1 + eta*s)*w'''(l) = -u"),
         "w(x_s)",

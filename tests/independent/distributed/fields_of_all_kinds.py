@@ -162,7 +162,7 @@ FIELDS_OF_ALL_KINDS = (
         span(clamped, free_with_force, second_end(0), timoshenko),
     ),
     Case(
-        "pinned-pinned Timoshenko beam with losses under a distributed load, rotation of an end",
+        "pinned-pinned Timoshenko beam with damping under a distributed load, rotation of an end",
         THICK | {"eta": "3e-7 s", "c_f": "900 N*s/m^2"},
         system(
             (
@@ -178,7 +178,7 @@ FIELDS_OF_ALL_KINDS = (
         span(pinned, pinned, first_end(1), timoshenko, load=1),
     ),
     Case(
-        "free-free rod with losses, displacement inside",
+        "free-free rod with damping, displacement inside",
         ROD | {"eta": "3e-7 s", "c_f": "700 N*s/m^2", "x_s": "0.2 m"},
         ode("E*A*(1 + eta*s)*w'' = (rho*A*s^2 + c_f*s)*w", "E*A*(1 + eta*s)*w'(0) = -u", "w'(l) = 0"),
         "w(x_s)",

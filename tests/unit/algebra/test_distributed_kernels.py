@@ -181,7 +181,7 @@ def test_a_pair_of_wavenumbers_of_too_many_terms_ends_in_a_budget(monkeypatch):
         NormalForm(ring, embedded(found)).reduce(ring.generator("lambda_1[0]") ** 12)
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.hint) == (
-        "SF502", "give some parameters numbers, or leave out losses, loads or lengths"
+        "SF502", "give some parameters numbers, or leave out damping, loads or lengths"
     )  # fmt: skip
 
 

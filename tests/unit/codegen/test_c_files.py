@@ -311,7 +311,7 @@ def written(folder, *names):
 
 
 MIXED = ("six_mass", "sliding_free_beam", "timoshenko_cantilever", "kelvin_voigt_cantilever")
-"""Lumped; in real arithmetic; with series and circles; with losses."""
+"""Lumped; in real arithmetic; with series and circles; with damping."""
 
 
 @pytest.mark.slow

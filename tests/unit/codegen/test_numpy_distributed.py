@@ -222,7 +222,7 @@ LOSSLESS = ("sliding_free", "tip_mass", "rod_tip_mass", "two_beams")
 
 
 def responses(names=LOSSLESS):
-    """Return name, response in real arithmetic and function of s of everything without losses."""
+    """Return name, response in real arithmetic and function of s of everything without damping."""
     for name in names:
         made = module(specification(name))
         assert made.FREQUENCY_RESPONSES

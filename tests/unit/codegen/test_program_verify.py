@@ -49,7 +49,7 @@ def test_the_error_of_every_form_is_of_the_size_of_rounding_and_the_best_is_take
         errors = {f: references.worst_error(build_program(tf, f)) for f in available_forms(tf)}
         assert len(errors) > 2
         assert max(errors.values()) < 1e-13
-        # A lossless resonance inside the band, of the bending beam, does not spoil the measure.
+        # An undamped resonance inside the band, of the bending beam, does not spoil the measure.
         _, verification = choose_programs(tf)[0]
         assert 0 < verification.error < 1e-15
 

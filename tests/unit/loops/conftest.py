@@ -49,7 +49,7 @@ def loop():
 
 @pytest.fixture
 def lossless_beam():
-    """Return a function that closes a loop around a beam without loss of its own."""
+    """Return a function that closes a loop around an undamped beam."""
 
     def close(sensor: str, *, is_damped: bool = False) -> symflex.Model:
         text = BEAM.replace("SENSOR", sensor).replace("DAMPER", DAMPER if is_damped else "")

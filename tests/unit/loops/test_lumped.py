@@ -101,7 +101,7 @@ def test_frequencies_belong_to_the_gain_where_both_parts_vanish():
     assert [count(of, k).right for k in (1, 3)] == [2, 0]
 
 
-# Without loss: s^4 + 5 s^2 + K has s^2 = (-5 +- sqrt(25 - 4 K))/2.
+# Without damping: s^4 + 5 s^2 + K has s^2 = (-5 +- sqrt(25 - 4 K))/2.
 LOSSLESS = ([(1, 4), (5, 2)], [(1, 0)])
 
 

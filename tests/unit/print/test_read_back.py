@@ -266,7 +266,7 @@ far = "s*w(l)"
 
 @pytest.mark.parametrize("power", ["s^2", "s^4", "s^2*(1 + s/3)"])
 def test_vaughans_form_is_right_for_every_s(power):
-    # Also where p is negative on the whole imaginary axis, for p = s^2*sqrt(rhoA/EI); and with losses.
+    # Also where p is negative on the whole imaginary axis, for p = s^2*sqrt(rhoA/EI); and with damping.
     tfs = pipeline.derive_all(pipeline.loads(BEAM.replace("POWER", power)))
     printed = [print_form(tf, "vaughan") for tf in tfs]
     texts = [

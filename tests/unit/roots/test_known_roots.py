@@ -115,7 +115,7 @@ CASES = {
         member("string", "N = 1, rho = 1, A = 1, l = 1, c_f = 6"),
         lambda: sorted(islice(quadratic(half, lambda _: mpf(6))(), 5), key=abs), word="stable",
     ),
-    "a lossy rod": Case(
+    "a damped rod": Case(
         member("rod", f"{UNIT}, eta = 0.01"), quadratic(half, lambda n: half(n) ** 2 / 100), word="stable"
     ),
     "a rod behind a delay": Case(
@@ -172,7 +172,7 @@ CASES = {
         hinged(', theory = "rayleigh"'), on_axis(lambda n: (n * pi) ** 2 / sqrt(1 + (n * pi) ** 2)),
         word="unknown",
     ),
-    "a lossy hinged beam": Case(
+    "a damped hinged beam": Case(
         hinged(", eta = 0.004"), quadratic(lambda n: (n * pi) ** 2, lambda n: (n * pi) ** 4 / 250),
         word="stable", region=Modes(2),
     ),
@@ -220,7 +220,7 @@ CASES = {
         lambda: ((-((n * pi) ** 2), 2) for n in range(1, 9)),
         lambda: ((-(half(n) ** 2), 2) for n in range(1, 9)), 2, region=Rectangle(-150, 1, -3, 3),
     ),
-    "a line with losses": Case(
+    "a lossy line": Case(
         along("w'' = (s + 1)*(s + 3)*w", "w(0) = 0", "w'(1) = (s + 1)*F"),
         lambda: (mpc(-2, sqrt(half(n) ** 2 - 1)) for n in range(1, 70)), word="stable",
     ),
@@ -433,9 +433,9 @@ def test_roots_are_found_where_wavenumbers_vanish_or_meet_and_where_they_have_no
 
 SEARCHED = (
     "a rod with a mass", "a string in a fluid", "a free beam", "a hinged beam on a foundation",
-    "a line with losses", "a loop with a delay",
+    "a lossy line", "a loop with a delay",
 )  # fmt: skip
-"""One of each kind: a wavenumber of s or of its root, with losses or without, a double pole at 0, a delay."""
+"""One of each kind: a wavenumber of s or of its root, damped or not, a double pole at 0, a delay."""
 BROKEN_OFF = ("a rod with a mass", "a free beam", "a loop with a delay")
 
 

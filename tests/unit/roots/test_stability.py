@@ -153,15 +153,15 @@ CASES = {
     ),
     # A passive structure says nothing of what its output or its drive adds.
     **{
-        f"{kind} with s {sign} 100 beside a lossy arm": Said(
+        f"{kind} with s {sign} 100 beside a damped arm": Said(
             lossy(*(part.format(f"s {sign} 100") for part in OWN[kind])),
             "unstable" if sign == "-" else "stable", sign == "-", (100,) * (sign == "-"),
             region=Modes(1),
         )
         for kind in OWN for sign in "-+"
     },
-    "a quotient that drives a lossy arm": Said(driven("u/(s - 100)"), "unstable", 1, (100,), region=Modes(1)),
-    "a definition that drives a lossy arm": Said(driven("C*u"), "unstable", 1, (100,), region=Modes(1)),
+    "a quotient driving a damped arm": Said(driven("u/(s - 100)"), "unstable", 1, (100,), region=Modes(1)),
+    "a definition driving a damped arm": Said(driven("C*u"), "unstable", 1, (100,), region=Modes(1)),
     # The modes are sin(n pi x): the tenth rests at x = 0.3, and moves at x = 0.45.
     "a mode that no damper feels": Said(elements(STRINGS), "unknown", 0, because="passive", region=Modes(2)),
     "a damper that every mode feels": Said(

@@ -186,4 +186,4 @@ def test_more_modes_move_a_response_by_no_more_than_what_was_left():
 
 
 def test_a_beam_without_loss_has_no_such_bound():
-    assert lossy_bound(servo(PD, eta="0"), 1) == Refused("some waves have no material loss")
+    assert lossy_bound(servo(PD, eta="0"), 1) == Refused("some waves have no material damping")

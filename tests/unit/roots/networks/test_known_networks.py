@@ -194,7 +194,7 @@ CASES = {
         ),
         zeros=clamped_pinned(1), region=Modes(2), digits=12,
     ),
-    "an absorber on a train with losses": Network(  # J s^2 + b s + k = 0: -10 +- j sqrt(9900)
+    "an absorber on a train with damping": Network(  # J s^2 + b s + k = 0: -10 +- j sqrt(9900)
         elements(ABSORBED, 'F = { torque = "x" }', "c"), zeros=lambda: [mpc(-10, mpf(9900) ** mpf("0.5"))],
         region=Modes(4), digits=12, at_zero=1, slow=True,
     ),

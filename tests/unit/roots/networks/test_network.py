@@ -1,4 +1,4 @@
-"""What is a network without losses, where its powers of s stand, and how many zeros its paths leave."""
+"""What is an undamped network, where its powers of s stand, and how many zeros its paths leave."""
 
 import pytest
 
