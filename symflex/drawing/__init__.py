@@ -45,6 +45,8 @@ LEGEND: Final = 230.0
 """Width of the lines of values below a drawing [points]."""
 ROUND: Final = 0.3
 """How far from its axes wires leave a round body, as a share of its radius: it is still as wide there."""
+MOST_WIRES: Final = 2
+"""Dashed wires between signals and the model."""
 SMALLEST: Final = 0.8
 """Share of their size to which symbols and type are made smaller before the page is made wider."""
 SMALLEST_ASKED: Final = 0.6
@@ -190,7 +192,9 @@ def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
         # Where an arrow to the right begins; of another symbol all of it.
         tails = tuple(Extent(b.x0, b.y0, b.x0, b.y1) if b.width > 2 * b.height else b for b in ends)
         joins.append(Join(use.name, tuple(starts), tails, ends))
-    return replace(drawing, items=(*drawing.items, *joined(drawing, joins)))
+    # More than two would confuse, and names stand at both ends.
+    wires = joined(drawing, joins) if len({j.name for j in joins if j.ends}) <= MOST_WIRES else ()
+    return replace(drawing, items=(*drawing.items, *wires))
 
 
 def _faces(part: DrawnPart, box: Extent) -> tuple[Extent, ...]:

@@ -6,12 +6,25 @@ from x = 0 on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import BOLD, LINE, THIN, Placed
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
-from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, line, rectangle, wall
+from symflex.drawing.symbols import (
+    FORCE_BETWEEN,
+    FORCE_TOGETHER,
+    HATCH,
+    arrow,
+    box,
+    earth,
+    half_depth,
+    head,
+    line,
+    mirrored,
+    rectangle,
+    wall,
+)
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
@@ -153,8 +166,8 @@ def strokes_of(part: DrawnPart, length: float, *, is_reversed: bool) -> tuple[St
     """Return the symbol of a part from its first end at the origin, or (reversed) from its second."""
     strokes = part.symbol.draw(length)
     if not is_reversed:
-        return strokes
-    return tuple(replace(s, points=tuple((length - x, y) for x, y in s.points)) for s in strokes)
+        return FORCE_TOGETHER(length) if part.symbol.draw == FORCE_BETWEEN.draw else strokes
+    return mirrored(strokes, length)
 
 
 def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
@@ -170,9 +183,13 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     begin, end = walls[0], width - walls[1]
     if is_member:
         length = end - begin
-    start = begin + (end - begin - length) / 2
-    # The shaft of a planetary gear is on the side of one end; both others reach its ring.
-    is_reversed = len(cell.right) == 1 if part.type_name == "planetary_gear" else cell.is_reversed
+    start, is_reversed = begin + (end - begin - length) / 2, cell.is_reversed
+    if part.type_name == "planetary_gear":  # its shaft is on the side of one end; both others reach its ring
+        is_reversed = len(cell.right) == 1
+    elif part.type_name == "transformer" and {e.domain for e in part.ends} == {"rotation", "translation"}:
+        is_reversed = any(
+            e.domain == "rotation" for e in cell.right
+        )  # screw and rack have their shaft on its side
     strokes = _casing(cell, length) if cell.is_boxed else strokes_of(part, length, is_reversed=is_reversed)
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]

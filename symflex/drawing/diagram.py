@@ -39,7 +39,7 @@ TURN: Final = 10.0
 """Room for a wire that goes back to the left."""
 APART: Final = 6.0
 """Space between rows."""
-WIDEST: Final = 66.0
+WIDEST: Final = 90.0
 """Widest formula in a box; a longer one is not printed."""
 WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 """Widest formula that is written out below the diagrams, and the space after it [points]."""

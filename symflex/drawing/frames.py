@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import coordinate, label_of, tags_of
 from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
-from symflex.drawing.geometry import BLACK, BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
+from symflex.drawing.geometry import BLACK, BOLD, FILLED, LINE, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
 from symflex.drawing.scheme import Mark, evaluate, values_of
 from symflex.drawing.symbols import DOT, HALF, arrow, circle, guide, head, line, outline, rectangle, wall
@@ -34,6 +34,8 @@ EXTENT: Final = 95.0
 SHORTEST: Final = 40.0
 LONGEST: Final = 500.0
 """Longest member beside one of the least length; other frames are drawn in a row."""
+INNER: Final = HALF - LINE / 2
+"""Half the width of a member without its outline."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
 CLAMP: Final = 8.0
@@ -82,6 +84,8 @@ class _Plan:
         self.others = [p for p in self.network.parts if not self._belongs(p)]
         own = [p for p in self.network.parts if p not in self.others]
         self._draw_bodies([p for p in own if p.symbol.role == "body"])
+        for x, y in filter(self._is_rigid, dict.fromkeys(self.at.values())):
+            self.items.append(Placed("node", "", (circle(x, y, HALF, FILLED),)))
         for part in self.members:
             self._draw_member(part)
         self._draw_joints()
@@ -142,11 +146,23 @@ class _Plan:
         scale = max(scale, SHORTEST / least) if least > SAME else scale
         return {n: ((a[0] * scale, a[1] * scale), (b[0] * scale, b[1] * scale)) for n, (a, b) in ends.items()}
 
+    def _is_rigid(self, place: Point) -> bool:
+        """Tell whether members run into each other at a place, without a body or a hinge."""
+        hinges = (p.nodes for p in self.network.parts if p.symbol.role == "support" and len(p.nodes) > 1)
+        held = (self.at[n] for n in (*self.radius, *(n for pair in hinges for n in pair)) if n in self.at)
+        return self._meeting(place) > 1 and not any(_is_near(one, place) for one in held)
+
     def _draw_joints(self) -> None:
+        for part in (p for p in self.members if p.type_name == "frame"):  # over the ends of other members
+            shape = outline(*_corners(*self._shortened(part), INNER), fill=FILLED, width=0.0)
+            self.items.append(Placed("node", "", (shape,)))
         for node, (x, y) in self.at.items():
             if all(self.at[other] != (x, y) for other in self.radius):
                 radius = JOINT if self._meeting((x, y)) > 1 else DOT
-                self.items.append(Placed("node", node, (circle(x, y, radius, fill=BLACK),)))
+                shape = circle(x, y, radius, fill=BLACK)
+                if self._is_rigid((x, y)):
+                    shape = circle(x, y, INNER, FILLED, 0.0)
+                self.items.append(Placed("node", node, (shape,)))
 
     def _is_sound(self) -> bool:
         """Tell whether members lie beside each other, and each between its own ends."""
@@ -220,7 +236,7 @@ class _Plan:
             wide, tall = self._body_at(self.at[end.node]) if end.node else (0.0, 0.0)
             reach = [h / abs(c) for h, c in ((wide, d[0]), (tall, d[1])) if abs(c) > SAME]
             meets = end.node and self._meeting(self.at[end.node]) > 1
-            cut = min(reach) if wide else JOINT + 0.6 if meets else 0.0
+            cut = min(reach) if wide else JOINT + 0.6 if meets and not self._is_rigid(place) else 0.0
             others = self._directions(place, but=part.name)
             cosines = (sign * (d[0] * e[0] + d[1] * e[1]) for e in others)
             narrow = min((acos(max(-1.0, min(1.0, c))) for c in cosines), default=pi)
@@ -230,10 +246,8 @@ class _Plan:
     def _draw_member(self, part: DrawnPart) -> None:
         a, b = self._shortened(part)
         _, (dx, dy) = _direction(a, b)
-        nx, ny = -dy * HALF, dx * HALF
-        corners = ((x + s * nx, y + s * ny) for (x, y), s in ((a, 1), (b, 1), (b, -1), (a, -1)))
         is_frame = part.type_name == "frame"
-        shape = outline(*corners, fill=FILLED) if is_frame else line(a, b, width=MEMBER)
+        shape = outline(*_corners(a, b, HALF), fill=FILLED) if is_frame else line(a, b, width=MEMBER)
         self._add(Placed(part.kind, part.name, (shape,)))
         ends = zip(part.ends, (a, b), self.ends[part.name], (-1.0, 1.0), strict=True)
         for end, at, joint, sign in ends:
@@ -449,6 +463,12 @@ def _reach(box: Extent, direction: Point) -> float:
 def _about(centre: Point, wide: float, tall: float) -> Extent:
     """Return a rectangle by its middle and half its width and height."""
     return Extent(centre[0] - wide, centre[1] - tall, centre[0] + wide, centre[1] + tall)
+
+
+def _corners(a: Point, b: Point, half: float) -> list[Point]:
+    """Return the corners of a member between two points, half of whose width is given."""
+    _, (dx, dy) = _direction(a, b)
+    return [(x - s * dy * half, y + s * dx * half) for (x, y), s in ((a, 1), (b, 1), (b, -1), (a, -1))]
 
 
 def _direction(a: Point, b: Point) -> tuple[float, Point]:

@@ -429,6 +429,8 @@ class _Layout:
     def _draw_supports(self, column: Column) -> list[tuple[DrawnPart, Column, float]]:
         """Draw supports side by side with the leads to what hangs, and return where these lead to."""
         middle, bottom = column.x - (LANE if column.stubs and column.below else 0.0), column.bottom
+        if column.hanging and column.is_electrical and column is self.columns[-1]:  # the corner of a mesh
+            middle -= column.below[-1][0] + 2 + hanging_reach(column.hanging[-1])[0]
         feet = [column.x]
         supports = []
         for part, (start, end) in zip((*column.supports, *column.hanging), column.below, strict=True):

@@ -25,6 +25,8 @@ from symflex.drawing.symbols import (
     TRANSFORMERS,
     ElementSymbol,
     box,
+    rack,
+    screw,
     tapered,
 )
 from symflex.expressions import (
@@ -257,7 +259,12 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
         first = [_end(references[0], by_port[port], domains) for port, references in use.nodes]
         pair = (first[0].domain, first[1].domain)
         drawn = TRANSFORMERS.get(pair, box) if len(ends) == len(pair) else box
+        turned = {"pi", *(p.name for p in labels.model.parameters if "rev" in p.written_unit)}
+        if drawn == rack and any(n.name in turned for n in names(use.values[0][1])):
+            drawn = screw
         symbol = ElementSymbol("coupling", drawn, 34.0)
+    elif kind in BETWEEN and len(ends) > 1:
+        symbol = replace(BETWEEN[kind], role="source")
     if wanted := dict(labels.model.drawing.symbols).get(use.name):
         symbol = replace(symbol, draw=TRANSFORMER_SYMBOLS[wanted])
     label, lines = _label(use, labels)
@@ -339,6 +346,8 @@ def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
     return End(reference.node, COMPONENT_DOMAIN[component] if component else domain, component)
 
 
+BETWEEN: Final = {"force_source": FORCE_BETWEEN, "torque_source": TORQUE_BETWEEN}
+"""Sources between two nodes, drawn as inputs there."""
 STIFF: Final[dict[str, tuple[tuple[str, ...], str]]] = {
     "beam": (("E", "I"), "A"),
     "frame": (("E", "I"), "A"),

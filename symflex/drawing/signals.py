@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from symflex.model import Model, PlacedBlock
 
 Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
+LONGEST: Final = 80
+"""Letters of a sum, as LaTeX, that is written into one box."""
 MOST_AT_SUM: Final = 3
 """Arrows that meet at a sum: from the left, from below, from above."""
 
@@ -141,7 +143,7 @@ class SignalGraph:
                 origin, is_minus = self._built(inner)
                 return origin, not is_minus
             case Sum(terms=terms):
-                return self._sum(list(terms)), False
+                return self._sum([self._built(t) for t in terms]), False
             case Product(factors=factors):
                 return self._product(list(factors), None)
             case Quotient():
@@ -155,9 +157,8 @@ class SignalGraph:
         label = self.labels.expression(expression)
         return self._once("reading", label, label)
 
-    def _sum(self, terms: list[Expression]) -> int:
-        """Return a sum of what its terms lead to; one of many terms is made of several."""
-        origins = [self._built(t) for t in terms]
+    def _sum(self, origins: list[tuple[int, bool]]) -> int:
+        """Return a sum of what leads to it; one of many terms is made of several."""
         while True:
             first, origins = origins[:MOST_AT_SUM], origins[MOST_AT_SUM:]
             # The arrow from the left is added where there is one.
@@ -179,6 +180,13 @@ class SignalGraph:
         own = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]
         rest = product_of([f for f in constant if f not in own])
         gain = rest if below is None else quotient(rest, below)
+        sums = [f for f in constant if isinstance(f, Sum)]
+        is_named = self.nodes[origin].kind in ("input", "reading", "signal")
+        if len(sums) == 1 and is_named and len(self.labels.expression(gain)) > LONGEST:  # side by side
+            terms = [(whole(t), t != whole(t)) for t in sums[0].terms]
+            boxes = [(self._box("gain", "", self.labels.fraction(t), origin), minus) for t, minus in terms]
+            origin, rest = self._sum(boxes), product_of([f for f in constant if f not in (*own, sums[0])])
+            gain = rest if below is None else quotient(rest, below)
         if gain != number(1):
             origin = self._box("gain", "", self.labels.expression(gain), origin)
             self.nodes[origin].lines = tuple(self.labels.values([gain]))

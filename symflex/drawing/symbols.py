@@ -9,7 +9,7 @@ or holds one is drawn about that node's point. What a type has no entry for is d
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -273,6 +273,27 @@ lever = drawn(
 )
 
 
+# A pinion on a rack.
+rack = drawn(
+    "bold 0,0 .5-4,0; disc .5,.6 3.6; disc .5,.6 .8; line .5-9,-4.5 .5-7.5,-2.9 .5-6,-4.5 .5-4.5,-2.9 "
+    ".5-3,-4.5 .5-1.5,-2.9 .5,-4.5 .5+1.5,-2.9 .5+3,-4.5 .5+4.5,-2.9 .5+6,-4.5 .5+7.5,-2.9 .5+9,-4.5; "
+    "body .5-9,-6.9 .5+9,-4.5; line .5+9,-5.7 1,-5.7 1,0"
+)
+TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
+    ("rotation", "rotation"): gears,
+    ("rotation", "translation"): rack,
+    ("translation", "rotation"): rack,
+    ("translation", "translation"): lever,
+    ("electrical", "electrical"): coils,
+}
+"""A transformer by the domains of its two sides; of other domains it is a box."""
+
+
+def mirrored(strokes: Strokes, length: float) -> Strokes:
+    """Return a symbol from its second end to its first."""
+    return tuple(replace(s, points=tuple((length - x, y) for x, y in s.points)) for s in strokes)
+
+
 @dataclass(frozen=True, slots=True)
 class ElementSymbol:
     """How a type of element is drawn."""
@@ -388,23 +409,17 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
 }
 """Symbols by the type of an element; a new element is a line."""
 
-# Inputs between two nodes are drawn as a distance that is given; as two arrows, to the right into the second
-# end and to the left into the first; and as a motor without a circuit, which turns its ends apart.
+# Inputs and sources between two nodes are drawn as a distance that is given; as two arrows, out of the gap
+# where the first end is on the right; and as a motor without a circuit, which turns its ends apart.
 MOTION_BETWEEN: Final = branch(26.0, "span 0,0 1,0")
 FORCE_BETWEEN: Final = branch(30.0, "push .42,0 0,0; push .58,0 1,0")
+FORCE_TOGETHER: Final = drawn("push 0,0 .42,0; push 1,0 .58,0")
+"""What acts on the first end where that is on the left, and the reaction; positive forces point right."""
 TORQUE_BETWEEN: Final = branch(
     30.0, "bold 0,0 .5-5,0; bold .5+5,0 1,0; disc .5,0 5; turn .5,0 2.8 -30 200; head .5-2.8,-.6 .2 -.97 2.8"
 )
 DOTS: Final = branch(26.0, "line 0,0 .5-8,0; line .5+8,0 1,0; dot .5-4,0 .9; dot .5,0 .9; dot .5+4,0 .9")
 """Three dots for what is left out."""
-TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
-    ("rotation", "rotation"): gears,
-    ("rotation", "translation"): screw,
-    ("translation", "rotation"): screw,
-    ("translation", "translation"): lever,
-    ("electrical", "electrical"): coils,
-}
-"""A transformer by the domains of its two sides; of other domains it is a box."""
 TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
     "gears": gears,
     # Two pulleys with a belt, seen from the side.
@@ -413,12 +428,7 @@ TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
         "disc .26,0 .8; disc .74,0 .8"
     ),
     "screw": screw,
-    # A pinion on a rack.
-    "rack": drawn(
-        "bold 0,0 .5-4,0; disc .5,.6 3.6; disc .5,.6 .8; line .5-9,-4.5 .5-7.5,-2.9 .5-6,-4.5 .5-4.5,-2.9 "
-        ".5-3,-4.5 .5-1.5,-2.9 .5,-4.5 .5+1.5,-2.9 .5+3,-4.5 .5+4.5,-2.9 .5+6,-4.5 .5+7.5,-2.9 .5+9,-4.5; "
-        "body .5-9,-6.9 .5+9,-4.5; line .5+9,-5.7 1,-5.7 1,0"
-    ),
+    "rack": rack,
     "lever": lever,
     "coils": coils,
     "box": box,

@@ -9,6 +9,8 @@ TOUCH = 0.4
 """How far boxes may reach into each other [points]: lines have widths, and symbols meet at their ends."""
 SLANTED = 1.3
 """The same of slanted members, which are covered by small rectangles and meet at sharp angles."""
+THICK = 4.5
+"""Width of a member with room for rounding."""
 PASSIVE = ("wire", "node", "join")
 
 
@@ -19,6 +21,16 @@ def _within(box, by):
 def _share(a, b, touch):
     a, b = _within(a, touch), _within(b, touch)
     return a.x0 < a.x1 and b.x0 < b.x1 and a.overlaps(b)
+
+
+def _meet(a, b):
+    """Tell whether two members run into each other at a rigid corner."""
+    is_thin = all(i.kind == "element" and min(i.box.width, i.box.height) < THICK for i in (a, b))
+    across, up = (
+        min(a.box.x1, b.box.x1) - max(a.box.x0, b.box.x0),
+        min(a.box.y1, b.box.y1) - max(a.box.y0, b.box.y0),
+    )
+    return is_thin and max(across, up) < THICK
 
 
 def _is_label_of(a, b):
@@ -34,7 +46,7 @@ def overlaps(drawing):
     solid = [i for i in drawing.items if i.kind not in PASSIVE]
     found = []
     for a, b in combinations(solid, 2):
-        if not _is_label_of(a, b) and a.box.overlaps(b.box):
+        if not (_is_label_of(a, b) or _meet(a, b)) and a.box.overlaps(b.box):
             touch = SLANTED if _is_slanted(a) or _is_slanted(b) else TOUCH
             if any(_share(p, q, touch) for p in a.extents for q in b.extents):
                 found.append((f"{a.kind} {a.name}", f"{b.kind} {b.name}"))

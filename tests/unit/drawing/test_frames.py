@@ -17,7 +17,10 @@ def test_members_stand_where_their_lengths_and_angles_put_them():
     left, right, beam = (place(drawing, "element", n) for n in ("left", "right", "beam"))
     assert left.height > left.width
     assert beam.width > beam.height
-    assert left.x1 <= beam.x0 < beam.x1 <= right.x0
+    # A rigid corner: members end where their axes meet.
+    assert left.centre[0] == pytest.approx(beam.x0, abs=0.5)
+    assert right.centre[0] == pytest.approx(beam.x1, abs=0.5)
+    assert beam.centre[1] == pytest.approx(left.y1, abs=0.5)
     assert beam.y1 > left.y1 == pytest.approx(right.y1)
     assert beam.width == pytest.approx(left.height, rel=0.1)
 

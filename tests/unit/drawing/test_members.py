@@ -267,7 +267,9 @@ def test_a_transformer_is_drawn_with_the_symbol_that_the_specification_wants():
     assert tuple(TRANSFORMER_SYMBOLS) == model_room.TRANSFORMER_SYMBOLS
     chosen = f"{TURNING}[drawing.symbols]\npinion = "
     drawn = {name: item(sound(f'{chosen}"{name}"\n'), "element", "pinion") for name in TRANSFORMER_SYMBOLS}
-    assert item(sound(TURNING), "element", "pinion") == drawn["screw"] != drawn["rack"]
+    assert item(sound(TURNING), "element", "pinion") == drawn["rack"] != drawn["screw"]
+    per_turn = sound(TURNING.replace("3 mm/rad", "3 mm/rev"))
+    assert len(item(per_turn, "element", "pinion").strokes) == len(drawn["screw"].strokes)
 
 
 def test_values_of_members_and_fields_stand_once_below():
