@@ -1,8 +1,8 @@
 """Frames of many storeys: derived in nested form, and their lowest modes proved, beside numpy's determinant.
 
 A storey is two columns and a beam. The other way assembles the same members' exact dynamic stiffness as a
-dense matrix of doubles, and looks for signs of its determinant on a grid of frequencies: no root is proved,
-and two within one step are missed.
+dense matrix of doubles, and looks for signs of its determinant on a grid of frequencies: no root is
+certified, and two within one step are missed.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ SOLVED = 100
 EVEN = 2.5
 """Largest over smallest time of derivation per beam, from 30 beams on: start-up shares in few."""
 TIMES_BISECTION = 3.0
-"""Most that twenty proved digits may take, over ten or so from doubles."""
+"""Most that twenty certified digits may take, over ten or so from doubles."""
 TIMES_FASTER = 1.0
 """Than dense solves, at least."""
 ROUNDS, QUICK_ROUNDS = 3, 1

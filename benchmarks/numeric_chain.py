@@ -1,4 +1,4 @@
-"""Long chains with rational numbers: exact transfer functions and proved poles, against other ways.
+"""Long chains with rational numbers: exact transfer functions and certified poles, against other ways.
 
 The task is the driving-point receptance of a free chain of N masses whose every m, k and b is a number, as an
 exact quotient of polynomials in s; then all its poles and zeros at 30 digits. symflex starts from a resolved

@@ -61,7 +61,7 @@ HIGHEST = 90.0
 FEW_DIGITS = 20
 ROUNDS, QUICK_ROUNDS = 2, 1
 TIMES_COLLOCATION = 5000.0
-"""Most that proved digits, with the zeros and a count, may take over one dense eigenvalue problem of 2 ms."""
+"""Most that certified digits, zeros and a count may take over one dense eigenvalue problem of 2 ms."""
 TIMES_SHOOTING = 20.0
 """Most that they may take over shooting in doubles; six is usual."""
 TIMES_SERIES = 3.0

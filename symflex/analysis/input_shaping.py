@@ -1,6 +1,6 @@
 """Input shapers: impulses by which a command is convolved, so that modes of a structure do not ring after it.
 
-Input: proved poles, and which kind of shaper. Output: times and amplitudes, enclosed.
+Input: certified poles, and which kind of shaper. Output: times and amplitudes, enclosed.
 
 With the pole p = -sigma + j omega, tau = pi/omega and K = exp(-sigma tau), half a period later a motion has
 the opposite sign and K times the size, so that two impulses cancel each other:

@@ -201,7 +201,7 @@ class Analyses(Plotted):
         ------
         BudgetError
             SF505, SF506 when the search takes too long: its ``found`` is a
-            :class:`~symflex.roots.PoleZeroMap` with all roots proved so far, ``None`` if there are none.
+            :class:`~symflex.roots.PoleZeroMap` with all roots certified so far, ``None`` if there are none.
         UsageError
             SF902 for more than one choice, or one that is impossible.
 
@@ -270,7 +270,7 @@ class Analyses(Plotted):
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         budget : float, optional
-            Time the search may take [s]. When it runs out, the roots proved so far are returned; others
+            Time the search may take [s]. When it runs out, the roots certified so far are returned; others
             may be missing, and ``certificate.is_exceeded`` is true. Without it, a
             fixed amount of work limits the search of a distributed system.
 

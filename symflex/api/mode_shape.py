@@ -72,7 +72,7 @@ class ModeShape:
 
     @property
     def certified(self) -> bool:
-        """True when the pole is proved and has one shape: every amplitude lies within its radius."""
+        """True when the pole is certified and has one shape: every amplitude lies within its radius."""
         return self.enclosed.certified
 
     @property

@@ -586,7 +586,7 @@ class Model:
         ModelError
             SF801 no pole depends on the parameter.
         UncertifiedError
-            SF807 the curves do not end in proved poles.
+            SF807 the curves do not end in certified poles.
 
         Examples
         --------
@@ -678,7 +678,7 @@ class Model:
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
-        """Return S = 1/(1 + L) and T = L/(1 + L) of the loop gain L over frequency, with their proved peaks.
+        """Return S = 1/(1 + L) and T = L/(1 + L) of the loop gain L over frequency, with certified peaks.
 
         Parameters are those of :meth:`nyquist`.
 

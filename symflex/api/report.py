@@ -27,7 +27,7 @@ class WrittenReport:
     warnings : tuple of str
         What was left out or is not certified.
     is_certified : bool
-        All poles and zeros are proved, and no budget was exceeded.
+        All poles and zeros are certified, and no budget was exceeded.
     """
 
     page: Path

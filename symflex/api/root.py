@@ -262,7 +262,7 @@ class ResidueTable(tuple[Residue, ...]):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How a root s moves with a parameter p; numbers are midpoints of proved enclosures.
+    """How a root s moves with a parameter p; numbers are midpoints of certified enclosures.
 
     Parameters
     ----------

@@ -187,7 +187,7 @@ class Toolboxes:
         Parameters
         ----------
         form : str
-            ``zeros-poles-gain``, from the proved roots, which loses no digits; ``transfer-function``;
+            ``zeros-poles-gain``, from the certified roots, which loses no digits; ``transfer-function``;
             ``state-space``.
         minimal : bool
             For ``state-space``.

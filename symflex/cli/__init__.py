@@ -22,9 +22,9 @@ WATCHED = "watched"
 COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("formulas", "Check a specification and report every problem at once."),
     "derive": ("formulas", "Print transfer functions in closed form."),
-    "roots": ("analyses", "Print poles and zeros with proved enclosures."),
+    "roots": ("analyses", "Print poles and zeros with certified enclosures."),
     "rational": ("analyses", "Print rational approximations and the frequencies where they hold."),
-    "respond": ("respond", "Print the response to a step, an impulse or a ramp, with proved bounds."),
+    "respond": ("respond", "Print the response to a step, an impulse or a ramp, with rigorous bounds."),
     "shape": ("respond", "Print an input shaper: impulses that leave no vibration."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
     "stability": ("analyses", "Print the gains for which a feedback loop is stable."),
@@ -128,7 +128,7 @@ class LazyGroup(click.Group):
 def group() -> None:
     """Derive closed-form transfer functions of flexible electromechanical systems.
 
-    A model is one TOML file. You get its formulas, proved poles and zeros, figures, and code.
+    A model is one TOML file. You get its formulas, certified poles and zeros, figures, and code.
     """
 
 

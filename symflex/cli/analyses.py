@@ -44,7 +44,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     --spread adds rectangles that poles and zeros do not leave for any combination of values off by a share.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
-    budget was exceeded; the roots proved so far are shown.
+    budget was exceeded; the roots certified so far are shown.
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
@@ -208,7 +208,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     """Solve SPEC at many values of its parameters.
 
     It computes poles, zeros, a response or stability margins. Several --over make a grid; with --monte-carlo,
-    ranges without a count are sampled as a Latin hypercube. Every root is proved at every point, as by
+    ranges without a count are sampled as a Latin hypercube. Every root is certified at every point, as by
     'symflex roots', and written as the nearest double with a radius; modes keep their names along the sweep.
     The result does not depend on the number of workers.
 

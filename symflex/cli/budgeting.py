@@ -1,6 +1,6 @@
 """The budget on the command line: ``--budget`` and ``--memory``, and a process that sees that they are kept.
 
-Loops ask their budget and stop in order, with what was proved until then. A single operation of a library
+Loops ask their budget and stop in order, with what was certified until then. A single operation of a library
 cannot be asked, and the library ends the process where memory is refused. So on Linux a command works in a
 process of its own, and the one that was started watches it: it passes signals on, ends the other one where
 that is over its limits and does not stop, and says so.

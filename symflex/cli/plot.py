@@ -57,9 +57,9 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     Kinds are bode, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability and step.
 
     modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
-    --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; for a
-    distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
-    --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their proved peaks.
+    --gain K draws the paths of the closed-loop poles as K grows, from certified poles to certified zeros; for
+    a distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
+    --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their certified peaks.
 
     stability --over T draws the number of unstable poles over a parameter; with two, as --over K --over T, a
     chart with regions, boundaries and the values of SPEC. Ranges are as for 'symflex stability'.

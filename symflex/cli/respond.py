@@ -31,7 +31,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     """Print the response of an output of SPEC to a step, impulse, ramp or a file.
 
     The input is of unit size; the system is at rest before t = 0. Every value is proved to lie within its
-    radius: the response is computed from proved poles, not from time steps.
+    radius: the response is computed from certified poles, not from time steps.
 
     --to FILE.csv joins its samples by straight lines, or with --hold by steps; the input is 0 before the
     first sample and constant after the last. This is exact, too. Two samples at one time are a jump.
@@ -227,7 +227,7 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
 
     A command convolved with the impulses of the shaper leaves these modes at rest when it ends: exactly with
     zv and zvd. ei leaves up to 5 % of the vibration of an unshaped impulse, and tolerates larger errors of
-    the frequency. Times and amplitudes come from proved poles.
+    the frequency. Times and amplitudes come from certified poles.
 
     Shapers of several modes are convolved. -o draws the residual vibration of a mode whose frequency differs
     from the model's.

@@ -222,7 +222,7 @@ def draw_loop(
     from 0 to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default
     those in the band, or the lowest five. ``band_hz`` are frequencies [Hz]; a locus is shown up to
     its end. The rest is as for :func:`draw`. Raises UsageError: SF208 an unknown kind, SF804 no range, SF806
-    no straight line in the gain; UncertifiedError: SF807 the curves do not end in proved poles.
+    no straight line in the gain; UncertifiedError: SF807 the curves do not end in certified poles.
     """
     if kind not in LOOP_FIGURES:
         hint = "kinds: " + ", ".join(LOOP_FIGURES)

@@ -1,4 +1,4 @@
-"""Root loci, from proved poles to proved zeros as a gain grows, and Nyquist plots about the point -1."""
+"""Root loci between certified poles and zeros as a gain grows, and Nyquist plots about the point -1."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 CLOSE: Final = 0.3  # narrowest width shown, over the height
 FAR_OUT, ZEROS_OUT, AGREE = 2.0, 1.3, 1.001
-"""Over the curves shown: poles that hardly move are left out, zeros shown, proved poles theirs."""
+"""Over the curves shown: poles that hardly move are left out, zeros shown, certified poles theirs."""
 POINTED: Final = 0.06  # length of a curve over the height shown from which on it has an arrow
 
 

@@ -1,4 +1,4 @@
-"""Sensitivities of a loop, ``S = 1/(1 + L)`` and ``T = L/(1 + L)``, with their proved peaks."""
+"""Sensitivities of a loop, ``S = 1/(1 + L)`` and ``T = L/(1 + L)``, with their certified peaks."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def draw_stability(
     """Draw for which values of two parameters a model is stable, or of one.
 
     The stable region is shaded, what is undecided is grey, and each region says how many poles are
-    unstable. Boundaries are curves through proved points; a star marks the declared values, and dashes, if
+    unstable. Boundaries are curves through certified points; a star marks the declared values, and dashes, if
     they are asked for, the largest box about them in which all is as there. Of one parameter the number of
     unstable poles is drawn, with the frequencies [Hz] at which poles pass the axis.
     """

@@ -1,6 +1,6 @@
 """Frequency equations of undamped beams, rods, shafts and strings, and the certified numbers solving them.
 
-Input: a transfer function in letters, and its proved roots.
+Input: a transfer function in letters, and its certified roots.
 Output: for each factor an equation in q, a wavenumber times a length, and in ratios of parameters; and with
 what :mod:`symflex.letters.roots` says of factors without waves, all that is said of a function.
 
@@ -9,7 +9,7 @@ what :mod:`symflex.letters.roots` says of factors without waves, all that is sai
 
 Theorem: s enters only through the wavenumber, ``q^4 = rho A l^4 omega^2/(E I)``, so a factor divided by one
 of its coefficients depends on q and on quotients of coefficients, which have no unit (Rayleigh 1877, 172). A
-q_n is that of a proved root of the function, and the equation as it is printed changes its sign there.
+q_n is that of a certified root of the function, and the equation as it is printed changes its sign there.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Natural frequencies, damping ratios and kinds of roots in letters, beside the proved roots they belong to.
+"""Natural frequencies, damping ratios and kinds of roots in letters, beside the certified roots.
 
-Input: a transfer function with numbers whose formula has letters, and its proved roots.
+Input: a transfer function with numbers whose formula has letters, and its certified roots.
 Output: for each irreducible factor, formulas and conditions, each read back and checked in balls.
 
     m*s^2 + b*s + k     omega_p = sqrt(k/m), zeta_p = b/(2*sqrt(k*m)); a complex pair if b^2 < 4*k*m

@@ -6,9 +6,9 @@ Output: the file's text. It holds one script and one style sheet, and allows not
     default-src 'none'; script-src 'sha256-...'; style-src 'sha256-...'
 
 The script is the JavaScript export of every model, the files ``*.js`` beside this one, and the data that
-:func:`_data` makes: parameters, bands, proved roots at the declared values, and the specification cut where
-values stand, so that the page can write it anew. What a user wrote reaches the page as escaped text and as
-JSON strings that end no script.
+:func:`_data` makes: parameters, bands, certified roots at the declared values, and the specification cut
+where values stand, so that the page can write it anew. What a user wrote reaches the page as escaped text and
+as JSON strings that end no script.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Numerators and denominators as tapes: what a page needs to prove poles and zeros under a slider.
+"""Numerators and denominators as tapes: what a page needs to certify poles and zeros under a slider.
 
 Input: a :class:`symflex.transfer.TransferFunction`, and the identifiers of parameters in the exported module.
 Output: a dict that JSON can say, or one with the reason why there is no tape, ``{"refused": "..."}``.

@@ -2,7 +2,7 @@
 
 Between two limits each root is enclosed and none missing: an interval of frequencies is dropped where the
 function, or what the caller asks for, excludes it; it is kept where the function is monotonous and changes
-its sign; else it is halved. Near 0, where wavenumbers vanish, power series with proved bounds say the same.
+its sign; else it is halved. Near 0, where wavenumbers vanish, power series with rigorous bounds say the same.
 """
 
 from __future__ import annotations

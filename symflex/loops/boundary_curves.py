@@ -37,7 +37,7 @@ BEND = 0.1  # part of a step by which a curve may leave its tangent
 NEWTON_STEPS, CONVERGED = 6, 1e-12
 """Newton steps to a curve, and how long the last may be, in parts of the range and of the frequency."""
 RADIUS, ROOM = 1e-9, 100
-"""About a point, in parts of the range: there a root is proved; the frequency's radius may be wider."""
+"""About a point, in parts of the range: there a root is certified; the frequency's radius may be wider."""
 MOST_POINTS = 2000
 ALIKE = 0.05  # part by which frequencies of one curve at one place may differ
 

@@ -1,4 +1,4 @@
-"""For which values of parameters a model is stable: boxes with a proved number of right-half-plane poles.
+"""For which values of parameters a model is stable: boxes with a certified number of right-half-plane poles.
 
 Input: a model, names of parameters and their ranges. Output: a :class:`StabilityChart`.
 
@@ -126,7 +126,7 @@ class StabilityChart(Printed):
 
     @cached_property
     def boundaries(self) -> list[list[Point]]:
-        """Curves on which a pole is on the axis: proved points of both parameters and frequency [rad/s]."""
+        """Curves with a pole on the axis: certified points of both parameters and frequency [rad/s]."""
         return boundary_curves(self.function, self.ranges, self.open)
 
     @cached_property

@@ -66,8 +66,8 @@ class RootLocus:
     end: PoleZeroMap
     # Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
     branches: tuple[tuple[complex, ...], ...]
-    arrived: bool  # every curve ends next to a proved pole at the last gain, and no two at the same
-    # The proved poles at the last gain [rad/s] to which a curve of any kind goes.
+    arrived: bool  # every curve ends next to a certified pole at the last gain, and no two at the same
+    # The certified poles at the last gain [rad/s] to which a curve of any kind goes.
     ends: tuple[complex, ...] = ()
     # Curves to poles at the last gain from where none is marked: from infinity, as those of a delay, from
     # higher modes at the first gain, or from where poles accumulate.
@@ -430,7 +430,7 @@ def _matched(ends: Sequence[complex], proved: Sequence[complex]) -> set[int] | N
 
 
 def require_arrival(locus: RootLocus) -> None:
-    """Raise SF807 when curves of a locus do not end in proved poles."""
+    """Raise SF807 when curves of a locus do not end in certified poles."""
     if not locus.arrived:
         message = (
             f"the traced poles do not end at the poles proved at {locus.gain} = {float(locus.limits[1]):.6g}"

@@ -7,7 +7,7 @@
                                        certified count of all of them
     where that count says otherwise    subdivision: every cell is counted with proof
 
-Every root is proved whoever found it; a poor engine costs time and never a wrong root.
+Every root is certified whoever found it; a poor engine costs time and never a wrong root.
 """
 
 from __future__ import annotations

@@ -228,8 +228,8 @@ def locate_distributed(
 
     For everything :func:`default_region` is searched. For a number of modes, the lowest poles and the lowest
     zeros; roots that mirror each other in the axes count as one mode. When the budget is exceeded, what was
-    proved so far is returned. Certified if every root in the region was counted, found, and told apart from
-    the others.
+    certified so far is returned. Certified if every root in the region was counted, found, and told apart
+    from the others.
     """
     where, is_default = _region_of(bound, region)
     searched = _Searched(bound, where, digits, with_zeros=with_zeros)
@@ -238,7 +238,7 @@ def locate_distributed(
         searched.find()
         reason = searched.prove()
     except BudgetError as error:
-        # What was found stays; the roots are proved one by one, only their number is not.
+        # What was found stays; the roots are certified one by one, only their number is not.
         for side in searched.sides:
             side.recall()
         reason = "; ".join(d.message for d in error.diagnostics) + searched.extent()

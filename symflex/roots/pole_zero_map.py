@@ -279,7 +279,7 @@ class Certificate:
 
     @property
     def is_exceeded(self) -> bool:
-        """Whether the budget was exceeded: every root shown is proved, and others may be missing."""
+        """Whether the budget was exceeded: every root shown is certified, and others may be missing."""
         return self.code is not None
 
 
@@ -473,7 +473,7 @@ def find_pole_zero_map(
 
     Each part of each root has so many correct significant digits; more are computed where the region asks for
     it. ``hidden`` are cancelled factors, each with its cause; all their roots are reported when the region is
-    a number of modes, else those in the region. When the budget is exceeded, what was proved so far is
+    a number of modes, else those in the region. When the budget is exceeded, what was certified so far is
     returned. A root whose side of the boundary stays undecided after refinement counts as on the boundary.
 
     Examples

@@ -104,7 +104,7 @@ def step_in_balls(bound, part, z):
 
 
 def refuted(tf, values, state):
-    """Yield what balls say against a state: proved roots that are none, and counts that are wrong."""
+    """Yield what balls say against a state: certified roots that are none, and counts that are wrong."""
     bound = bind(tf, {name: Fraction(value) for name, value in values.items()})
     for kind, part in (("poles", bound.den), ("zeros", bound.num)):
         reach = float(state["reach"][kind].replace("Infinity", "inf"))

@@ -2,7 +2,7 @@
 
 The gain enters by roots, powers, logarithms, exponentials, quotients and definitions of definitions, in one
 place or two, before polynomials, delays and beams. At each gain the model is read again with that value,
-and ``roots`` proves its poles; numpy and the winding of a function written by hand count them, too.
+and ``roots`` certifies its poles; numpy and the winding of a function written by hand count them, too.
 """
 
 from cmath import exp as turned

@@ -45,7 +45,7 @@ def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str
     if zeros:
         lines.append(f"  * the parameter is 0: (1/f) df/dp and {damping}, per unit: {', '.join(zeros)}")
     if any(m.derivative is not None for m in moved):
-        lines.append("  every digit is proved, except for the rounding of the last one")
+        lines.append("  every digit is certified, except for the rounding of the last one")
     return "\n".join(lines)
 
 

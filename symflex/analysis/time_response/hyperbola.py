@@ -1,6 +1,6 @@
 """Responses of functions with a root of s: Laplace's inverse integral along hyperbolas about the branch cut.
 
-Input: a function of ``r = (a s + b)^(1/q)`` and exponentials in r. Output: values with proved bounds. Let
+Input: a function of ``r = (a s + b)^(1/q)`` and exponentials in r. Output: values with rigorous bounds. Let
 z = s + b/a. Far out, where one term outweighs all others in every factor, the function has no poles, and
 abs(F) <= C abs(z)^p. All hyperbolas
 

@@ -61,7 +61,7 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
 def proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int | None = None
 ) -> PartialSum | None:
-    """Return a sum over modes with a proved bound of those left out; None if there is none.
+    """Return a sum over modes with a rigorous bound of those left out; None if there is none.
 
     At most so many modes are summed, where so many digits would need more.
     """

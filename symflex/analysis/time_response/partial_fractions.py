@@ -7,9 +7,10 @@ of matrices in balls; see :mod:`~symflex.analysis.time_response.sample_times`.
     1/(s (s + 2)^2)  =  (1/4)/s - (1/4)/(s + 2) - (1/2)/(s + 2)^2
     in time             1/4     - (1/4) e^(-2t) - (1/2) t e^(-2t)
 
-The multiplicity of a proved pole is exact, so at the pole the first coefficients of the denominator's Taylor
-series are zero, whatever their balls hold, and a quotient of series is left. Poles close to each other have
-large coefficients of opposite sign; the digits that these lose are made up for by more digits of the poles.
+The multiplicity of a certified pole is exact, so at the pole the first coefficients of the denominator's
+Taylor series are zero, whatever their balls hold, and a quotient of series is left. Poles close to each other
+have large coefficients of opposite sign; the digits that these lose are made up for by more digits of the
+poles.
 """
 
 from __future__ import annotations

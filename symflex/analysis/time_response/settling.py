@@ -1,8 +1,8 @@
 """How step responses of loops with delays die away, and the pieces they are made of.
 
-Input: a :class:`DelayedQuotient`, ``H = (N_0 + N_1 e^(-s n_1) + ...)/(D_0 + D_1 e^(-s d_1) + ...)``.
-Output: its step response as residues of few poles and a proved bound on the rest, which fades, and the pieces
-it is made of at first, as exponentials.
+Input: a :class:`DelayedQuotient`, ``H = (N_0 + N_1 e^(-s n_1) + ...)/(D_0 + D_1 e^(-s d_1) + ...)``. Output:
+its step response as residues of few poles and a rigorous bound on the rest, which fades, and the pieces it is
+made of at first, as exponentials.
 
     1/(s + 1 + e^(-s)/2)    y = 2/3 + residues + (1/2 pi j) integral of H e^(s t)/s along Re s = -c
 

@@ -1,4 +1,4 @@
-"""From proved poles and zeros to a program that is exact over a band: the band form.
+"""From certified poles and zeros to a program that is exact over a band: the band form.
 
 Input: a transfer function with numbers, and up to which frequency it is wanted.
 Output: a :class:`BandForm`, the transfer function as

@@ -310,7 +310,7 @@ class Side:
             self._most = (self.engine, self._search, self._located)
 
     def recall(self) -> None:
-        """Go back to the search that found the most, if a later one was broken off: each root is proved."""
+        """Go back to the search that found the most if a later one was broken off: all are certified."""
         if self._most[1] is not self._search:
             self.engine, self._search, self._located = self._most
             self.restore()

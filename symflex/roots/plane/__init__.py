@@ -1,1 +1,1 @@
-"""Searching the s plane: cells that are counted and cut, and boxes and discs that prove roots in them."""
+"""Searching the s plane: cells that are counted and cut, and boxes and discs that certify roots in them."""

@@ -1,4 +1,4 @@
-"""Proving roots of a function with kernels about a guess: a simple one, or several that lie close together.
+"""Certifying roots of a function with kernels about a guess: a simple one, or several close together.
 
 An interval Newton step proves that a factor has exactly one root in a box, a simple one; see
 :mod:`symflex.balls.interval_newton`. Where all other factors differ from 0 on the box, the function has

@@ -31,7 +31,7 @@ def test_all_parameters_by_default_or_those_named_and_nothing_without_the_option
     # omega = sqrt(k/m)
     assert ["0", "+-3.00000", "m", "-0.500000", "0"] in rows(done.out)
     assert ["k", "0.500000", "0"] in rows(done.out)
-    assert "every digit is proved" in done.out
+    assert "every digit is certified" in done.out
     of_k = shell("roots", "x.toml", "--tf", "X/F", "--sensitivity", "k").out
     assert "0.500000" in of_k
     assert "-0.500000" not in of_k
