@@ -9,7 +9,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 any of them --print, codegen--> text, JSON, LaTeX, numpy, figure
 
 The arrows up to transfer functions with numbers and their roots are here. Each later one is a function of its
-room, imported where it is used: most commands need few of them, and many of their rooms import numpy.
+package, imported where it is used: most commands need few of them, and many of these import numpy.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What another room found, as the class a Python user holds: the same fields, and pictures besides."""
+"""What another package found, as the class a Python user holds: the same fields, and pictures besides."""
 
 from __future__ import annotations
 

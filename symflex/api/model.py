@@ -899,7 +899,7 @@ class Model:
         >>> page.html[:15], "https:" in page.html
         ('<!DOCTYPE html>', False)
         """
-        from symflex.api.live import LivePage  # only pages need the rooms of numbers
+        from symflex.api.live import LivePage  # only pages need the numeric packages
         from symflex.budget import Silent
         from symflex.live.page import live_page
 

@@ -1,4 +1,4 @@
-"""Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this room."""
+"""Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this package."""
 
 from symflex.balls.covering import covered
 from symflex.balls.elimination import Eliminated, columns_of, eliminate, sign_of

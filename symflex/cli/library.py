@@ -54,7 +54,7 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
     A template begins with comments that say what it is and what to try next.
     """
     if netlist is not None:
-        from symflex.model.spec.read import NETLISTS, read  # imports the rooms of models
+        from symflex.model.spec.read import NETLISTS, read  # imports the packages of models
 
         if not netlist.lower().endswith(NETLISTS):
             hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
@@ -213,7 +213,7 @@ def _only(parameter: ParameterPort) -> str:
 
 
 def _key(name: str, text: str) -> str:
-    return _paragraph(text, f"  {name:10} ", " " * 13)
+    return _paragraph(text.removeprefix("a ").removeprefix("an "), f"  {name:10} ", " " * 13)
 
 
 def _paragraph(text: str, first: str, following: str) -> str:

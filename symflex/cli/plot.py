@@ -78,7 +78,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
     Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
-    paper's font, and --font (latex by default) only sets how much room it gets. You need no LaTeX to write
+    paper's font, and --font (latex by default) only sets how much space it gets. You need no LaTeX to write
     it.
     """
     from symflex import pipeline

@@ -187,7 +187,7 @@ class Cut:
 
 @dataclass
 class _Assembly:
-    """The one mutable workbench of this room: collects stamps, then freezes them."""
+    """The one mutable workbench of this package: collects stamps, then freezes them."""
 
     model: Model
     ring: Ring

@@ -1,4 +1,4 @@
-"""Positions, diagnostics and the exceptions every other room raises."""
+"""Positions, diagnostics and the exceptions every other package raises."""
 
 from symflex.errors.diagnostic import Diagnostic, Source, Span, Text, counted, nearest
 from symflex.errors.exceptions import (

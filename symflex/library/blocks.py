@@ -236,4 +236,4 @@ BLOCKS: dict[str, Block] = {
 }
 
 MODEL_BLOCK = "model"
-"""The block that stands for another specification's transfer function; resolved by the model room."""
+"""The block that stands for another specification's transfer function; resolved by the package ``model``."""

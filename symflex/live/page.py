@@ -58,14 +58,14 @@ def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progres
     Raises what derivations and exports of these functions raise, among them ModelError: SF233 a number that
     no double holds, SF251 loss factors, which hold on the frequency axis alone.
     """
-    room = resources.files("symflex.live")
-    style = room.joinpath("page.css").read_text(encoding="utf-8")
+    package = resources.files("symflex.live")
+    style = package.joinpath("page.css").read_text(encoding="utf-8")
     parts = []
     for i, (model, pairs) in enumerate(models):
         progress.report(i / len(models), model.title or f"model {i + 1}")
         parts.append(_part(i, model, pairs))
     exported = ",\n".join(script for _, script in parts)
-    sources = "\n".join(room.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
+    sources = "\n".join(package.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     script = f'"use strict";\n(() => {{\n{sources}\nlive([\n{exported}\n]);\n}})();\n'
     title = models[0][0].title or "Transfer functions" if len(models) == 1 else f"{len(models)} models"
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}"
@@ -239,8 +239,8 @@ def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
 
 def _markup(number: int, contents: Contents, data: dict[str, Any]) -> str:
     model = contents.model
-    room = resources.files("symflex.live")
-    frame = room.joinpath("page.html").read_text(encoding="utf-8")
+    package = resources.files("symflex.live")
+    frame = package.joinpath("page.html").read_text(encoding="utf-8")
     labels = model_labels(model)
     rows = [_slider(number, i, p, labels, model) for i, p in enumerate(data["parameters"])]
     names = [escape_html(m.tf.name) for m in contents.members]

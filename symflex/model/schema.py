@@ -97,7 +97,7 @@ def json_schema() -> Schema:
 
 
 def _said(schema: Schema, description: str) -> Schema:
-    return {**schema, "description": description}
+    return {**schema, "description": description.removeprefix("a ").removeprefix("an ")}
 
 
 def _closed(properties: Mapping[str, Schema], required: Iterable[str] = ()) -> Schema:
@@ -177,8 +177,8 @@ def _value_of(parameter: ParameterPort) -> Schema:
 
 def _choice(choice: Choice) -> Schema:
     if choice.is_flag:
-        return {"type": "boolean", "description": choice.doc}
-    return {"enum": list(choice.values), "description": f"{choice.doc}; {choice.default} by default"}
+        return _said({"type": "boolean"}, choice.doc)
+    return _said({"enum": list(choice.values)}, f"{choice.doc}; {choice.default} by default")
 
 
 def _inputs() -> list[Schema]:

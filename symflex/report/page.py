@@ -48,9 +48,9 @@ _FONT_FACE: Final = (
 
 def report_page(report: Report) -> str:
     """Return a report as HTML."""
-    room = resources.files("symflex.report")
-    style = room.joinpath("page.css").read_text(encoding="utf-8")
-    font = b64encode(room.joinpath(MATH_FONT).read_bytes()).decode("ascii")
+    package = resources.files("symflex.report")
+    style = package.joinpath("page.css").read_text(encoding="utf-8")
+    font = b64encode(package.joinpath(MATH_FONT).read_bytes()).decode("ascii")
     byline = " · ".join(filter(None, (report.subtitle, report.date)))
     parts = [
         "<!DOCTYPE html>",

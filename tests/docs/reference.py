@@ -151,7 +151,7 @@ def _table(
 
 
 def _port_row(port: Port) -> tuple[str, ...]:
-    count = "a node" if port.terminals == 1 else f"{port.terminals} nodes"
+    count = "node" if port.terminals == 1 else f"{port.terminals} nodes"
     count += ", or two" * port.reacts
     default = "required" if port.default is None else ", ".join(f"`{node}`" for node in port.default)
     return f"`{port.name}`", f"{count} ({port.domain})", port.doc, default
@@ -161,7 +161,7 @@ def _parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
     unit = f"`{parameter.unit}`" if parameter.unit else "inferred"
     default = "required" if parameter.default is None else f"`{parameter.default}`"
     default = f"in place of `{'*'.join(parameter.of)}`" if parameter.of else default
-    return f"`{parameter.name}`", unit, parameter.doc, default
+    return f"`{parameter.name}`", unit, _bare(parameter.doc), default
 
 
 def _element_parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
@@ -170,11 +170,15 @@ def _element_parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
     return name, unit, doc + only, default
 
 
+def _bare(doc: str) -> str:
+    return doc.removeprefix("a ").removeprefix("an ")
+
+
 def _choice_row(choice: Choice) -> tuple[str, ...]:
     if choice.is_flag:
-        return f"`{choice.name}`", "`true`, `false`", choice.doc, "`false`"
+        return f"`{choice.name}`", "`true`, `false`", _bare(choice.doc), "`false`"
     words = ", ".join(f'`"{value}"`' for value in choice.values)
-    return f"`{choice.name}`", words, choice.doc, f'`"{choice.default}"`'
+    return f"`{choice.name}`", words, _bare(choice.doc), f'`"{choice.default}"`'
 
 
 PARTS: dict[str, Callable[[], str]] = {

@@ -28,8 +28,8 @@ def main(arguments):
     is_guided = arguments[0] != UNGUIDED
     name, folder, *options = arguments if is_guided else arguments[1:]
     target_name = f"tests.fuzz.target_{name}"
-    rooms = import_rooms(target_name) if is_guided else (target_name, "tests.fuzz.measured")
-    with atheris.instrument_imports(include=list(rooms)):
+    packages = import_packages(target_name) if is_guided else (target_name, "tests.fuzz.measured")
+    with atheris.instrument_imports(include=list(packages)):
         target = import_module(target_name)
     seen = set()
 
@@ -56,8 +56,8 @@ def main(arguments):
     atheris.Fuzz()
 
 
-def import_rooms(target_name):
-    """Return the rooms a target names, read without importing it: imports are to be instrumented."""
+def import_packages(target_name):
+    """Return the packages a target names, read without importing it: imports are to be instrumented."""
     import ast
 
     tree = ast.parse(

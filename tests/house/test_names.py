@@ -7,7 +7,7 @@ from tests.house.repository import ROOT
 
 CLASS = re.compile(r"^ *class (\w+)[(:]", re.MULTILINE)
 MODULE = re.compile(r"`([a-z]\w\w+(?:/\w\w+)+(?:\.py)?)`")
-"""A module as pages write it, by its room: ``roots/locate``. Units and transfer functions are shorter."""
+"""A module as pages write it, by its package: ``roots/locate``. Units and transfer functions are shorter."""
 NO_MODULES = {"num/den"}
 ONE_IDEA = {
     "BoundTransferFunction",
@@ -24,8 +24,8 @@ ONE_IDEA = {
 
 
 def test_every_module_that_a_page_names_is_there():
-    rooms = [path for path in (ROOT / "symflex").iterdir() if path.is_dir()]
-    folders = [ROOT, ROOT / "symflex", ROOT / "tests" / "unit", ROOT / "derivations", *rooms]
+    packages = [path for path in (ROOT / "symflex").iterdir() if path.is_dir()]
+    folders = [ROOT, ROOT / "symflex", ROOT / "tests" / "unit", ROOT / "derivations", *packages]
     pages = [*sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "README.md"]
     named = [(page, name) for page in pages for name in MODULE.findall(page.read_text(encoding="utf-8"))]
     missing = [

@@ -98,6 +98,6 @@ def test_deriving_a_lumped_model_imports_at_most_120_modules():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["check", "derive"])
-def test_what_prints_formulas_does_not_import_the_rooms_of_numbers(command):
+def test_what_prints_formulas_does_not_import_the_packages_of_numbers(command):
     imported = modules_after(command, LUMPED)
-    assert not {f"symflex.{room}" for room in NUMBERS} & imported
+    assert not {f"symflex.{package}" for package in NUMBERS} & imported

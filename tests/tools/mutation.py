@@ -5,7 +5,7 @@
 
 changes the modules in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
 prints the share of changes that they notice and the diff of every other. Without tests the unit tests of the
-modules' rooms are taken; ``--sample`` draws so many changes of each module, the same ones each time. Those
+modules' packages are taken; ``--sample`` draws so many changes of each module, the same ones each time. Those
 of functions with a decorator (properties, cached results) are not made. docs/mutation.md has the figures of
 the core.
 
@@ -120,11 +120,11 @@ if __name__ == "__main__":
     parser.add_argument("--children", type=int, default=2, metavar="N", help="processes (2)")
     given = parser.parse_args()
     changed = [path for path in given.paths if path.startswith("symflex/")]
-    rooms = sorted({f"tests/unit/{Path(path).parts[1]}" for path in changed})
+    packages = sorted({f"tests/unit/{Path(path).parts[1]}" for path in changed})
     named = [path for path in given.paths if path not in changed]
     measure(
         changed,
-        named or rooms,
+        named or packages,
         sample=given.sample,
         again=given.again,
         record=given.record,

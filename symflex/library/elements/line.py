@@ -124,7 +124,7 @@ class Rod(LineElement):
     summary = "Rod in tension and compression, uniform or tapered"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
+        ParameterPort("E", "Pa", "Young's modulus", sign="positive"),
         ParameterPort("A", "m^2", "a cross-section", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
@@ -217,7 +217,7 @@ class Beam(LineElement):
     summary = "Beam in bending between two planar nodes, uniform or tapered"
     ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
+        ParameterPort("E", "Pa", "Young's modulus", sign="positive"),
         ParameterPort("I", "m^4", "a second moment of area", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("A", "m^2", "a cross-section", sign="nonnegative", varies=True),

@@ -116,6 +116,6 @@ def test_usage_errors_drive_no_terminal(said):
 
 
 def test_commands_print_through_what_escapes():
-    rooms = (ROOT / "symflex" / "cli").glob("*.py")
-    direct = {p.name for p in rooms if "click.echo" in p.read_text(encoding="utf-8")}
+    modules = (ROOT / "symflex" / "cli").glob("*.py")
+    direct = {p.name for p in modules if "click.echo" in p.read_text(encoding="utf-8")}
     assert direct <= {"__init__.py", "reporting.py"}
