@@ -628,15 +628,13 @@ class Model:
         """Return the Nyquist plot of the loop that a gain closes, about the point -1.
 
         Parameters and errors are those of :meth:`locus`; ``band`` gives the frequencies [Hz]. The verdict
-        says how many poles of the open loop are in the right half-plane, and whether the closed loop is
-        stable.
+        says whether the closed loop is stable.
 
         Examples
         --------
         >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
         >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> print(model.nyquist("K", verdict=True).legends[0].get_title().get_text())
-        open loop: no pole in the right half-plane
         closed loop stable
         """
         given = PlotOptions("nyquist", (), gain, band, xlim, ylim, width=width, font=font, verdict=verdict)

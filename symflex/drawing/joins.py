@@ -62,27 +62,17 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     right, top = int(drawing.width / CELL), int(drawing.height / CELL)
     blocked.update((x, y) for x in (0, right) for y in range(top + 1))
     blocked.update((x, y) for x in range(right + 1) for y in (0, top))
-    ways: list[list[Point]] = [[] for _ in joins]
-    for turn in range(3):  # wires that meet look for other ways: the first do not know what comes after them
-        for i, one in enumerate(joins):
-            others = {c for way in ways if way is not ways[i] for c in _passed(way)}
-            if not turn or others & set(_passed(ways[i])):
-                met = {**dict.fromkeys(others, CROSSING), **crossed}
-                ways[i] = _best(one, blocked, met, solid) or ways[i]
-    branches = set()  # of a wire that begins in the same place
-    for i, one in enumerate(joins):
-        stem = next((ways[j] for j in range(i) if joins[j].starts == one.starts and ways[j]), [])
-        stems = tuple(around(pair) for pair in pairwise(stem[:-1]))
-        others = {c for way in ways if way is not ways[i] for c in _passed(way)} - {*_passed(stem[:-1])}
-        met = {**dict.fromkeys(others, CROSSING), **crossed}
-        if stems and (branch := _best(replace(one, starts=stems), blocked, met, solid)):
-            ways[i] = branch
-            branches.add(i)
-    return tuple(
-        _drawn(one.name, points, is_branch=i in branches)
-        for i, (one, points) in enumerate(zip(joins, ways, strict=True))
-        if points
-    )
+    wires = list[Placed]()
+    ways: dict[str, list[Point]] = {}  # the first wire of each name, from which others branch
+    for one in joins:
+        stem = tuple(around(pair) for pair in pairwise(ways.get(one.name, [])[:-1]))
+        passed = {c for name, way in ways.items() if name != one.name for c in _passed(way)}
+        met = {**dict.fromkeys(passed, CROSSING), **crossed}
+        branch = _best(replace(one, starts=stem), blocked, met, solid) if stem else []
+        if way := branch or _best(one, blocked, met, solid):
+            wires.append(_drawn(one.name, way, is_branch=bool(branch)))
+            ways.setdefault(one.name, way)
+    return tuple(wires)
 
 
 def _best(

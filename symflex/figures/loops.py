@@ -254,6 +254,7 @@ Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
 WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
 REACHES: Final = (1.5, 2.5)  # half the side of the square shown of a loop gain, about -1
+AT_REST: Final = 1e-3  # share of its lowest frequency at which a curve from 0 is taken to begin
 OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale each
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
@@ -286,7 +287,7 @@ def draw_curves(
     drawing: Callable[[Axes, list[npt.NDArray[np.complex128]], list[str], Canvas, bool], None],
 ) -> Figure:
     """Draw functions or a loop gain along the imaginary axis, each with its label."""
-    width, verdict = canvas.width or COLUMN_INCHES, None
+    width, said = canvas.width or COLUMN_INCHES, list[str]()
     if is_loop := isinstance(drawn, Loop | NetworkLoop):
         gain = nominal_gain(drawn)
         labels = [f"loop gain, ${label_of_name(drawn.gain.name)} = {number_label(float(gain))}$"]
@@ -295,15 +296,14 @@ def draw_curves(
         else:
             followed = [_curve(loop_gain(drawn), canvas)]
         if canvas.frame.has_verdict:
-            verdict = f"closed loop {verdict_of_closed(drawn, gain).headline}"
+            said.append(f"closed loop {verdict_of_closed(drawn, gain).headline}")
     else:
         followed = [_curve(bound, canvas) for bound in drawn]
         labels = [label_of_tf(bound.source) for bound in drawn]
     curves, poles = [list(one) for one in zip(*followed, strict=True)]
-    labels = [f"{a}, {_open_poles(b)}" if b.right != 0 else a for a, b in zip(labels, poles, strict=True)]
+    labels = [label + _open_poles(verdict) for label, verdict in zip(labels, poles, strict=True)]
     columns = _columns(labels, width)
-    counted = _sentence_of_poles(poles, is_loop=is_loop) if canvas.frame.has_verdict else None
-    lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
+    lines = [line for text in (canvas.title, *said) for line in title_lines(text, width)]
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) - (-len(labels) // columns)))
     drawing(axes, curves, labels, canvas, is_loop)
     axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
@@ -355,37 +355,10 @@ def _draw_about_one(
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
-    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half-plane.
-
-    Examples
-    --------
-    >>> from symflex.roots.pole_zero_map import StabilityVerdict
-    >>> _open_poles(StabilityVerdict("unstable", 2, True, "", 2))
-    '$P = 2$'
-    """
+    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half plane."""
     if verdict.right is not None:
-        return f"$P = {verdict.right}$"
-    return rf"$P \geq {verdict.found}$" if verdict.found else "$P$ not known"
-
-
-def _sentence_of_poles(verdicts: Sequence[StabilityVerdict], *, is_loop: bool) -> str:
-    """Say what P is, and of a single curve how large it is.
-
-    Examples
-    --------
-    >>> from symflex.roots.pole_zero_map import StabilityVerdict
-    >>> _sentence_of_poles([StabilityVerdict("unstable", 1, True, "", 1)], is_loop=True)
-    'open loop: 1 pole in the right half-plane'
-    """
-    if len(verdicts) > 1:
-        return "P: number of poles in the right half-plane"
-    (verdict,) = verdicts
-    if verdict.right is None:
-        number = f"at least {verdict.found}" if verdict.found else "an unknown number of"
-    else:
-        number = str(verdict.right or "no")
-    plural = "" if verdict.right in (0, 1) else "s"
-    return f"{'open loop: ' if is_loop else ''}{number} pole{plural} in the right half-plane"
+        return f", $P = {verdict.right}$" if verdict.right else ""
+    return rf", $P \geq {verdict.found}$" if verdict.found else ", $P$ not known"
 
 
 def _columns(labels: Sequence[str], width: float) -> int:
@@ -408,12 +381,6 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
     return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
 
 
-def _inwards(bound: AnyBoundFunction, low: float) -> npt.NDArray[np.complex128]:
-    """Return values of a function without a pole at 0 from there up to a frequency [Hz]."""
-    steps = (0.0, *np.geomspace(1e-3 * low, low, 60)[:-1].tolist())
-    return np.array([bound(2j * pi * f) for f in steps], dtype=np.complex128)
-
-
 def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
     band, judged = canvas.band_of(bound.source.model), None
@@ -423,12 +390,12 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
         band = low / WIDENED, high * WIDENED
     low, high = band
     located = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
+    if canvas.band_hz is None and not any(root.is_zero for root in located.poles):
+        low *= AT_REST
     response = respond(bound, adaptive_grid(bound, low, high, roots=located), located)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     if canvas.band_hz is None and bound.is_rational:
         values = np.concatenate((values, _onwards(bound, high)))
-        if not any(root.is_zero for root in located.poles):
-            values = np.concatenate((_inwards(bound, low), values))
     return values[np.isfinite(values)], located.verdict
 
 

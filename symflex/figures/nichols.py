@@ -23,11 +23,8 @@ if TYPE_CHECKING:
     from symflex.loops import AnyLoop
     from symflex.transfer import AnyBoundFunction
 
-CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)
-"""Magnitudes of L/(1 + L) that have a contour."""
-REACH_DB: Final = 40.0
-WIDEST: Final = 1080.0
-"""Magnitudes [dB] and phases [deg] shown at most, unless others are asked for."""
+CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)  # of L/(1 + L), with a contour each
+REACH_DB, WIDEST = 40, 1080  # magnitudes [dB] and phases [deg] shown at most, unless others are asked for
 NOTE: Final = 5.5  # type of the contours' numbers [pt]
 
 
@@ -49,16 +46,15 @@ def _draw_chart(
     is_loop: bool,
 ) -> None:
     charts = [_phases_and_levels(curve) for curve in curves]
-    seen = np.concatenate([c.real[np.abs(c.imag) <= REACH_DB] for c in charts])
-    low, high = (float(seen.min()), float(seen.max())) if seen.size else (-180.0, -180.0)
-    low, high = 90.0 * floor((min(low, -181.0)) / 90), 90.0 * ceil(max(high, -90.0) / 90)
-    left, right = canvas.frame.x or (max(low, high - WIDEST), high)
-    levels = np.concatenate([c.imag[np.isfinite(c.imag)] for c in charts])
-    bottom = max(-REACH_DB, 10.0 * floor(float(levels.min(initial=-20.0)) / 10))
-    top = min(REACH_DB, 10.0 * ceil(float(levels.max(initial=20.0)) / 10))
-    bottom, top = canvas.frame.y or (bottom, top)
-    axes.set_xlim(left, right)
-    axes.set_ylim(bottom, top)
+    shown = np.concatenate(charts)
+    phases = shown.real[np.abs(shown.imag) <= REACH_DB]
+    high = 90 * ceil(float(phases.max(initial=-90)) / 90)
+    low = max(90 * floor(float(phases.min(initial=-181)) / 90), high - WIDEST)
+    bottom = max(-REACH_DB, 10 * floor(float(shown.imag.min(initial=-20)) / 10))
+    top = min(REACH_DB, 10 * ceil(float(shown.imag.max(initial=20)) / 10))
+    axes.set_xlim(*(canvas.frame.x or (low, high)))
+    axes.set_ylim(*(canvas.frame.y or (bottom, top)))
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     turns, last = range(floor(left / 360), ceil(right / 360) + 1), floor((right + 179) / 360)
     for level in CLOSED_DB:
         contour = _contour(level)
@@ -92,7 +88,7 @@ def _held(chart: npt.NDArray[np.complex128], axes: Axes) -> list[npt.NDArray[np.
 
 def _phases_and_levels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
     """Return phases [deg] plus j times levels [dB]; the first phase is from -270 to 90 degrees."""
-    values = values[np.abs(values) > 0]
+    values = values[(np.abs(values) > 0) & np.isfinite(values)]
     phases = np.degrees(np.unwrap(np.angle(values)))
     if phases.size:
         phases -= 360 * ceil((phases[0] - 90) / 360)

@@ -218,12 +218,8 @@ LISTED: Final = 5  # roots that are named at one arrow; of the others their numb
 NOTE_LINE_POINTS: Final = 8.5
 LEAST_NOTE_POINTS: Final = 6.0
 ARROW: Final = 0.13  # length of an arrow over the smaller side of its panel
-SHIFTS: Final = 8
-"""How many heights of a note it may be moved from its arrow to where nothing stands."""
-TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
-"""Costs of covering a text, being shifted, smaller by a step, or far away, in covered roots."""
-GRID: Final = 3.0
-"""Distance of places far from an arrow that are tried where nothing near is free [points]."""
+TEXT_COST, SHIFT_COST = 30.0, 0.1  # of covering a text, or a step away from a mark, in covered roots
+GRID: Final = 3  # distance of places that are tried for a note [points]
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Signs of roots that are named at an arrow; the curves of a locus lead to poles at the last gain."""
 
@@ -408,54 +404,19 @@ class _Notes:
         written.set_in_layout(False)
 
     def name(self, group: Sequence[RootMark], shaft: tuple[complex, complex]) -> None:
-        """Write which roots lie where an arrow points: beside it if there is room, else where there is."""
-        panel, covered = self.panel, (self.taken, self.arrows)
+        """Write which roots lie where an arrow points, in the nearest place where that covers least."""
+        panel = self.panel
         notes = [(f"{GLYPHS[m.kind]} {m.value}", self.colours[m.kind]) for m in group[:LISTED]]
         if len(group) > LISTED:
             notes.append((f"and {len(group) - LISTED} more", "black"))
         wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
-        largest = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
-        found: list[tuple[float, float, Box]] = []
-        for step, share in enumerate((1.0, 0.9)):  # of its type, where it has little room
-            size = largest * share
-            scale = size / NOTE_POINTS
-            across, high = wide * scale, NOTE_LINE_POINTS * scale * len(notes)
-            near, price = _beside(shaft, across, high, panel), SMALLER_COST * step
-            best = near[panel.clearest(near, *covered, SHIFT_COST)]
-            found.append((panel.cost(best, *covered) + SHIFT_COST * near.index(best) + price, size, best))
-            if found[-1][0] >= 1 and size >= LEAST_NOTE_POINTS:
-                far = _anywhere(shaft[1], across, high, panel)
-                best = far[panel.clearest(far, *covered)]
-                found.append((panel.cost(best, *covered) + FAR_COST + price, size, best))
-            if found[0][0] < SMALLER_COST or size < LEAST_NOTE_POINTS:
-                break
-        _, size, chosen = min(found, key=lambda one: one[0])
+        size = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
+        step = NOTE_LINE_POINTS * size / NOTE_POINTS
+        across, high = wide * size / NOTE_POINTS, step * len(notes)
+        columns, rows = (range(0, max(2, int(panel.size[i] - n)), GRID) for i, n in enumerate((across, high)))
+        boxes = [panel.held(x, y, across, high) for x in columns for y in rows]
+        boxes.sort(key=lambda b: (abs(complex(b[0] + b[2], b[1] + b[3]) / 2 - shaft[1]), b))
+        chosen = boxes[panel.clearest(boxes, self.taken, self.arrows)]
         for i, (text, colour) in enumerate(notes):
-            top = chosen[3] - NOTE_LINE_POINTS * size / NOTE_POINTS * i
-            self._write(text, (*chosen[:3], top), size, colour)
+            self._write(text, (*chosen[:3], chosen[3] - step * i), size, colour)
         self.taken.append(chosen)
-
-
-def _beside(shaft: tuple[complex, complex], wide: float, high: float, panel: Panel) -> list[Box]:
-    """Return places for a note beside an arrow, the first the best, and such further up or down."""
-    tail, tip = shaft
-    left, low, right, top = _around(tail, tip)
-    inward = tip.real - wide if tip.real > panel.size[0] / 2 else tip.real
-    if abs((tip - tail).real) > abs((tip - tail).imag):
-        behind = left - wide - 1 if tip.real > tail.real else right + 1
-        places = [(inward, top + 1.0), (inward, low - 1.0 - high), (behind, tail.imag - high / 2)]
-    else:
-        places = [(right + 1.0, tip.imag - high), (left - 1.0 - wide, tip.imag - high), (inward, low - high)]
-    return [
-        panel.held(x, y + sign * shift * high, wide, high)
-        for shift in range(SHIFTS)
-        for sign in ((1, -1) if shift else (1,))
-        for x, y in places
-    ]
-
-
-def _anywhere(tip: complex, wide: float, high: float, panel: Panel) -> list[Box]:
-    """Return places for a note all over a panel, the nearest to its arrow first."""
-    columns, rows = (max(1, int((panel.size[i] - own) / GRID)) for i, own in enumerate((wide, high)))
-    boxes = {panel.held(GRID * i, GRID * j, wide, high) for i in range(columns + 1) for j in range(rows + 1)}
-    return sorted(boxes, key=lambda b: (abs(complex(b[0] + b[2], b[1] + b[3]) / 2 - tip), b))

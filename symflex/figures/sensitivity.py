@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
 from math import log10
 from typing import TYPE_CHECKING, Final
@@ -57,13 +58,11 @@ def draw_sensitivity(loop: AnyLoop, canvas: Canvas) -> Figure:
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     frequency, values = _loop_gains(loop, gain, canvas)
     curves = [("S", 1 / (1 + values)), ("T", values / (1 + values))]
-    peaks = []
+    found = None
     if is_stable and isinstance(loop, Loop) and is_straight(loop):
-        try:
+        with suppress(UncertifiedError):  # curves without marks then
             found = loop_peaks(loop, gain)
-            peaks = [found.sensitivity, found.complementary_sensitivity]
-        except UncertifiedError:
-            pass  # curves without marks
+    peaks = (found.sensitivity, found.complementary_sensitivity) if found else ()
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
     for i, (name, curve) in enumerate(curves):
         label = f"$|{name}|$"
@@ -89,10 +88,8 @@ def _loop_gains(
     loop: AnyLoop, gain: Fraction, canvas: Canvas
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.complex128]]:
     """Return frequencies [Hz], on which no peak of the closed loop is missed, and the loop gain there."""
-    low, high = canvas.band_of(loop.model) or default_band(
-        *(closed_loop_roots(loop, k) for k in (Fraction(0), gain))
-    )
-    band = Band(Fraction(low), Fraction(high))
+    ends = (Fraction(0), gain)
+    low, high = canvas.band_of(loop.model) or default_band(*(closed_loop_roots(loop, k) for k in ends))
 
     def values(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
         if isinstance(loop, NetworkLoop):
@@ -100,8 +97,8 @@ def _loop_gains(
         bound = loop_gain(loop, gain)
         return np.array([bound(1j * w) for w in omega.tolist()], dtype=np.complex128)
 
-    grids = [grid_about(closed_loop_roots(loop, k, band), values, low, high) for k in (Fraction(0), gain)]
-    omega = np.union1d(*grids)
+    band = Band(Fraction(low), Fraction(high))
+    omega = np.union1d(*(grid_about(closed_loop_roots(loop, k, band), values, low, high) for k in ends))
     found = values(omega)
     kept = np.isfinite(found)
     return omega[kept] / (2 * np.pi), found[kept]
