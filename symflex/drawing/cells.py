@@ -33,12 +33,9 @@ if TYPE_CHECKING:
     from symflex.drawing.geometry import Stroke
     from symflex.drawing.scheme import Distance, DrawnPart, End
 
-SPACE: Final = 3.0
-"""Space between a symbol and a text, and between texts [points]."""
-WIDEST: Final = 80.0
-"""Widest label at a symbol [points]; beyond it the element's name is written."""
-PITCH: Final = {"dc_motor": 19.0}
-"""Distance of two ends on one side of a symbol [points]."""
+SPACE: Final = 3.0  # space between a symbol and a text, and between texts [points]
+WIDEST: Final = 80.0  # widest label at a symbol [points]; beyond it the element's name is written
+PITCH: Final = {"dc_motor": 19.0}  # distance of two ends on one side of a symbol [points]
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
 PLACES: Final = {"dc_motor": 3, "voice_coil": 3}
 """Ends for which a symbol has places of their own, where that is fewer than two on each side."""
@@ -46,12 +43,9 @@ FEEDBACK: Final = 15.0
 """How far above the axis of an amplifier a wire goes from its output's side to an input."""
 INSET: Final = {"dc_motor": (0.233, 0.5)}
 """How far one end, and how far two, reach into a symbol, as a share of its length."""
-COORDINATES: Final = ("beam", "rod", "shaft", "string")
-"""Members with a coordinate along them."""
-NEAR_END: Final = 4.0
-"""How far from an end of a member an output at that end is marked [points]."""
-WALL: Final = 6.0
-"""Half the height of the ground at one symbol [points]."""
+COORDINATES: Final = ("beam", "rod", "shaft", "string")  # members with a coordinate along them
+NEAR_END: Final = 4.0  # how far from an end of a member an output at that end is marked [points]
+WALL: Final = 6.0  # half the height of the ground at one symbol [points]
 
 
 @dataclass(frozen=True, slots=True)

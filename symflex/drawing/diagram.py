@@ -29,22 +29,15 @@ if TYPE_CHECKING:
     from symflex.drawing.geometry import Point
     from symflex.drawing.signals import SignalGraph, SignalNode
 
-RADIUS: Final = 4.2
-"""Radius of a sum."""
-WIRE: Final = 11.0
-"""Length of a wire between two symbols, enough for an arrow."""
-EDGE: Final = 3.5
-"""Space between a text and the box around it."""
-TURN: Final = 10.0
-"""Room for a wire that goes back to the left."""
-APART: Final = 6.0
-"""Space between rows."""
-WIDEST: Final = 90.0
-"""Widest formula in a box; a longer one is not printed."""
+RADIUS: Final = 4.2  # radius of a sum
+WIRE: Final = 11.0  # length of a wire between two symbols, enough for an arrow
+EDGE: Final = 3.5  # space between a text and the box around it
+TURN: Final = 10.0  # room for a wire that goes back to the left
+APART: Final = 6.0  # space between rows
+WIDEST: Final = 90.0  # widest formula in a box; a longer one is not printed
 WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 """Widest formula that is written out below the diagrams, and the space after it [points]."""
-MOST_PATHS: Final = 2000
-"""Paths that are tried for the longest one, from a start."""
+MOST_PATHS: Final = 2000  # paths that are tried for the longest one, from a start
 NAMED: Final = ("input", "reading", "signal")
 BOXES: Final = ("gain", "block")
 

@@ -29,19 +29,13 @@ if TYPE_CHECKING:
     from symflex.drawing.scheme import DrawnNetwork, DrawnPart
     from symflex.model import Model
 
-EXTENT: Final = 95.0
-"""Extent of a frame, and the least length of a member [points]."""
+EXTENT: Final = 95.0  # extent of a frame, and the least length of a member [points]
 SHORTEST: Final = 40.0
-LONGEST: Final = 500.0
-"""Longest member beside one of the least length; other frames are drawn in a row."""
-INNER: Final = HALF - LINE / 2
-"""Half the width of a member without its outline."""
-JOINT: Final = 2.4
-"""Radius of a joint of members."""
-CLAMP: Final = 8.0
-"""Half the width of a wall that holds a member [points]."""
-SHARP: Final = pi / 3
-"""Members at a smaller angle would overlap where they meet."""
+LONGEST: Final = 500.0  # longest member beside one of the least length; other frames are drawn in a row
+INNER: Final = HALF - LINE / 2  # half the width of a member without its outline
+JOINT: Final = 2.4  # radius of a joint of members
+CLAMP: Final = 8.0  # half the width of a wall that holds a member [points]
+SHARP: Final = pi / 3  # members at a smaller angle would overlap where they meet
 CLEAR: Final = 1.2
 SAME: Final = 1e-6
 DIRECTIONS: Final = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))

@@ -37,8 +37,7 @@ if TYPE_CHECKING:
 SIZE: Final = 8.0  # size of the type [points], as in other figures
 SMALL: Final = 7.0
 LEADING: Final = 2.5  # space between lines of a label
-_FINE: Final = 20
-"""Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""
+_FINE: Final = 20  # matplotlib rounds the size of a text up to whole dots: as many are measured to a point
 _PARSER: Final = MathTextParser("path")
 _PRIMES: Final = re.compile("'{1,3}")
 LONGEST_NAME: Final = 14  # letters of a name that has no other label

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 POINTS: Final = 72.0
-TITLED: Final = ("element", "input", "output", "block", "field")
-"""Kinds of parts whose names an SVG shows."""
+TITLED: Final = ("element", "input", "output", "block", "field")  # kinds of parts whose names an SVG shows
 _TITLED: Final = re.compile(rf'<g id="({"|".join(TITLED)})\.(\w+)\.\d+">')
 _FAMILY: Final = re.compile("font-family: 'STIXGeneral'")
 SERIFS: Final = "'STIX Two Text', 'Times New Roman', 'Liberation Serif', 'Nimbus Roman', Times, serif"

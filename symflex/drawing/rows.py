@@ -60,10 +60,8 @@ if TYPE_CHECKING:
     from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
 SIDE_ARROW: Final = 20.0
-FACE: Final = 9.0
-"""Room of a wall or a guide beside a node."""
-MARK: Final = 17.0
-"""Height of what stands upright at a node."""
+FACE: Final = 9.0  # room of a wall or a guide beside a node
+MARK: Final = 17.0  # height of what stands upright at a node
 WIDEST_LENGTH: Final = 34.0
 """Widest length that a dimension shows; a longer one is in the label of its member [points]."""
 

@@ -357,8 +357,7 @@ STIFF: Final[dict[str, tuple[tuple[str, ...], str]]] = {
 }
 """What makes a member stiff, and the measure of its section by which it is heavy."""
 JOINED: Final = r",\,"
-LABEL_LENGTH: Final = 4
-"""Parameters of an element that are written at it; of more, its name is."""
+LABEL_LENGTH: Final = 4  # parameters of an element that are written at it; of more, its name is
 
 
 def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
@@ -487,8 +486,7 @@ def values_of(model: Model) -> dict[str, float]:
     return numbers
 
 
-STATIONS: Final = 24
-"""Sections at which a member that varies along x is measured."""
+STATIONS: Final = 24  # sections at which a member that varies along x is measured
 UNKNOWN: Final = 0.5
 """What a parameter without value is taken for, there: of ``1 - c*x/l`` a taper can be seen."""
 

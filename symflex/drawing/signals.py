@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     from symflex.model import Model, PlacedBlock
 
 Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
-LONGEST: Final = 80
-"""Letters of a sum, as LaTeX, that is written into one box."""
-MOST_AT_SUM: Final = 3
-"""Arrows that meet at a sum: from the left, from below, from above."""
+LONGEST: Final = 80  # letters of a sum, as LaTeX, that is written into one box
+MOST_AT_SUM: Final = 3  # arrows that meet at a sum: from the left, from below, from above
 
 
 @dataclass

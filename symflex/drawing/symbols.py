@@ -49,8 +49,7 @@ def circle(x: float, y: float, r: float, fill: str = PAPER, width: float = LINE)
     return Stroke(arc(x, y, r, 0, 360).points, width, fill)
 
 
-DOT: Final = 1.4
-"""Radius of the dot of a joint."""
+DOT: Final = 1.4  # radius of the dot of a joint
 
 
 def head(tip: Point, direction: Point, size: float = 4.2) -> Stroke:
@@ -77,8 +76,7 @@ def turning(x: float, y: float, r: float) -> Strokes:
     return (arc(x, y, r, -40, 190, BOLD * 0.7), head(tip, (0.25, -0.97)))
 
 
-HATCH: Final = 3.2
-"""Depth of the hatching behind a surface that does not move."""
+HATCH: Final = 3.2  # depth of the hatching behind a surface that does not move
 
 
 def wall(y0: float, y1: float, side: int = -1, x: float = 0.0) -> Strokes:
@@ -167,10 +165,8 @@ def inductor(length: float) -> Strokes:
     return (line((0, 0), *bumps, (length, 0)), line((a, -1.2), (a, 0), width=THIN))
 
 
-HALF: Final = 2.2
-"""Half the width of a slender member [points]."""
-DEEPEST: Final = 4.2
-"""The same of one that tapers, where it is deepest."""
+HALF: Final = 2.2  # half the width of a slender member [points]
+DEEPEST: Final = 4.2  # the same of one that tapers, where it is deepest
 
 
 def half_depth(depths: Sequence[float], share: float) -> float:

@@ -48,8 +48,7 @@ if TYPE_CHECKING:
 SHORT_BAND_DECADES: Final = 1.3
 NARROW_BAND_DECADES: Final = 0.6
 """Width of a narrow band: between a frequency and four times it there may be one tick of 1, 2 and 5."""
-FARTHEST: Final = 50.0
-"""Times what is shown; numbers beyond a page would overflow in what reads the figure."""
+FARTHEST: Final = 50.0  # times what is shown; numbers beyond a page would overflow in what reads the figure
 RIGHT_HALF_PLANE: Final = "#FBEDE4"
 """A tint, pale enough for every line on it."""
 
@@ -188,8 +187,7 @@ def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np
 
 
 Limits = tuple[float, float]  # the lower and the higher end of an axis
-LARGEST = 1e30
-"""Ends of an axis: far below what single precision holds, in which readers of pages compute."""
+LARGEST = 1e30  # ends of an axis: far below what single precision holds, in which readers of pages compute
 NARROWEST = 1e-6  # least length of an axis over its ends: its ticks have six digits
 
 

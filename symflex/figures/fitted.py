@@ -43,8 +43,7 @@ FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5
 """Heights of the panels of magnitude, phase, residual, and of coherence."""
 FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
 FIT_COLUMNS: Final = 2
-FEW_RESPONSES: Final = 4
-"""Responses up to which two stand side by side; more stand three to a row."""
+FEW_RESPONSES: Final = 4  # responses up to which two stand side by side; more stand three to a row
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
 DATA_COLOUR: Final = "#555555"
 

@@ -39,10 +39,8 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction
 
 HEIGHT_INCHES: Final = 2.2
-FARTHEST: Final = 0.5
-"""How far a band of radii is drawn beyond the curve, as a share of its height."""
-VISIBLE: Final = 1e-3
-"""Radius over the largest value from which its band is drawn: about the width of a line."""
+FARTHEST: Final = 0.5  # how far a band of radii is drawn beyond the curve, as a share of its height
+VISIBLE: Final = 1e-3  # radius over the largest value from which its band is drawn: about the width of a line
 PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 POINTS: Final = 801
 DIGITS: Final = 6  # digits of values, far more than a line shows

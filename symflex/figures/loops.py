@@ -251,8 +251,7 @@ def _draw_holes(axes: Axes, locus: RootLocus) -> None:
 
 Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
 """Values along the imaginary axis, and what is known of the poles."""
-WIDENED: Final = 10.0
-"""How far beyond the band of poles and zeros the curve is drawn, to both sides."""
+WIDENED: Final = 10.0  # how far beyond the band of poles and zeros the curve is drawn, to both sides
 REACHES: Final = (1.5, 2.5)  # half the side of the square shown of a loop gain, about -1
 AT_REST: Final = 1e-3  # share of its lowest frequency at which a curve from 0 is taken to begin
 OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale each

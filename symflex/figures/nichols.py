@@ -54,14 +54,16 @@ def _draw_chart(
     top = min(REACH_DB, 10 * ceil(float(shown.imag.max(initial=20)) / 10))
     axes.set_xlim(*(canvas.frame.x or (low, high)))
     axes.set_ylim(*(canvas.frame.y or (bottom, top)))
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    (left, right), (lowest, highest) = axes.get_xlim(), axes.get_ylim()
     turns, last = range(floor(left / 360), ceil(right / 360) + 1), floor((right + 179) / 360)
     for level in CLOSED_DB:
         contour = _contour(level)
         for turn in turns:
             phase = contour.real + 360 * turn
             axes.plot(*_held(phase + 1j * contour.imag, axes), color=QUIET, linewidth=0.3, zorder=1)
-            inside = (phase > left) & (phase < right) & (contour.imag > bottom) & (contour.imag < 0.95 * top)
+            inside = (
+                (phase > left) & (phase < right) & (contour.imag > lowest) & (contour.imag < 0.95 * highest)
+            )
             if inside.any() and turn == last:
                 places = np.flatnonzero(inside)
                 # At the top of closed contours, else at the border.

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap, Root
 
 
-GAP_RATIO: Final = 5.0
-"""Neighbouring natural frequencies further apart than this do not belong together."""
+GAP_RATIO: Final = 5.0  # neighbouring natural frequencies further apart than this do not belong together
 DECADES: Final = 100.0  # resonances are shown up to so many times the lowest
 CROWDED: Final = 0.15
 """Roots nearer to the origin than this share of those shown are one blot: an inset shows them."""
@@ -42,8 +41,7 @@ RIM: Final = (0.95, 1.03)
 WIDER: Final = 1.085
 WIDENINGS: Final = 8  # times the view may be widened so that no root is cut by its frame
 PLAIN_LIMIT: Final = 1e5
-ROUNDING: Final = 1e-12
-"""Share of a root's size that four operations in doubles may lose, with room."""
+ROUNDING: Final = 1e-12  # share of a root's size that four operations in doubles may lose, with room
 
 
 Kind = Literal["pole", "zero", "nominal", "last"]

@@ -62,8 +62,7 @@ MEDIAN: Final = 50
 THREE_DIGITS: Final = 1e3
 PLAIN: Final = 1e5  # numbers from here on are written with a power of ten
 FEW_DECADES: Final = 300.0  # largest range whose decades are divided
-OVERDAMPED: Final = 1.5
-"""Real roots are shown as far to the left as so many times the highest imaginary part."""
+OVERDAMPED: Final = 1.5  # real roots are shown as far to the left as so many times the highest imaginary part
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
 FEW_LINES: Final = 12  # lines per mode that are distinguished by how pale they are

@@ -12,6 +12,7 @@ import numpy as np
 
 from symflex.analysis.response import SampledResponse
 from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.latex import LOOP_TITLES
 from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_loop, draw_measured, draw_over
@@ -44,14 +45,6 @@ WORDS: Final = {
     "modes": "Mode shapes",
     "step": "Step response",
     "impulse": "Impulse response",
-}
-
-
-LOOP_WORDS: Final = {
-    "locus": "Root locus for the gain",
-    "nichols": "Nichols chart of the loop with the gain",
-    "nyquist": "Nyquist plot of the loop with the gain",
-    "sensitivity": "Sensitivities of the loop with the gain",
 }
 
 
@@ -124,7 +117,7 @@ def _picture(
     beside = next((c for c in data if c.measured.name == chosen[0].name), None)
     if figure.gain and figure.kind in LOOP_FIGURES:
         drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
-        caption = f"{LOOP_WORDS[figure.kind]} {figure.gain}."
+        caption = f"{LOOP_TITLES[figure.kind]}, gain {figure.gain}."
     elif figure.over:
         asked = PlotOptions(figure.kind, over=figure.over)
         drawn = draw_over(stability_over(study.model, asked.stability), asked)
