@@ -52,6 +52,7 @@ SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
     "atan": lambda _, inner: quotient(number(1), sum_of([number(1), power(inner, 2)])),
     "abs": lambda whole, inner: quotient(inner, whole),
     "sgn": lambda *_: number(0),
+    "sign": lambda *_: number(0),
 }
 """The derivative of every function by its argument."""
 AT_ZERO: Final = {
@@ -104,6 +105,8 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
         case Quotient(above, below):
             top = [product_of([by(above), below]), negative(product_of([above, by(below)]))]
             return quotient(sum_of(top), power(below, 2))
+        case Power(Call("sqrt", inner) as root, Number(n)):
+            return product_of([number(n / 2), power(root, number(n - 2)), by(inner)])
         case Power(base, Number(n) | Negative(Number(n))) if n.denominator == 1:
             n = n if isinstance(expression.exponent, Number) else -n
             return product_of([number(n), power(base, number(n - 1)), by(base)])

@@ -51,7 +51,7 @@ from symflex.expressions import (
     replace_values,
     sum_of,
 )
-from symflex.expressions.derivative import derivative, simplified, without_brackets
+from symflex.expressions.derivative import SLOPES, derivative, simplified, without_brackets
 from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
 from symflex.model.model import Definition, OperatingPoint
@@ -118,7 +118,8 @@ def read_operating_point(
     values, definitions, solve = dict[str, Expression](), list[Definition](), tuple[str, ...]()
     for entry in section.entries:
         if entry.key == SOLVE:
-            solve = tuple(t.value for t in reader.strings(entry, "solve of [operating_point]") or ())
+            named = reader.strings(entry, "solve of [operating_point]") or ()
+            solve = tuple(dict.fromkeys(t.value for t in named))
             continue
         what = f"'{entry.key}' of [operating_point]"
         value = reader.expression(entry.value, what)
@@ -130,9 +131,12 @@ def read_operating_point(
             name = _unused(entry.key, {*taken, *moving})
             definitions.append(Definition(name, value, "", entry.key_span))
             value = Name(name, span=value.span)
-        if len(nodes(value)) < LONGEST:
-            value = replace_values(value, {Name(n): v for n, v in values.items()})
+        meant = replace_values(value, {Name(n): v for n, v in values.items()})
+        value = meant if len(nodes(meant)) < LONGEST else value
         values[entry.key] = number(0) if literal == 0 else value
+    for p in {*solve} & {*moving} & {*values}:
+        message = f"'{p}' has a value in [operating_point], and is to be solved for"
+        reader.note("SF210", message, values[p].span or section.span, "leave out one of them")
     unknown = {p: _unused(p, {*taken, *moving}) for p in solve if p in moving and p not in values}
     values |= {p: Name(name) for p, name in unknown.items()}
     return AtRest(values, tuple(unknown.get(p, p) for p in solve), tuple(definitions), section.span)
@@ -172,7 +176,16 @@ def linearised(
     point.check_all_named(moving, equations.values())
     if reader.problems:
         raise SpecError(*reader.problems)
-    for x in signals if rest is not None else ():
+    if rest is None:
+
+        def in_s(side: Expression) -> Expression:
+            plain = without_brackets(side, point.varies)
+            rates = [n for n in nodes(plain) if isinstance(n, Derivative)]
+            return replace_values(plain, {n: _term(n, number(1)) for n in rates})
+
+        rewritten = {n: replace(e, left=in_s(e.left), right=in_s(e.right)) for n, e in equations.items()}
+        return Linearised(tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals))
+    for x in signals:
         leaves = [n for n in nodes(x.expression) if point.varies(n)]
         if x.name not in equations and all(isinstance(n, Name) and n.name in moving for n in leaves):
             point.signals[x.name] = replace_values(x.expression, {Name(LAPLACE): number(0)})
@@ -184,14 +197,13 @@ def linearised(
     parts = (*equations.values(), *point.signals.values())
     point.bare = {n for e in parts for n in point.moving_in(e) if isinstance(n, Name)}
     made = {name: point.linear(equation) for name, equation in equations.items()}
-    if None not in made.values() and rest is not None:
+    if None not in made.values():
         point.check_names(rest)
         point.check_at_rest()
-    if reader.problems and (None in made.values() or rest is not None):
+    if reader.problems:
         raise SpecError(*reader.problems)
     kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
-    at_rest = None if rest is None else point.described(equations, made)
-    return Linearised(kept, tuple(point.definitions), at_rest, point.by_value)
+    return Linearised(kept, tuple(point.definitions), point.described(equations, made), point.by_value)
 
 
 def with_value(parameter: DeclaredParameter, solved: Mapping[str, Fraction]) -> DeclaredParameter:
@@ -254,7 +266,7 @@ class _AboutRest:
                 message, hint = f"'{name}' is constant and has no derivative in time", None
             self.reader.note("SF210", message, leaf.span, hint)
         for call in (n for e in (*equations, *self.rest.values.values()) for n in nodes(e)):
-            if isinstance(call, Call) and call.name not in (*FUNCTIONS, "abs"):
+            if isinstance(call, Call) and self.rest is not NOWHERE and call.name not in (*FUNCTIONS, "abs"):
                 message = f"unknown function '{call.name}'"
                 if not any(map(self.varies, nodes(call))):
                     self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
@@ -272,12 +284,15 @@ class _AboutRest:
             self.seen |= {_written(n) for n in leaves} | {n.name for n in leaves if isinstance(n, Derivative)}
             self._infer_rates(equation)
             slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
-            self._check_domain(replace_values(whole, {n: self._value_at_rest(_written(n)) for n in leaves}))
+            values = {n: self._value_at_rest(_written(n)) for n in leaves}
+            self._check_domain(replace_values(whole, values), equation.span)
             rest = simplified(self.at_rest(whole), {LAPLACE: number(0)})
             self.left_over.append((shorter(rest), equation))
         except ValueError as error:
             part = error.args[0]
             message = f"'{format_expression(part)}' has no derivative here"
+            if isinstance(part, Call) and part.name not in SLOPES:
+                message = f"unknown function '{part.name}'"
             self.reader.note("SF222", message, part.span or equation.span, SMOOTH)
         except ZeroDivisionError:
             message = "this is not smooth at the operating point: a denominator vanishes there"
@@ -293,14 +308,16 @@ class _AboutRest:
             return Equation(sum_of(left), sum_of(right), span=equation.span)
         return None
 
-    def _check_domain(self, whole: Expression) -> None:
+    def _check_domain(self, whole: Expression, span: Span | None) -> None:
         """Note a logarithm or root that has no value for the values that parameters have."""
         with precision(BITS):
             for call in (n for n in nodes(whole) if isinstance(n, Call)):
                 with suppress(KeyError):  # what has no value yet
                     if not self._value(call, dict(self.known), None).is_finite():
                         message = f"'{format_expression(call)}' has no value at the operating point"
-                        self.reader.note("SF224", message, call.span, "correct the values of parameters")
+                        self.reader.note(
+                            "SF224", message, call.span or span, "correct the values of parameters"
+                        )
 
     def moving_in(self, equation: Expression) -> list[Expression]:
         """Return the leaves that vary, of the products that the equation has, but for what follows an s."""
@@ -346,7 +363,7 @@ class _AboutRest:
         """
         leaves = {n: self._value_at_rest(_written(n)) for n in nodes(expression) if self.varies(n)}
         rest = simplified(replace_values(expression, leaves), {_written(n): v for n, v in leaves.items()})
-        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name in ("abs", "sgn")]:
+        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name in ("abs", "sgn", "sign")]:
             size = part.argument.operand if isinstance(part.argument, Negative) else part.argument
             if is_number(size, 0) or not self._is_positive(size):
                 raise ValueError(part)
@@ -356,7 +373,11 @@ class _AboutRest:
 
     def _value_at_rest(self, name: str) -> Expression:
         if name not in self.values and name in self.signals:
-            self.values[name] = self.at_rest(self.signals.pop(name))
+            self.values[name] = Name(name)  # where a loop leads back to it
+            value = self.values[name] = self.at_rest(self.signals[name])
+            if Name(name) in nodes(value):
+                message, hint = f"'{name}' depends on itself at rest", "give its value in [operating_point]"
+                self.reader.note("SF407", message, self.rest.span, hint)
         return self.values.get(name, number(0))
 
     def _is_positive(self, size: Expression) -> bool:
@@ -415,6 +436,7 @@ class _AboutRest:
             if unknown in self.signed and unknown in self.known and isinstance(solution, Call):
                 # of two roots, the declared
                 solution = negative(solution) if self.known[unknown] < 0 else solution
+            self._check_domain(solution, equation.span)
             wanted.remove(unknown)
             self.constants[unknown] = solution
             self.definitions.append(Definition(unknown, solution, "", equation.span))
@@ -443,7 +465,8 @@ class _AboutRest:
         size = ""
         with precision(BITS), suppress(KeyError):  # of a parameter without a value
             value = self._value(rest, dict(self.known), None)
-            size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
+            if value.is_finite():
+                size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
         message = f"this does not hold at the operating point: {format_expression(rest)} is left{size}"
         hint = "correct [operating_point], or name what follows from it: solve = [...]"
         if unknown is not None:
@@ -508,7 +531,7 @@ class _AboutRest:
             return known[name]
 
         def called(call: Call, inner: arb) -> arb:
-            return abs(inner) if call.name == "abs" else getattr(inner, call.name)()
+            return abs(inner) if call.name == "abs" else getattr(inner, call.name.replace("sign", "sgn"))()
 
         return fold(
             expression,
@@ -524,6 +547,8 @@ def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expr
 
     What it is divided by is free of all that is wanted.
     """
+    if any(isinstance(n, Call) and n.name not in FUNCTIONS for n in nodes(residual)):
+        return None  # definitions have no atan
     residual = _over_one_line(residual, unknown)
     slope = simplified(derivative(residual, Name(unknown)), {})
     if is_number(slope, 0):

@@ -301,6 +301,49 @@ def test_equations_without_a_linear_one_are_refused(equation):
     assert refusal(loads, text) == f"SpecError {REFUSED[equation]}"
 
 
+@pytest.mark.parametrize("equation", ["m*x'' + k*sin(x) = u", "m*x'' + k*x*x = u", "m*x'' + k*x + 3 = u"])
+def test_equations_that_are_not_linear_need_a_point(equation):
+    text = _text("x", [equation], {}, [], "u", {"m": 2, "k": 3}).partition("[operating_point]")[0]
+    assert refusal(loads, text) in ("SpecError SF222", "SpecError SF221")
+
+
+def test_derivatives_in_time_leave_values_of_fields_as_they_are():
+    conditions = ["w(0) = 0", "T*w'(l) = k*(x - w(l))"]
+    string = {"domain": ["0", "l"], "unknowns": ["w"], "equations": ["T*w'' = rho*s^2*w"]}
+    model = Model(
+        parameters={"m": 2, "k": 100, "T": 10, "rho": 0.1, "l": 1},
+        fields={"string": {**string, "conditions": conditions}},
+        equations={"unknowns": ["x"], "equations": ["m*x'' + k*(x - w(l)) = F"]},
+        inputs={"F": {}},
+        outputs={"X": "x"},
+    )
+    wave = 0.3j  # s times sqrt(rho/T) at s = 3j
+    held = 10 * wave * complex(mpmath.coth(wave))  # the string's stiffness, in series with k
+    expected = 1 / (-18 + 100 * held / (100 + held))
+    assert model.transfer_function("X/F").bind()(3j) == pytest.approx(expected)
+
+
+# fmt: off
+POINTS = {  # equation, signals, values at rest, solve
+    "given and wrong": ("x' = u - x*w", {"w": "3*x"}, {"x": "a", "w": "5*a"}, ["u"], "SF407"),
+    "in a loop": ("x' = u - x*w", {"w": "3*v", "v": "w/(1 + s) + x"}, {"x": "a"}, ["u"], "SF407"),
+    "given and solved for": ("x' = u - x^2", {}, {"x": "a"}, ["x", "u"], "SF210"),
+    "a root of a negative number": ("x' = u - x^2 - 1", {}, {}, ["x"], "SF224"),
+    "an arctangent without a value": ("x' = u - atan(x)", {}, {"x": "a"}, ["u"], "SF407"),
+    "a value that holds for these numbers": ("x' = u - x^2 - 1", {}, {"x": "a", "u": "2*a + 1"}, [], "SF407"),
+}
+# fmt: on
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_points_that_do_not_follow_are_refused(name):
+    equation, signals, rest, solve, code = POINTS[name]
+    section = {"unknowns": ["x"], "equations": [equation]}
+    parts = {"equations": section, "operating_point": {**rest, "solve": solve}, "inputs": {"u": {}}}
+    refused = refusal(Model, parameters={"a": 2}, signals=signals, outputs={"X": "x"}, **parts)
+    assert refused == f"SpecError {code}"
+
+
 @pytest.mark.parametrize(
     "part",
     ["kinetic = \"m*(l*sn(x))'^2/2\"", "kinetic = \"m*(s*x)^2/2\"", "kinetic = \"m*x''^2/2\"",
