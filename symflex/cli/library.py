@@ -134,7 +134,10 @@ def elements(name: str | None, *, as_json: bool) -> int:
     elif blocks:
         _describe_block(blocks[0])
     else:
-        _describe_model_block()
+        say(MODEL_SIGNATURE)
+        say(_paragraph(MODEL_DOC, "  ", "  "))
+        say(_key("spec", "path of the other specification, relative to the one that names it"))
+        say(_key("tf", "OUT/IN of that specification"))
     return 0
 
 
@@ -170,7 +173,7 @@ def _entry(signature: str, summary: str) -> str:
 def _describe(element: Element) -> None:
     signature = _signature(element.type_name, _element_keys(element))
     say(textwrap.fill(signature, terminal_width(), subsequent_indent="    "))
-    say(_paragraph(_plain(element.__doc__), "  ", "  "))
+    say(_paragraph(" ".join((element.__doc__ or "").replace("``", "").split()), "  ", "  "))
     for port in element.ports:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"
         default = f", default {', '.join(port.default)}" if port.default is not None else ""
@@ -179,7 +182,7 @@ def _describe(element: Element) -> None:
         words = DOMAIN_WORDS.get(port.domain, port.domain)
         say(_key(port.name, f"{nodes}, {words}: {port.doc}{default}{pair}"))
     for parameter in element.parameters:
-        say(_parameter(parameter, _only(parameter)))
+        say(_parameter(parameter, f", only with {' or '.join(parameter.only)}" if parameter.only else ""))
     for choice in element.choices:
         words = ", ".join(f'"{v}"' + " (default)" * (v == choice.default) for v in choice.values)
         say(_key(choice.name, f"{choice.doc}: {'true or false (default)' if choice.is_flag else words}"))
@@ -194,22 +197,11 @@ def _describe_block(block: Block) -> None:
         say(_parameter(parameter))
 
 
-def _describe_model_block() -> None:
-    say(MODEL_SIGNATURE)
-    say(_paragraph(MODEL_DOC, "  ", "  "))
-    say(_key("spec", "path of the other specification, relative to the one that names it"))
-    say(_key("tf", "OUT/IN of that specification"))
-
-
 def _parameter(parameter: ParameterPort, only: str = "") -> str:
     default = f", default {parameter.default}" if parameter.default is not None else ""
     default = f", in place of {'*'.join(parameter.of)}" if parameter.of else default
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return _key(parameter.name, f"{parameter.doc}{unit}{default}{only}")
-
-
-def _only(parameter: ParameterPort) -> str:
-    return f", only with {' or '.join(parameter.only)}" if parameter.only else ""
 
 
 def _key(name: str, text: str) -> str:
@@ -225,10 +217,6 @@ def _paragraph(text: str, first: str, following: str) -> str:
         break_long_words=False,
         break_on_hyphens=False,
     )
-
-
-def _plain(doc: str | None) -> str:
-    return " ".join((doc or "").replace("``", "").split())
 
 
 def _element_json(element: Element) -> dict[str, object]:

@@ -69,7 +69,11 @@ class ProgressBar:
         if now < self._next:
             return
         self._next = now + INTERVAL
-        self._draw(_line(done, text))
+        part = 0.0 if isnan(done) else min(max(done, 0.0), 1.0)
+        filled = int(part * BAR)
+        shown = "".join(c if " " <= c <= "~" else "?" for c in text)
+        line = f"[{'#' * filled}{'-' * (BAR - filled)}] {int(part * 100):3d} %  {shown}"
+        self._draw(line[:COLUMNS].rstrip())
 
     def close(self) -> None:
         """Erase the bar; nothing is drawn afterwards."""
@@ -173,11 +177,3 @@ def _give_way(*, to_bar: bool) -> None:
 
 def _is_rewritable(stream: TextIO) -> bool:
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
-
-
-def _line(done: float, text: str) -> str:
-    part = 0.0 if isnan(done) else min(max(done, 0.0), 1.0)
-    filled = int(part * BAR)
-    shown = "".join(c if " " <= c <= "~" else "?" for c in text)
-    line = f"[{'#' * filled}{'-' * (BAR - filled)}] {int(part * 100):3d} %  {shown}"
-    return line[:COLUMNS].rstrip()

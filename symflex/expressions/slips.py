@@ -84,7 +84,12 @@ def _token_hint(
 ) -> str | None:
     token = recent[-1]
     if token.type == "EQUAL":
-        return _equal_hint(value, token, is_equation=is_equation)
+        if not is_equation:
+            return "an expression has no '='; only the equations and conditions of a field do"
+        start = token.start
+        if not value[:start].strip():
+            return "write an expression to the left of '='"
+        return "write a single '='" if value[:start].endswith("=") else "an equation has one '='"
     if token.type == "RPAR" and opening is None:
         return "there is no '(' for it to close"
     if token.type == "RPAR" and len(recent) > 1 and recent[-2].type == "LPAR":
@@ -94,15 +99,6 @@ def _token_hint(
     if wants_operand or len(recent) == 1:
         return None
     return _neighbour_hint(value, recent)
-
-
-def _equal_hint(value: str, token: Token, *, is_equation: bool) -> str:
-    if not is_equation:
-        return "an expression has no '='; only the equations and conditions of a field do"
-    start = token.start
-    if not value[:start].strip():
-        return "write an expression to the left of '='"
-    return "write a single '='" if value[:start].endswith("=") else "an equation has one '='"
 
 
 def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:

@@ -128,7 +128,8 @@ def looks_like_quantity(text: str) -> bool:
         return True
     position, depth, after_value = 0, 0, False
     while True:
-        place = _after_space(text, position)
+        space = _SPACE.match(text, position)
+        place = space.end() if space else position
         token = _CONSTANT_TOKEN.match(text, place)
         complete = after_value and depth == 0
         if token is None or (complete and token.lastgroup in ("operand", "open")):
@@ -144,11 +145,6 @@ def looks_like_quantity(text: str) -> bool:
     if place == position:
         return token is None and starts_unit and SIGNED_NUMBER.fullmatch(text, 0, position) is not None
     return starts_unit
-
-
-def _after_space(text: str, position: int) -> int:
-    space = _SPACE.match(text, position)
-    return space.end() if space else position
 
 
 def _parsed(text: Text, kind: str) -> tuple[Constant, PlacedUnit]:

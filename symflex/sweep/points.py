@@ -198,7 +198,8 @@ class RootSolver:
         similarity = self._similarities.at({**self._declared, **values}) if self._similarities else None
         if similarity is None:
             return self._searched(self._bound(values), 0)
-        family = _family(similarity)
+        text = repr((similarity.degree, similarity.key)).encode()
+        family = int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
         if similarity.key not in self._models:
             if len(self._models) >= REMEMBERED:
                 self._models.clear()
@@ -258,11 +259,6 @@ def _scaled(roots: Sequence[Root], known: Similarity, wanted: Similarity) -> tup
         places = [doubles(root.re * factor, root.im * factor) for root in roots]
     pairs = zip(places, roots, strict=True)
     return tuple(FoundRoot(place, root.multiplicity, RootStatus.CERTIFIED) for place, root in pairs)
-
-
-def _family(similarity: Similarity) -> int:
-    text = repr((similarity.degree, similarity.key)).encode()
-    return int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
 
 
 def solve_roots(task: Task) -> Solver:

@@ -255,7 +255,12 @@ class NamedValues(dict[str, Arithmetic]):
         elif name in at.definitions:
             self[name] = self(at.definitions[name])
         elif name in at.moving(self.along):
-            self[name] = self._tangent(name)
+            # A parameter, or a function of constants, to first order in the one they move along
+            real = [(n, v) for n, v in self.equations.values if not v.is_imaginary]
+            known = {n: first_order(enclosure(v)(), int(n == self.along)) for n, v in real}
+            call = self.equations.functions.get(name)
+            value = known[name] if call is None else constant_tangent(call, known)
+            self[name] = acb_series([acb(value[0]), acb(value[1])], 2)
         else:
             self[name] = at.constant(name)
         return self[name]
@@ -286,14 +291,6 @@ class NamedValues(dict[str, Arithmetic]):
             for j, entry in row.items():
                 matrix[i, j] = at_centre(self(entry))
         return matrix
-
-    def _tangent(self, name: str) -> acb_series:
-        """Return a parameter, or a function of constants, to first order in the one they move along."""
-        real = [(n, v) for n, v in self.equations.values if not v.is_imaginary]
-        known = {n: first_order(enclosure(v)(), int(n == self.along)) for n, v in real}
-        call = self.equations.functions.get(name)
-        value = known[name] if call is None else constant_tangent(call, known)
-        return acb_series([acb(value[0]), acb(value[1])], 2)
 
     def _waves(self, waves: MemberWaves) -> dict[str, Arithmetic]:
         law = self.equations.laws.get(waves.law)

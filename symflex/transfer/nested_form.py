@@ -393,7 +393,14 @@ def _values(
             return known[names[position]]
         waves, place = wave_of[position]
         if waves not in functions:
-            functions[waves] = _functions(waves, [_complex(values[i]) for i in waves.arguments])
+            # Fundamental functions, in the order of their generators
+            arguments = [_complex(values[i]) for i in waves.arguments]
+            from symflex.transfer.enclose_kernels import fundamental_functions  # only with beams
+
+            *coefficients, shift, length = arguments
+            orders = [order for _, order in waves.generators]
+            plain = fundamental_functions(coefficients, length) if any(n >= 0 for n in orders) else ()
+            functions[waves] = tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
         return functions[waves][place]
 
     tf.program.values(tf.operations, name=generator, number=number, quotient=_quotient, known=values)
@@ -407,16 +414,6 @@ def _quotient(above: Arithmetic, below: Arithmetic) -> Arithmetic:
 
 def _complex(value: Arithmetic) -> Value:
     return value if isinstance(value, acb_series) else acb(value)
-
-
-def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
-    """Return fundamental functions, in the order of their generators."""
-    from symflex.transfer.enclose_kernels import fundamental_functions  # only with beams
-
-    *coefficients, shift, length = arguments
-    orders = [order for _, order in waves.generators]
-    plain = fundamental_functions(coefficients, length) if any(n >= 0 for n in orders) else ()
-    return tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
 
 
 AnyBoundFunction = BoundTransferFunction | BoundNested

@@ -123,7 +123,12 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
     ValueError with the reason: no archive, encrypted, cut short, arrays of objects. OverflowError when the
     arrays take more than ``limit`` bytes together, or are more than ``members``.
     """
-    _check_directory(data)
+    # Refuse an archive with a list of members that is large itself: each is an object in memory
+    end = data.rfind(_END, max(len(data) - _END_SIZE - _COMMENT, 0))
+    require(end >= 0 and len(data) - end >= _END_SIZE, "it is not an archive, or is cut short")
+    size = int.from_bytes(data[end + 12 : end + 16], "little")
+    if size > _DIRECTORY_LIMIT or _END_64 in data[max(end - 20, 0) : end]:
+        raise OverflowError
     try:
         with zipfile.ZipFile(BytesIO(data)) as file:
             infos = file.infolist()
@@ -133,15 +138,6 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
             return {key: array for name, member in named for key, array in read_array(name, member).items()}
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, NotImplementedError) as error:
         raise ValueError(str(error)[:100] or CUT) from None
-
-
-def _check_directory(data: bytes) -> None:
-    """Refuse an archive with a list of members that is large itself: each is an object in memory."""
-    end = data.rfind(_END, max(len(data) - _END_SIZE - _COMMENT, 0))
-    require(end >= 0 and len(data) - end >= _END_SIZE, "it is not an archive, or is cut short")
-    size = int.from_bytes(data[end + 12 : end + 16], "little")
-    if size > _DIRECTORY_LIMIT or _END_64 in data[max(end - 20, 0) : end]:
-        raise OverflowError
 
 
 def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:

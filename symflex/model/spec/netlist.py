@@ -255,7 +255,12 @@ class _Netlist:
         elif letter == "K":
             self._coupling(line, scope)
         elif letter in "RLC":
-            self._passive(line, scope, letter)
+            kind, key = TYPES[letter]
+            name, ends = self._name(line.words[0], scope), self._nodes(line, scope, 1, 2)
+            value = self._valued(line, name, self._last(line, 3, letter), scope, UNITS[letter])
+            if letter == "L":
+                self.windings[name.lower()] = (name, (ends[0], ends[1]), value)
+            self._add(name, f'type = "{kind}", between = {_texts(ends)}, {key} = "{value}"', line)
         elif letter in "VI":
             self._source(line, scope, letter)
         elif letter in "EFGHN":
@@ -338,14 +343,6 @@ class _Netlist:
         return value
 
     # ------------------------------------------------------------------------------ components
-
-    def _passive(self, line: Card, scope: _Scope, letter: str) -> None:
-        kind, key = TYPES[letter]
-        name, ends = self._name(line.words[0], scope), self._nodes(line, scope, 1, 2)
-        value = self._valued(line, name, self._last(line, 3, letter), scope, UNITS[letter])
-        if letter == "L":
-            self.windings[name.lower()] = (name, (ends[0], ends[1]), value)
-        self._add(name, f'type = "{kind}", between = {_texts(ends)}, {key} = "{value}"', line)
 
     def _last(self, line: Card, at: int, letter: str) -> str:
         """Return the value from this word on, as in ``R=1k``; refuse what would change it."""

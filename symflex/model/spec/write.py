@@ -91,7 +91,11 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
         case float():
             return float.__repr__(value)
         case Decimal():
-            return _decimal(value, path)
+            if value.is_nan():
+                return "nan"
+            if value.is_infinite():
+                return "-inf" if value < 0 else "inf"
+            return _checked(str(value), path)
     if hasattr(value, "free_symbols") and not hasattr(value, "tolist"):
         return _string(str(value))  # SymPy prints what the grammar of expressions reads
     if hasattr(value, "tolist"):  # an array or number of numpy, a matrix of SymPy
@@ -139,14 +143,6 @@ def _decimal_places(denominator: int) -> int | None:
             denominator //= prime
             places[prime] += 1
     return max(places.values()) if denominator == 1 else None
-
-
-def _decimal(value: Decimal, path: tuple[str, ...]) -> str:
-    if value.is_nan():
-        return "nan"
-    if value.is_infinite():
-        return "-inf" if value < 0 else "inf"
-    return _checked(str(value), path)
 
 
 def _checked(literal: str, path: tuple[str, ...]) -> str:

@@ -98,7 +98,10 @@ def _named(tf: TransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden
     arguments = [name for name, _ in notation.lines][: len(angles_of(tf.kernels, used))]
     for ratio in MULTIPLES[1:]:
         # The same lines with other lengths: an argument that the form has as a multiple of its own.
-        scaled = notation_of(tf, used, _naming(tf, form), _stretched(tf.kernels, ratio))
+        # Kernels of other lengths, those that share one sharing one again
+        lengths = {k.length: k.length * ratio for k in tf.kernels.kernels}
+        kernels = (replace(k, length=lengths[k.length]) if k.wavenumber else k for k in tf.kernels.kernels)
+        scaled = notation_of(tf, used, _naming(tf, form), KernelTable(tf.kernels.dispersions, tuple(kernels)))
         for name, expression in _opened(scaled.lines).items():
             if name in arguments and name not in names and _key(expression) in by_value:
                 part = product_of([number(ratio.denominator), by_value[_key(expression)]])
@@ -119,13 +122,6 @@ def _naming(tf: TransferFunction, form: PrintedForm) -> Naming:
     naming = Naming.of(tf)
     naming.keep(name for name, _ in form.where)
     return naming
-
-
-def _stretched(table: KernelTable, ratio: Fraction) -> KernelTable:
-    """Return kernels of other lengths, those that share one sharing one again."""
-    lengths = {k.length: k.length * ratio for k in table.kernels}
-    kernels = (replace(k, length=lengths[k.length]) if k.wavenumber else k for k in table.kernels)
-    return KernelTable(table.dispersions, tuple(kernels))
 
 
 def _opened(lines: Iterable[Line]) -> dict[str, Expression]:

@@ -27,16 +27,12 @@ def irreducible_kernels(value: Factored, table: KernelTable) -> Factored:
         elif any(int(factor.degrees()[i]) for i in kernels):
             result = result * _split(factor, coordinates, normal) ** exponent
         else:
-            result = result * _plain(value, factor) ** exponent
+            constant, parts = irreducible_factors(factor)
+            product = Factored.number(value.ring, constant)
+            for part, times in parts:
+                product = product * Factored.polynomial(value.ring, part) ** times
+            result = result * product**exponent
     return result
-
-
-def _plain(value: Factored, factor: fmpz_mpoly) -> Factored:
-    constant, parts = irreducible_factors(factor)
-    product = Factored.number(value.ring, constant)
-    for part, times in parts:
-        product = product * Factored.polynomial(value.ring, part) ** times
-    return product
 
 
 def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:
