@@ -33,22 +33,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, arb, arb_poly
 
-from symflex.along.growth import (
-    bits_of,
-    growth_begun,
-    growth_of,
-    growth_on,
-    least_growth,
-    legs_along,
-)
-from symflex.along.system import (
-    MinorsAlong,
-    Number,
-    Polynomial,
-    RationalPart,
-    polynomial_of,
-    sequence_of,
-)
+from symflex.along.growth import bits_of, growth_begun, growth_of, growth_on, least_growth, legs_along
+from symflex.along.system import MinorsAlong, Number, Polynomial, RationalPart, polynomial_of, sequence_of
 from symflex.balls import current_bits, precision
 from symflex.budget import GB, spend
 from symflex.errors import BudgetError, Diagnostic

@@ -34,14 +34,7 @@ from flint import acb, acb_poly, arb
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions, values_of
 from symflex.analysis.time_response.sample_times import SampleTimes
-from symflex.balls import (
-    UndecidedError,
-    ball,
-    bits_for_digits,
-    current_bits,
-    precision,
-    settled,
-)
+from symflex.balls import UndecidedError, ball, bits_for_digits, current_bits, precision, settled
 from symflex.budget import spend
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UncertifiedError, UsageError
 from symflex.errors.optional import installed

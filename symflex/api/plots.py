@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from symflex.options import PlotOptions, gain_ends
+from symflex.model import Model
+from symflex.options import Ends, PlotOptions, gain_ends
 from symflex.print.latex import width_of
+from symflex.transfer import AnyBoundFunction, Given
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.figure import Figure
 
     from symflex.figures import AxesGiven
-    from symflex.model import Model
-    from symflex.options import Ends
-    from symflex.transfer import AnyBoundFunction, Given
 
 
 def plot_functions(

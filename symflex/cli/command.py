@@ -8,7 +8,8 @@ calls the function below ``@command_of("rational", RationalOptions)`` with
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import Field, dataclass, fields
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
@@ -19,9 +20,6 @@ from symflex.errors.diagnostic import counted
 from symflex.options import OUTSIDE, option
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from dataclasses import Field
-
     from click.shell_completion import CompletionItem
 
     from symflex.model import Model

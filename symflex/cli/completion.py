@@ -7,6 +7,7 @@ that waits for a word is no place for an error. ``symflex roots arm.toml --tf <T
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from click.shell_completion import CompletionItem
@@ -14,8 +15,6 @@ from click.shell_completion import CompletionItem
 from symflex.errors import SymflexError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     import click
 
     from symflex.model import Model

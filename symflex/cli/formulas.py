@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -18,8 +19,6 @@ from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.codegen.export import Exporter
     from symflex.codegen.latex import LatexExporter
     from symflex.model import Model

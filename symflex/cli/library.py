@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 from importlib.resources import files
@@ -16,8 +17,6 @@ from symflex.errors import Diagnostic, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.library.blocks import Block
     from symflex.library.elements import Element, ParameterPort
     from symflex.quantities.units import Unit

@@ -5,13 +5,11 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import isnan
 from time import monotonic
-from typing import TYPE_CHECKING, TextIO
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+from typing import TextIO
 
 DELAY = 1.0  # seconds before anything is drawn: what is done by then needs no bar
 INTERVAL = 0.1  # seconds between two drawings

@@ -5,19 +5,17 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, ParamSpec, TextIO
+from typing import ParamSpec, TextIO
 
 import click
 
 from symflex.cli.progress import hushed
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 P = ParamSpec("P")
 SMALLER = "ask for fewer transfer functions, roots or points, or give parameters numbers in place of symbols"

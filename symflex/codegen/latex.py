@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from symflex.budget import spend
 from symflex.codegen.export import Export
 from symflex.errors import ModelError, SymflexError
+from symflex.model import Model
 from symflex.model.model import Figure as Asked
-from symflex.print.forms import print_forms
+from symflex.print.forms import PrintedForm, print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
+from symflex.roots import PoleZeroMap
 from symflex.roots.locate import locate
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 from symflex.transfer.nested_form import bind_any
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.model import Model
-    from symflex.print.forms import PrintedForm
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
-
 
 ROOT_DIGITS = 15  # digits to which roots are found for a table; it prints fewer
 

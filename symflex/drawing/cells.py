@@ -6,10 +6,11 @@ from x = 0 on.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.geometry import BOLD, LINE, THIN, Placed
+from symflex.drawing.geometry import BOLD, LINE, THIN, Placed, Stroke
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
 from symflex.drawing.symbols import (
     FORCE_BETWEEN,
@@ -28,9 +29,6 @@ from symflex.drawing.symbols import (
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.drawing.geometry import Stroke
     from symflex.drawing.scheme import Distance, DrawnPart, End
 
 SPACE: Final = 3.0  # space between a symbol and a text, and between texts [points]

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.drawing.cells import SPACE, label_of, tags_of
 from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Placed, around, union
 from symflex.drawing.lettering import SMALL, text
-from symflex.drawing.scheme import Mark, Style
+from symflex.drawing.scheme import DrawnPart, Mark, Style
 from symflex.drawing.symbols import Strokes, arc, arrow, circle, head, line, rectangle, turning
 from symflex.library.elements import CIRCUITS, COMPONENTS
-
-if TYPE_CHECKING:
-    from symflex.drawing.scheme import DrawnPart
 
 DISC_WIDTH, DISC_HEIGHT = 9.0, 34.0
 REACH: Final = 7.0  # how far a bar or body goes beyond the wires that meet it

@@ -13,21 +13,16 @@ with the name:
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.drawing.cells import Built
-from symflex.drawing.geometry import BLACK, Extent, Lettering, Placed, free_level, union
+from symflex.drawing.geometry import BLACK, Extent, Lettering, Placed, Point, free_level, union
 from symflex.drawing.lettering import SIZE, SMALL, column_of, downwards, filled, text
-from symflex.drawing.signals import MOST_AT_SUM, formula
+from symflex.drawing.signals import MOST_AT_SUM, SignalGraph, SignalNode, formula
 from symflex.drawing.symbols import DOT, arrow, circle, line, rectangle
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.drawing.geometry import Point
-    from symflex.drawing.signals import SignalGraph, SignalNode
 
 RADIUS: Final = 4.2  # radius of a sum
 WIRE: Final = 11.0  # length of a wire between two symbols, enough for an arrow

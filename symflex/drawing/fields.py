@@ -9,14 +9,15 @@ follow each other along x.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.drawing.cells import coordinate
 from symflex.drawing.columns import upright_mark, upright_width
 from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, union
 from symflex.drawing.lettering import SMALL, Labels, downwards, text
-from symflex.drawing.scheme import UNKNOWN, Mark, Style, evaluate, sections, values_of, without_s
+from symflex.drawing.scheme import UNKNOWN, Depths, Mark, Style, evaluate, sections, values_of, without_s
 from symflex.drawing.symbols import (
     HALF,
     Strokes,
@@ -35,6 +36,7 @@ from symflex.expressions import (
     Call,
     Derivative,
     Equation,
+    Expression,
     Name,
     Number,
     names,
@@ -43,15 +45,9 @@ from symflex.expressions import (
     replace_values,
     sum_of,
 )
+from symflex.model import FieldProblem, Model
 from symflex.model.along import COORDINATE, is_tapered
 from symflex.quantities import unit_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from symflex.drawing.scheme import Depths
-    from symflex.expressions import Expression
-    from symflex.model import FieldProblem, Model
 
 LENGTH: Final = 150.0  # length of a row of fields [points]
 SHORTEST: Final = 0.22  # share of the row that each takes at least

@@ -9,6 +9,7 @@ until it touches nothing that is drawn.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 from math import acos, cos, dist, hypot, pi, sin, tan
@@ -18,15 +19,12 @@ from symflex.drawing.cells import coordinate, label_of, tags_of
 from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
 from symflex.drawing.geometry import BLACK, BOLD, FILLED, LINE, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
-from symflex.drawing.scheme import Mark, evaluate, values_of
+from symflex.drawing.scheme import DrawnNetwork, DrawnPart, Mark, evaluate, values_of
 from symflex.drawing.symbols import DOT, HALF, arrow, circle, guide, head, line, outline, rectangle, wall
 from symflex.figures.runs import places_of_members
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
     from symflex.drawing.geometry import Point
-    from symflex.drawing.scheme import DrawnNetwork, DrawnPart
     from symflex.model import Model
 
 EXTENT: Final = 95.0  # extent of a frame, and the least length of a member [points]

@@ -7,9 +7,10 @@ the metrics of the fonts that come with matplotlib.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from matplotlib import rcParams
 from matplotlib.font_manager import FontProperties
@@ -17,22 +18,16 @@ from matplotlib.mathtext import MathTextParser
 
 from symflex.drawing.geometry import Lettering
 from symflex.errors import Text
-from symflex.expressions import Attribute, Call, Differentiated, Name, replace_values, substitute
+from symflex.expressions import Attribute, Call, Differentiated, Expression, Name, replace_values, substitute
 from symflex.expressions import nodes as parts_of
 from symflex.figures.style import PRIMES, label_of_name, label_of_unit, power_of_ten
-from symflex.model import ExactValue
+from symflex.model import ExactValue, Model, ModelParameter
 from symflex.print.label import read_label
 from symflex.print.latex.equation import model_labels
 from symflex.print.latex.expression import latex_expression
 from symflex.print.latex.table import decimal_text
 from symflex.print.writer import Style
 from symflex.quantities import looks_like_quantity, parse_quantity, unit_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model import Model, ModelParameter
 
 SIZE: Final = 8.0  # size of the type [points], as in other figures
 SMALL: Final = 7.0

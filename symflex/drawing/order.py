@@ -9,17 +9,13 @@ first two and the last two are drawn, with a row of dots and the number of links
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from symflex.drawing.scheme import DrawnPart, End
+from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 from symflex.drawing.symbols import DOTS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.drawing.scheme import DrawnNetwork
 
 BRIDGE: Final = 0.5  # what it costs that a part joins no neighbours, besides what it spans
 MEMBER: Final = 3.0  # how much more that is of a member, which is long and looks stiff at corners

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
+from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
@@ -12,11 +14,6 @@ from symflex.drawing.geometry import BLACK, Drawing, Placed, union
 from symflex.figures.figure import new_figure
 from symflex.figures.files import render
 from symflex.figures.style import DEFAULT_FONT, paper_style
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.figure import Figure
 
 POINTS: Final = 72.0
 TITLED: Final = ("element", "input", "output", "block", "field")  # kinds of parts whose names an SVG shows

@@ -12,9 +12,10 @@ leads.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.drawing.cells import (
     COORDINATES,
@@ -46,18 +47,12 @@ from symflex.drawing.columns import (
     upright_mark,
     upright_width,
 )
-from symflex.drawing.geometry import BLACK, BOLD, LINE, THIN, Extent, Placed, free_level, union
+from symflex.drawing.geometry import BLACK, BOLD, LINE, THIN, Extent, Placed, Point, free_level, union
 from symflex.drawing.lettering import text
 from symflex.drawing.order import order_of
-from symflex.drawing.scheme import Distance, Mark
+from symflex.drawing.scheme import Distance, DrawnNetwork, DrawnPart, End, Mark
 from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, guide, line, rectangle, wall
 from symflex.library.elements import CIRCUITS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.drawing.geometry import Point
-    from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
 SIDE_ARROW: Final = 20.0
 FACE: Final = 9.0  # room of a wall or a guide beside a node

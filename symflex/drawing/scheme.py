@@ -9,7 +9,7 @@ Input: a resolved model. Output: a :class:`Scheme`, which knows nothing of place
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -32,6 +32,7 @@ from symflex.drawing.symbols import (
 from symflex.expressions import (
     Attribute,
     Call,
+    Expression,
     Name,
     Negative,
     Number,
@@ -43,15 +44,12 @@ from symflex.expressions import (
     names,
 )
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, LineElement
+from symflex.model import DrawingHints, Input, Model, NodeReference, Output, PlacedElement
 from symflex.model.along import COORDINATE, is_tapered
 from symflex.model.model import INPUT_KINDS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.drawing.lettering import Labels
-    from symflex.expressions import Expression
-    from symflex.model import DrawingHints, Input, Model, NodeReference, Output, PlacedElement
 
 GROUND: Final = ""
 Domains = Mapping[str, str]

@@ -7,6 +7,7 @@ Input: a model and the outputs that are at no one place. Output: a :class:`Signa
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -24,13 +25,11 @@ from symflex.expressions import (
     product_of,
     quotient,
 )
+from symflex.model import Model, PlacedBlock
 from symflex.print.forms.shapes import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
     from symflex.drawing.lettering import Labels
-    from symflex.model import Model, PlacedBlock
 
 Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
 LONGEST: Final = 80  # letters of a sum, as LaTeX, that is written into one box

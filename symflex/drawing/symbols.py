@@ -9,14 +9,12 @@ or holds one is drawn about that node's point. What a type has no entry for is d
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, sin
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 from symflex.drawing.geometry import BLACK, BOLD, FILLED, LINE, MEMBER, PAPER, THIN, Point, Stroke
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 Strokes = tuple[Stroke, ...]
 Role = Literal["branch", "body", "support", "source", "coupling", "member"]

@@ -8,8 +8,9 @@ Input: a tree, and a leaf of it. Output: a tree, kept short by the constructors 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from math import nan
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.expressions.nodes import (
     Attribute,
@@ -35,9 +36,6 @@ from symflex.expressions.nodes import (
     replace_node,
     sum_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
     "sqrt": lambda whole, _: quotient(number(1), product_of([number(2), whole])),

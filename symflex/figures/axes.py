@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from math import log10
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import (
     FuncFormatter,
     LogLocator,
@@ -29,16 +31,13 @@ from symflex.figures.style import (
     label_of_frequency,
     label_of_unit,
 )
+from symflex.model import Model
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
-    from matplotlib.figure import Figure
     from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
 
     from symflex.loops.clouds import RootCloud
-    from symflex.model import Model
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import AnyBoundFunction
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import cycle, islice
@@ -9,11 +10,15 @@ from math import ceil, inf, tau
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
+from symflex.analysis.response import SampledResponse, adaptive_grid, default_band, respond, roots_if_found
 from symflex.figures.axes import (
+    AxesGiven,
     Canvas,
+    Limits,
     add_legend_above,
     axes_of,
     label_magnitudes,
@@ -35,20 +40,12 @@ from symflex.figures.style import (
     title_lines,
 )
 from symflex.letters.limits import limits_of
-from symflex.roots import Band
+from symflex.roots import Band, PoleZeroMap
 from symflex.roots.loss_modes import NO_STABILITY
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.analysis.response import SampledResponse
-    from symflex.figures.axes import AxesGiven, Limits
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction
 
 
 HEIGHT_INCHES: Final = 3.2

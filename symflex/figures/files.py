@@ -12,13 +12,16 @@ import html
 import logging
 import re
 import warnings
+from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO, StringIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from matplotlib import rc_context
-from matplotlib.backend_bases import RendererBase
+from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_pgf import RendererPgf
+from matplotlib.figure import Figure
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -28,11 +31,6 @@ from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from matplotlib.backend_bases import GraphicsContextBase
-    from matplotlib.figure import Figure
     from matplotlib.font_manager import FontProperties
     from matplotlib.text import Text
 

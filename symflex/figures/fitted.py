@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from symflex.figures.axes import (
+    AxesGiven,
     Canvas,
     add_legend_above,
     axes_of,
@@ -25,15 +29,10 @@ from symflex.figures.figure import new_figure
 from symflex.figures.style import COLOURS, COLUMN_INCHES, DASHES, PAGE_INCHES, QUIET, paper_style, title_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from symflex.data.fitting import ResonanceFit, StablePoles
     from symflex.data.measurement import MeasuredResponse
-    from symflex.figures.axes import AxesGiven
 
     Real = npt.NDArray[np.float64]
     Complex = npt.NDArray[np.complex128]

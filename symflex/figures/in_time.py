@@ -5,12 +5,15 @@ And what is left of a vibration after an input shaper, over the error of a frequ
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from flint import acb
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, root_figure, write_title
@@ -27,16 +30,11 @@ from symflex.figures.style import (
     paper_style,
     title_lines,
 )
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response import EnclosedResponse
-    from symflex.transfer import AnyBoundFunction
 
 HEIGHT_INCHES: Final = 2.2
 FARTHEST: Final = 0.5  # how far a band of radii is drawn beyond the curve, as a share of its height

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import floor, log10
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
-from symflex.analysis.modes import lowest_modes
+from symflex.analysis.modes import DistributedShape, EnclosedModeShape, lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.figures.axes import root_figure
+from symflex.figures.axes import Canvas, root_figure
 from symflex.figures.figure import new_figure
 from symflex.figures.files import MM_PER_INCH
-from symflex.figures.runs import Plan, Run, Stems, panels_of
+from symflex.figures.runs import Panel, Plan, Run, Stems, panels_of
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -29,20 +32,12 @@ from symflex.figures.style import (
     title_lines,
     write_titles,
 )
+from symflex.model import Model
 from symflex.roots import Band
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     import numpy.typing as npt
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.analysis.modes import DistributedShape, EnclosedModeShape
-    from symflex.figures.axes import Canvas
-    from symflex.figures.runs import Panel
-    from symflex.model import Model
-    from symflex.transfer import AnyBoundFunction
 
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from symflex.figures.axes import FREE, draw_points, draw_zero_lines, root_figure, set_round_ticks
+from symflex.figures.axes import FREE, Canvas, draw_points, draw_zero_lines, root_figure, set_round_ticks
 from symflex.figures.figure import new_figure
 from symflex.figures.s_plane import (
     GLYPHS,
     POINTS_PER_INCH,
+    Box,
+    Kind,
     Panel,
+    RootMark,
     View,
     choose_view,
     crowded,
@@ -33,20 +39,12 @@ from symflex.figures.style import (
     title_lines,
     write_titles,
 )
-from symflex.roots import Band
+from symflex.roots import Band, PoleZeroMap
 from symflex.roots.locate import locate
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.figures.axes import Canvas
-    from symflex.figures.s_plane import Box, Kind, RootMark
     from symflex.loops.clouds import RootCloud
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction
 
 
 PANELS_IN_COLUMN: Final = 3

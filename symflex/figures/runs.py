@@ -6,6 +6,7 @@ a row of nodes.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Final
@@ -14,8 +15,6 @@ from symflex.expressions import Name
 from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
     from symflex.analysis.modes import DistributedShape, EnclosedModeShape
     from symflex.model import Model, PlacedElement
 

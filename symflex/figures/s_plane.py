@@ -10,20 +10,18 @@ left corner:
 from __future__ import annotations
 
 from cmath import phase
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isclose, pi
 from typing import TYPE_CHECKING, Final, Literal
 
+from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
 
 from symflex.figures.axes import point_of, root_figure
 from symflex.figures.style import NOTE_POINTS, size_of_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from matplotlib.axes import Axes
-
     from symflex.roots import PoleZeroMap, Root
 
 

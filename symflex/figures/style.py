@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 import textwrap
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from matplotlib import style
@@ -12,17 +15,13 @@ from matplotlib.mathtext import MathTextParser
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.model import Input, Output
 from symflex.model.labels import GREEK
 from symflex.print.label import read_label
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
-    from pathlib import Path
-
     from matplotlib.font_manager import FontProperties
 
-    from symflex.model import Input, Output
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyTransferFunction
 

@@ -19,16 +19,14 @@ from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, prod
-from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.algebra.dispersion import DispersionKind
 from symflex.errors import BudgetError, Diagnostic
 from symflex.library.partial_fractions import Matrix, Share, factors, shares, solve, squared
 
-if TYPE_CHECKING:
-    FieldTheory = Callable[[Factored, Mapping[str, Factored]], "FieldSystem"]
-    """The first-order system of a uniform element, from s and the element's values."""
+FieldTheory = Callable[[Factored, Mapping[str, Factored]], "FieldSystem"]
+"""The first-order system of a uniform element, from s and the element's values."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,6 +9,7 @@ so the shaft's angle, which is arbitrary at rest, does not depend on the gain.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -16,13 +17,11 @@ from symflex.algebra import NO_KERNELS, Factored, degree_in
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import StabilityVerdict, count_right
 from symflex.roots.region import Modes
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.loops.loop import GainPolynomial
-    from symflex.transfer import BoundTransferFunction
 
 
 NONE = StabilityVerdict("stable", 0, certified=True)

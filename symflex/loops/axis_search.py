@@ -9,21 +9,17 @@ Example: with A = s^2 + s + 1 and B = s^2 - s a pole lies at s = j sqrt(1/2) for
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Protocol
 
 from flint import arb
 
 from symflex.balls import ball, precision
-from symflex.loops.axis import find_on_axis
+from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis
 from symflex.loops.loop_function import LoopValue
 from symflex.loops.stability_map import Crossing
 from symflex.roots.root import hertz
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from fractions import Fraction
-
-    from symflex.loops.axis import AxisRoots, LoopAtOrigin
 
 BITS = 128  # precision of gains and their limits
 SHRINKINGS = 30  # halvings of a disc about 0

@@ -9,10 +9,11 @@ A tip sensor may be away from the joint actuator, and yet respond as the joint d
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import partial
 from math import inf
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -22,12 +23,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.axis import pieces
 from symflex.roots import figure
 from symflex.roots.root import hertz, real_json
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from fractions import Fraction
-
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 SCHEMA = "symflex.colocation/1"
 BITS = 192

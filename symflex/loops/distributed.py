@@ -9,14 +9,14 @@ principle about a half disc, beyond which, where this can be proved, there are n
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial, reduce
 from math import exp, log, prod
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, arb_series
 
 from symflex.algebra import Factored
 from symflex.balls import UndecidedError, ball, covered, precision
@@ -24,7 +24,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import ORIGIN_BITS, joined
 from symflex.loops.axis_search import NEXT_TO_ZERO, NOT_PROVED_AT_ZERO, SHRINKINGS, AxisSearch
 from symflex.loops.gain_functions import GainFunctions
-from symflex.loops.loop import GainPolynomial, independent
+from symflex.loops.loop import GainPolynomial, Loop, independent
 from symflex.loops.loop_function import LoopFunction
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
@@ -37,17 +37,10 @@ from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import count_roots, exact_fraction
 from symflex.roots.sheets import on_sheet
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose import first_order
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import arb_series
-
-    from symflex.loops.loop import Loop
-    from symflex.transfer import BoundTransferFunction
-
-    GainValue = Callable[[arb], arb_series]
+GainValue = Callable[[arb], arb_series]
 
 BITS = 128  # precision of gains and their limits
 OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)

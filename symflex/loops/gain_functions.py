@@ -7,29 +7,22 @@ vanishes. Example: of ``(s + 1)^4 + K log(K)`` the product ``K log(K)`` is 4 at 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import frexp, lcm, prod
-from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import arb, arb_series, fmpz_mpoly
 
 from symflex.algebra import terms_of
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Call, fold
+from symflex.expressions import Call, Expression, fold
 from symflex.loops.axis import find_on_axis, pieces
 from symflex.model import ExactValue
 from symflex.roots import RealConstant
 from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first_order, later, rational_value
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from flint import arb_series, fmpz_mpoly
-
-    from symflex.expressions import Expression
 
 Limits = tuple[Fraction | None, Fraction | None]
 NEAREST_ZERO = 70  # halvings of the range towards zero; what is left is looked at as one piece

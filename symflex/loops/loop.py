@@ -8,9 +8,9 @@ Example: ``m s^2 + b s + k`` with a gain K on the position is ``(m s^2 + b s + k
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat, fmpz_mpoly
 
@@ -19,14 +19,9 @@ from symflex.algebra.ring import coefficients_of
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import Sum, names_among
 from symflex.loops.gain_functions import GainFunctions
+from symflex.model import Model, ModelParameter
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.bind import values_for
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.model import Model, ModelParameter
-
 
 TRIALS = ("1", "2", "0.37")
 """Values of a gain without one, for which the other parameters are bound; one is not a singular case."""

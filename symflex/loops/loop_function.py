@@ -9,11 +9,11 @@ Example: with A = s + 2 and B = exp(-s), ``-A/B`` at s = j omega is the gain for
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
@@ -23,11 +23,7 @@ from symflex.balls import Value, expansion, precision
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.functions.kernel_function import KernelFactors
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

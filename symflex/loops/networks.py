@@ -13,24 +13,27 @@ of any loop; that none lies beyond the disc is known of passive loops alone.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import nan
-from typing import TYPE_CHECKING
 
-from flint import acb
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Factored, by_powers, composed, degree_in
 from symflex.algebra.factored import least_common_multiple
 from symflex.balls import UndecidedError, ball, precision
+from symflex.equations import Equations
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.loops.axis import ORIGIN_BITS, LoopAtOrigin
 from symflex.loops.axis_search import AxisSearch
 from symflex.loops.loop import NO_LOOP, Loop, no_loop
 from symflex.loops.loop_function import LoopValue
-from symflex.loops.stability_map import PoleCount
+from symflex.loops.stability_map import Crossing, PoleCount
+from symflex.model import Model, ModelParameter
+from symflex.roots import PoleZeroMap, Region
 from symflex.roots.counting.local_series import LocalSeries
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
@@ -40,16 +43,6 @@ from symflex.roots.networks.parity import mirrored
 from symflex.roots.networks.poles_zeros import locate_quotient
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.transfer.equations_at import EquationsAt, EssentialSingularityError, holds
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from flint import arb
-
-    from symflex.equations import Equations
-    from symflex.loops.stability_map import Crossing
-    from symflex.model import Model, ModelParameter
-    from symflex.roots import PoleZeroMap, Region
 
 DEFAULT_MODES = 5  # which the disc holds where no frequency is given
 DIGITS = 15  # of poles that are marked in figures

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import pi
-from typing import TYPE_CHECKING
 
 from symflex.budget import spend
 from symflex.errors import BudgetError, UncertifiedError
@@ -14,9 +14,10 @@ from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import is_straight
 from symflex.loops.loop import Loop, pick_gain
-from symflex.loops.networks import network_loop
+from symflex.loops.networks import AnyLoop, network_loop
 from symflex.loops.peak import loop_peaks
-from symflex.model import Model, with_numbers
+from symflex.loops.stability_map import StabilityMap
+from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.model.settings import check_names
@@ -28,6 +29,7 @@ from symflex.options import (
     highest_frequency,
     tolerance,
 )
+from symflex.transfer import Given, TransferFunction
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import (
     CODE_PRODUCTS,
@@ -38,14 +40,6 @@ from symflex.transfer.of_model import (
     is_large_network,
     pick_pairs,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.loops.networks import AnyLoop
-    from symflex.loops.stability_map import StabilityMap
-    from symflex.model import ModelParameter
-    from symflex.transfer import Given, TransferFunction
 
 
 def _gain_of(model: Model, name: str) -> ModelParameter:

@@ -8,24 +8,21 @@ on the axis at one frequency, where a resultant has a double root; as boxes they
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, arb_series
 
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
 from symflex.loops.axis import BITS, FIRST_RATIO, NARROWEST, NEWTON_STEPS, joined, pieces
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import arb_series
-
     from symflex.loops.loop_function import LoopFunction
 
-    Weights = Callable[[arb], Sequence[arb_series]]
+Weights = Callable[[arb], Sequence[arb_series]]
 
 DEEPEST = 50  # halvings of the range of gains
 SHORT = 6  # halvings of the range of gains until its pieces tell how large functions are

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.expressions import names_among
+from symflex.expressions import Expression, names_among
 from symflex.model.scope import COORDINATE, scope_of
 
 if TYPE_CHECKING:
-    from symflex.expressions import Expression
     from symflex.model.model import Model
 
 __all__ = ["COORDINATE", "is_tapered", "varies_along_x"]

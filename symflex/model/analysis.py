@@ -5,13 +5,14 @@ Whether the names of a printed formula are known is told from its tree.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, Text, nearest
+from symflex.errors import Diagnostic, Span, Text, nearest
 from symflex.expressions import (
     FUNCTIONS,
     Attribute,
@@ -29,17 +30,12 @@ from symflex.expressions import (
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
-from symflex.model.spec import BooleanValue, NumberValue, TableValue
-from symflex.quantities import IMAGINARY_NAMES, unit_of
+from symflex.model.spec import BooleanValue, KeyValue, NumberValue, TableValue, Value
+from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
-
-    from symflex.errors import Span
     from symflex.model.model import Model, ModelParameter
     from symflex.model.reading import Reader
-    from symflex.model.spec import KeyValue, Value
-    from symflex.quantities import Quantity
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "data", "title", "doc")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isqrt
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.budget import spend
-from symflex.errors import SymflexError
+from symflex.errors import Source, SymflexError, Text
 from symflex.expressions import (
     Expression,
     Name,
@@ -23,24 +24,18 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
-from symflex.library.blocks import BLOCKS, MODEL_BLOCK
+from symflex.library.blocks import BLOCKS, MODEL_BLOCK, Block
 from symflex.library.elements import ELEMENTS
 from symflex.library.words import hint_of_type
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
-from symflex.model.model import PlacedBlock
-from symflex.model.reading import has_ports, read_entries, signed_number
+from symflex.model.model import Model, PlacedBlock
+from symflex.model.reading import Reader, has_ports, read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, NumberValue, StringValue, TableValue, parse_with_recovery, read
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from symflex.errors import Source, Text
-    from symflex.library.blocks import Block
-    from symflex.model.model import Model
-    from symflex.model.reading import Reader
     from symflex.model.settings import Setting
     from symflex.model.spec import KeyValue, Value
 

@@ -7,6 +7,7 @@ name each other's unknowns are one problem, and their orders and conditions are 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from symflex.expressions import (
     Call,
     Derivative,
     Equation,
+    Expression,
     Name,
     Negative,
     Number,
@@ -28,18 +30,13 @@ from symflex.expressions import (
 )
 from symflex.library.elements import LineElement
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.model.independence import RandomPoint, repetitions
+from symflex.model.independence import RandomPoint, Repetition, repetitions
 from symflex.model.linearity import check_equation, check_expression
-from symflex.model.reading import QuantityLiteral
+from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model.independence import Repetition
     from symflex.model.model import Definition, FieldProblem, PlacedBlock, PlacedElement
-    from symflex.model.reading import Reader
     from symflex.model.scope import ModelScope
     from symflex.model.signs import Line
 

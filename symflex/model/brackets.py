@@ -9,10 +9,10 @@ Output: the same without brackets; coefficients that vary along x are expression
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic
+from symflex.errors import Diagnostic, Span
 from symflex.expressions import (
     Call,
     Derivative,
@@ -39,11 +39,6 @@ from symflex.expressions import (
 )
 from symflex.model.linearity import integer_exponent
 from symflex.model.scope import COORDINATE
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
-
-    from symflex.errors import Span
 
 OPENED_LIMIT = 3_000  # parts of an equation with its brackets opened: some hundred lines
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from math import pi
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
-from symflex.errors import Diagnostic, Text
+from symflex.errors import Diagnostic, Span, Text
 from symflex.expressions import FUNCTIONS, names, names_among, parse
 from symflex.model.labels import check_label
 from symflex.model.model import (
@@ -23,7 +24,7 @@ from symflex.model.model import (
 )
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
-from symflex.model.spec import NumberValue, StringValue, TableValue
+from symflex.model.spec import KeyValue, NumberValue, StringValue, TableValue, Value
 from symflex.quantities import (
     DIMENSIONLESS,
     Quantity,
@@ -33,12 +34,6 @@ from symflex.quantities import (
     unit_named,
     unit_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.model.spec import KeyValue, Value
 
 SHOWN_CIRCLE = 8  # names of a circle of definitions that a message lists
 ASSUMPTIONS = ("positive", "nonnegative", "real")

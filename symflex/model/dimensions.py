@@ -24,12 +24,12 @@ factor pi (``2*pi*f``) or where a time is needed (``1/f``). One parameter must b
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from symflex.algebra import FUNCTIONS, LAPLACE
-from symflex.errors import Diagnostic
+from symflex.errors import Diagnostic, Span
 from symflex.expressions import (
     Attribute,
     Call,
@@ -60,17 +60,10 @@ from symflex.library.elements import LUMPED, Variable
 from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
-from symflex.model.scope import LISTED_NAMES
-from symflex.quantities import DIMENSIONLESS, Dimension, unit_of, unit_slip
+from symflex.model.scope import LISTED_NAMES, ModelScope
+from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of, unit_slip
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.model.scope import ModelScope
-    from symflex.quantities import Quantity
-
-    Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
+Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
 
 PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension

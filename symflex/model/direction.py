@@ -8,8 +8,8 @@ cosine and one sine.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from symflex.expressions import (
     Call,
@@ -25,9 +25,6 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 HALF = Fraction(1, 2)
 SQUARES = {

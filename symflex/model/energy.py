@@ -17,12 +17,12 @@ A coordinate that elements or inputs are attached to is a node: its equation act
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, SpecError
+from symflex.errors import Diagnostic, Span, SpecError
 from symflex.expressions import (
     Derivative,
     Equation,
@@ -40,8 +40,8 @@ from symflex.expressions.derivative import derivative, rate, without_brackets
 from symflex.library.elements import ELEMENTS
 from symflex.model.declarations import in_order
 from symflex.model.fields import name_problem, parsed
-from symflex.model.model import NodeReference, Signal
-from symflex.model.network import DraftElement
+from symflex.model.model import NodeReference, OperatingPoint, Signal
+from symflex.model.network import Draft, DraftElement
 from symflex.model.operating_point import (
     NOWHERE,
     SMOOTH,
@@ -50,17 +50,9 @@ from symflex.model.operating_point import (
     read_operating_point,
     with_value,
 )
-from symflex.model.reading import QuantityLiteral
+from symflex.model.reading import QuantityLiteral, Reader
+from symflex.model.spec import TableValue
 from symflex.model.units import lower
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.model.model import OperatingPoint
-    from symflex.model.network import Draft
-    from symflex.model.reading import Reader
-    from symflex.model.spec import TableValue
 
 KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
 EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'

@@ -14,14 +14,15 @@ A block in state space that lists what goes in and comes out has a signal for ea
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Text, counted, nearest
 from symflex.expressions import (
     Attribute,
     Equation,
+    Expression,
     Name,
     Negative,
     Number,
@@ -35,16 +36,9 @@ from symflex.expressions import (
 from symflex.model.blocks import items_of, matrix_rows
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import Signal
-from symflex.model.reading import has_ports
-from symflex.model.spec import TableValue
+from symflex.model.reading import Reader, has_ports
+from symflex.model.spec import KeyValue, TableValue
 from symflex.model.units import lower
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model.reading import Reader
-    from symflex.model.spec import KeyValue
 
 KEYS = ("unknowns", "equations", "doc")
 EXAMPLE = 'for instance: unknowns = ["x"], equations = ["m*s^2*x + k*x = F"]'

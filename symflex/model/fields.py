@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import Text, counted
+from symflex.errors import Span, Text, counted
 from symflex.expressions import FUNCTIONS, RECIPROCALS, Equation, Expression, parse_equation
 from symflex.model.brackets import open_brackets
 from symflex.model.declarations import read_label
 from symflex.model.model import FieldProblem
-from symflex.model.reading import NAME
+from symflex.model.reading import NAME, Reader
 from symflex.model.scope import RESERVED
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from symflex.errors import Span
-    from symflex.model.reading import Reader
     from symflex.model.spec import KeyValue, TableValue
 
 FIELD_LIMIT = 100

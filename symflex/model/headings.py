@@ -12,18 +12,12 @@ no help: :func:`settled_problems` says instead which heading the key stands belo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 from symflex.errors import Diagnostic, Span
-from symflex.model.reading import describe
-from symflex.model.spec import ArrayValue, StringValue, TableValue
+from symflex.model.reading import Reader, describe
+from symflex.model.spec import ArrayValue, KeyValue, Spec, StringValue, TableValue
 from symflex.quantities import looks_like_quantity
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from symflex.model.reading import Reader
-    from symflex.model.spec import KeyValue, Spec
 
 FORMAT_VERSION = 1
 SECTIONS = (

@@ -7,9 +7,10 @@ surely. Conditions that only the differential equations tie together are found l
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from symflex.algebra import PRIME
 from symflex.errors import SpecError
@@ -27,14 +28,10 @@ from symflex.expressions import (
     Quotient,
     Sum,
 )
+from symflex.library.elements import Variable
 from symflex.model.linearity import integer_exponent
 from symflex.model.scope import CONSTANT_KINDS, ModelScope
 from symflex.model.units import lower
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.library.elements import Variable
 
 Key = TypeVar("Key")
 Place = tuple[str, int, int]

@@ -3,12 +3,8 @@ r"""LaTeX labels: an allow-list of commands, so that no label can reach ``\input
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, SpecError
-
-if TYPE_CHECKING:
-    from symflex.errors import Text
+from symflex.errors import Diagnostic, SpecError, Text
 
 GREEK = (
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi "

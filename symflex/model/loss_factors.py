@@ -9,23 +9,20 @@ Example: ``{ type = "spring", k = "k", eta_s = "eta" }`` has the value ``k*(1 + 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, ModelError
+from symflex.errors import Diagnostic, ModelError, Span
 from symflex.expressions import Name, Number, Product, Sum, names, names_among, number, product_of, sum_of
 from symflex.expressions.nodes import nodes
 from symflex.model.complex_values import with_real_values
-from symflex.model.model import IMAGINARY, J, ModelParameter
+from symflex.model.model import IMAGINARY, J, Model, ModelParameter
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.library.elements import Element
-    from symflex.model.model import Model
     from symflex.model.network import Draft
     from symflex.model.reading import Reader
 

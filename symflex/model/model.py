@@ -5,24 +5,18 @@ Every noun here is pure data made by :func:`symflex.model.resolve`; positions do
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
-from symflex.errors import Text
-from symflex.expressions import Attribute, Equation, Number, names, parse
+from symflex.errors import Diagnostic, Span, Text
+from symflex.expressions import Attribute, Equation, Expression, Number, names, parse
 from symflex.library.blocks import ROOT
-from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
+from symflex.library.blocks import Block as BlockType
+from symflex.library.elements import COMPONENTS, THROUGH_NAME, Domain, Element, LineElement, Placing, Variable
 from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from symflex.errors import Diagnostic, Span
-    from symflex.expressions import Expression
-    from symflex.library.blocks import Block as BlockType
-    from symflex.library.elements import Domain, Element, Placing
 
 PI_NEARLY = Fraction(314159265358979323846264338328, 10**29)
 """Pi to 30 digits: signs, and the limits of a plot or search band, need no exact one."""

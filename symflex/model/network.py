@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, nearest
+from symflex.errors import Diagnostic, Span, Text, nearest
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
@@ -26,19 +27,14 @@ from symflex.model.model import (
 )
 from symflex.model.reading import NAME, Reader, has_ports, read_entries, signed_number
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue, BooleanValue, StringValue, TableValue
-from symflex.quantities import name_hint, parse_unit, unit_of
+from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, StringValue, TableValue
+from symflex.quantities import Dimension, name_hint, parse_unit, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from symflex.errors import Span, Text
     from symflex.expressions import Expression
     from symflex.library import ParameterPort
     from symflex.library.elements import Domain
     from symflex.library.elements.element import PortDomain
-    from symflex.model.spec import KeyValue
-    from symflex.quantities import Dimension
 
 RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end", "thermal": "what stays as it is"}
 """What is at ground, where that is no end that does not move."""

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
 
-from symflex.errors import Diagnostic, SpecError, nearest
+from symflex.errors import Diagnostic, Span, SpecError, Text, nearest
 from symflex.expressions import Expression, Negative, Number, parse
 from symflex.library.words import FORMULAS, key_meant
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, name_hint, parse_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from symflex.errors import Span, Text
     from symflex.model.spec import KeyValue, Value
 
 Made = TypeVar("Made")

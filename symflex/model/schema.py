@@ -13,30 +13,19 @@ would leave an editor without the keys of a type.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from symflex.library.blocks import BLOCKS, MODEL_BLOCK
-from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS
-from symflex.model.analysis import (
-    ANALYSIS_KEYS,
-    DIGITS_LIMIT,
-    FIGURE_KEYS,
-    FIGURE_KINDS,
-    MODES_LIMIT,
-)
+from symflex.library import ParameterPort
+from symflex.library.blocks import BLOCKS, MODEL_BLOCK, Block
+from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Choice, Element, Port
+from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIGURE_KINDS, MODES_LIMIT
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
 from symflex.model.labels import LABEL_LIMIT
 from symflex.model.model import INPUT_KINDS, TRANSFORMER_SYMBOLS
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from symflex.library import ParameterPort
-    from symflex.library.blocks import Block
-    from symflex.library.elements import Choice, Element, Port
 
 Schema = dict[str, Any]
 

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, SpecError, nearest
+from symflex.errors import Diagnostic, Span, SpecError, nearest
 from symflex.expressions import Attribute, Name
 from symflex.library.elements import LineElement, Variable
-from symflex.model.model import IMAGINARY, INPUT_KINDS
+from symflex.model.model import (
+    IMAGINARY,
+    INPUT_KINDS,
+    Definition,
+    FieldProblem,
+    Input,
+    InputKind,
+    Model,
+    NetworkNode,
+    PlacedBlock,
+    PlacedElement,
+    Signal,
+)
 from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.model.model import (
-        Definition,
-        FieldProblem,
-        Input,
-        InputKind,
-        Model,
-        NetworkNode,
-        PlacedBlock,
-        PlacedElement,
-        Signal,
-    )
 
 COORDINATE = "x"
 """The coordinate in coefficients that vary along it, unless the model calls something else by this name."""

@@ -5,6 +5,7 @@ Also the same model with numbers in place of its valued parameters, for what nee
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -13,18 +14,13 @@ from numbers import Rational
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest
-from symflex.expressions import substitute
-from symflex.model.declarations import one_of, without_sign
-from symflex.model.model import ExactValue
+from symflex.expressions import Expression, substitute
+from symflex.model.declarations import DeclaredParameter, one_of, without_sign
+from symflex.model.model import ExactValue, Model, ModelParameter
 from symflex.model.units import exact_expression
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.model.declarations import DeclaredParameter
-    from symflex.model.model import Model, ModelParameter
     from symflex.model.reading import Reader
 
 Setting = str | int | float | Fraction | Decimal

@@ -7,6 +7,7 @@ parameters in it have values.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -17,7 +18,7 @@ from flint import arb, arb_series, fmpq
 
 from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.balls import UndecidedError, covered
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, Span, UsageError
 from symflex.expressions import (
     Call,
     Expression,
@@ -32,21 +33,15 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.library.blocks import ROOT
-from symflex.library.elements import LineElement
+from symflex.library.elements import LineElement, Sign
 from symflex.model.linearity import integer_exponent
-from symflex.model.model import PI_NEARLY
-from symflex.model.reading import literal_value
+from symflex.model.model import PI_NEARLY, Definition, ExactValue, Model, PlacedElement
+from symflex.model.reading import Reader, literal_value
 from symflex.model.scope import COORDINATE
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
-
-    from symflex.errors import Span
-    from symflex.library.elements import Sign
-    from symflex.model.model import Definition, ExactValue, Model, PlacedElement
     from symflex.model.network import Draft
-    from symflex.model.reading import Reader
 
 Monomial = tuple[tuple[str, int], ...]
 Polynomial = dict[Monomial, Fraction]

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, nearest
+from symflex.errors import Diagnostic, Span, nearest
 from symflex.expressions import Attribute, names
 from symflex.library.blocks import ROOT
 from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from symflex.errors import Span
     from symflex.model.model import Definition, Model, PlacedElement
 
 SHOWN = 4

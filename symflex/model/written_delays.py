@@ -8,6 +8,7 @@ A definition that holds one, ``C = "K*exp(-s*T)"``, and such a tf block are writ
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
@@ -32,8 +33,6 @@ from symflex.model.model import PlacedBlock
 from symflex.model.scope import COORDINATE
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from symflex.model.network import Draft
 
 SIZE_LIMIT = 200

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
-from symflex.print.text import WIDTH, passages_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from symflex.print.text import Passage
+from symflex.print.text import WIDTH, Passage, passages_text
 
 
 class Printed:

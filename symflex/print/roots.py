@@ -10,7 +10,7 @@ A column that is added to one of the four lists below is in every table of its k
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -20,8 +20,6 @@ from symflex.errors.diagnostic import counted
 from symflex.print.text import INDENT, WIDTH, aligned, broken
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.roots import PoleZeroMap, Region, Root
     from symflex.roots.root import RootDecimals
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from itertools import chain, repeat
 from re import compile as compile_pattern
 from textwrap import wrap
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from symflex.errors import REPORT, Diagnostic, InternalError
 from symflex.expressions import (
@@ -19,11 +20,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from symflex.transfer import AnyTransferFunction
+from symflex.transfer import AnyTransferFunction
 
 WIDTH = 80
 INDENT = "  "

@@ -24,14 +24,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.model.loss_factors import has_loss_factors
 from symflex.model.model import IMAGINARY
 from symflex.roots.engines import POLYNOMIAL
-from symflex.roots.pole_zero_map import (
-    Certificate,
-    HiddenRoot,
-    PoleZeroMap,
-    StabilityVerdict,
-    chosen,
-    judge,
-)
+from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict, chosen, judge
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Everything, Region

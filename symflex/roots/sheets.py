@@ -29,13 +29,7 @@ from symflex.roots.distributed.right_half_plane import MARGIN, NOT_COUNTED
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import has_kernels
 from symflex.roots.loss_modes import UNJUDGED
-from symflex.roots.pole_zero_map import (
-    PoleZeroMap,
-    StabilityVerdict,
-    chosen,
-    judge,
-    right_beyond,
-)
+from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict, chosen, judge, right_beyond
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled
 from symflex.roots.region import Band, Everything, Modes, Rectangle, Region

@@ -31,12 +31,7 @@ from symflex.equations.assemble import Nested
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue, Model
 from symflex.model.along import is_tapered
-from symflex.transfer.direct_solve import (
-    DirectSolve,
-    NotFollowedError,
-    Point,
-    SingularPointError,
-)
+from symflex.transfer.direct_solve import DirectSolve, NotFollowedError, Point, SingularPointError
 from symflex.transfer.enclose import enclosure
 
 BITS = 192

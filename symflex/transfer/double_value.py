@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf, isfinite, nan
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.balls import precision, precisions
 
-if TYPE_CHECKING:
-    Ball = Callable[[acb], acb]
+Ball = Callable[[acb], acb]
 
 FIRST_BITS = 96
 LAST_BITS = 6144

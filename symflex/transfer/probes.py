@@ -20,7 +20,7 @@ from fractions import Fraction
 from functools import cached_property, partial
 from math import sqrt, tau
 from random import Random
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 from flint import acb, arb, fmpz_mpoly
 
@@ -34,11 +34,10 @@ from symflex.transfer.enclose import enclosure, later, principal_values
 from symflex.transfer.nested_form import AnyTransferFunction, BoundNested, NestedTransferFunction
 from symflex.transfer.transfer_function import TransferFunction
 
-if TYPE_CHECKING:
-    Kind = Literal["drawn", "declared", "solved"]
-    Directions = tuple[tuple[str, str], ...]
-    Values = Mapping[str, ExactValue]
-    Evaluate = Callable[[Factored | None, int], Callable[[acb], acb]]
+Kind = Literal["drawn", "declared", "solved"]
+Directions = tuple[tuple[str, str], ...]
+Values = Mapping[str, ExactValue]
+Evaluate = Callable[[Factored | None, int], Callable[[acb], acb]]
 
 FIRST: Final = (("-1", "0"), ("0", "1"), ("-5/13", "12/13"), ("12/13", "-5/13"))
 SECOND: Final = (("0", "-1"), ("-1", "0"), ("-3/5", "-4/5"), ("4/5", "3/5"))

@@ -26,14 +26,7 @@ from symflex.analysis.explanation.at_points import PrimePoints
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
-from symflex.analysis.explanation.parts import (
-    Relation,
-    Separation,
-    relate,
-    separate,
-    varying,
-    waves_of,
-)
+from symflex.analysis.explanation.parts import Relation, Separation, relate, separate, varying, waves_of
 from symflex.analysis.explanation.text import EndChange, Kind, RealZero, Status, ZeroExplanation
 from symflex.balls import opposite
 from symflex.equations import Equations

@@ -25,12 +25,7 @@ from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.functions.entire import FactorBall, Sample
-from symflex.roots.functions.exponential_values import (
-    ExponentialValues,
-    Place,
-    Summed,
-    exponential_sums,
-)
+from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
 from symflex.roots.problem import is_complex
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose_kernels import KernelValues

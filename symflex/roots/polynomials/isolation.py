@@ -28,7 +28,7 @@ from symflex.roots.polynomials.discs import (
 if TYPE_CHECKING:
     from symflex.roots.problem import PolynomialInS
 
-    Goal = Callable[[acb], arb]
+Goal = Callable[[acb], arb]
 
 
 GUARD_DIGITS = 2  # digits beyond those wanted
