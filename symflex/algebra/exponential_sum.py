@@ -251,8 +251,6 @@ def expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
 def spread(even: int, odd: int) -> dict[int, int]:
     """Return the coefficients of ``(u + 1/u)^even * (u - 1/u)^odd`` by powers of u.
 
-    Examples
-    --------
     >>> spread(1, 2)
     {3: 1, 1: -1, -1: -1, -3: 1}
     """

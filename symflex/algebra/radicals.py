@@ -41,8 +41,6 @@ Point = tuple[int, dict[str, int]]  # a prime, and a residue for every generator
 class Radicals:
     """Arithmetic modulo the relations of square roots; false when there are none.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> ring = Ring(("s", "k", "m", "p", "q", "r"))  # p = sqrt(k), q = sqrt(m), r = sqrt(k*m)
     >>> s, k, m, p, q, r = (Factored.generator(ring, name) for name in ring.names)

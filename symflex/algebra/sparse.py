@@ -18,8 +18,6 @@ class SparsePolynomial:
 
     The operations are those of ``fmpz_mpoly`` that equations are assembled with, under the same names.
 
-    Examples
-    --------
     >>> ring = SparseContext(("s", "k", "b"))
     >>> s, k, b = (ring.gen(i) for i in range(3))
     >>> (b * s + k) ** 2 - k * k

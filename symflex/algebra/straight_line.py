@@ -161,8 +161,6 @@ class Workbench:
     random point of a prime field is not zero; where that is zero it is taken for zero (for a function of
     degree d the odds of being wrong are d in 2^61).
 
-    Examples
-    --------
     >>> bench = Workbench(("s", "k"))
     >>> s, k = bench.generator(0), bench.generator(1)
     >>> bench.add([bench.multiply(s, k), bench.negate(bench.multiply(k, s))]) == ZERO

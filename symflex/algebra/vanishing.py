@@ -226,8 +226,6 @@ def _reciprocals(count: int, prime: int) -> tuple[int, ...]:
 def square_root(value: int, prime: int) -> int | None:
     """Return a square root modulo a prime, ``None`` when there is none.
 
-    Examples
-    --------
     >>> square_root(2, 17), square_root(3, 17)
     (6, None)
     """

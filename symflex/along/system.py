@@ -124,8 +124,6 @@ def polynomial_of(coefficients: Sequence[Number]) -> Polynomial:
 def sequence_of(coefficients: Coefficients, n: int) -> list[int]:
     """Return the states so that the slope of each follows from those before it; empty if they go in circles.
 
-    Examples
-    --------
     >>> sequence_of({(0, 1): acb_poly([1]), (1, 2): acb_poly([1])}, 3)
     [2, 1, 0]
     """

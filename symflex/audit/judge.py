@@ -73,8 +73,6 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
     Raises SpecError: SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a
     circle, SF224 a division by zero, SF225 an exponent that is not a number.
 
-    Examples
-    --------
     >>> from symflex.errors import Source
     >>> from symflex.model import load_model
     >>> from symflex.equations import assemble

@@ -26,8 +26,6 @@ def covered(
 
     UndecidedError where a piece would be shorter than ``shortest``.
 
-    Examples
-    --------
     >>> list(covered(lambda a, b: "short" if b - a < 0.3 else None, 2, 0.1))
     [(0.75, 1.0, 'short'), (0.5, 0.75, 'short'), (0.25, 0.5, 'short'), (0.0, 0.25, 'short')]
     """

@@ -64,8 +64,6 @@ def eliminate(
 
     Raises UndecidedError if no pivot is proved to differ from 0. Without borders, the last one may vanish.
 
-    Examples
-    --------
     >>> found = eliminate([{0: acb(2), 1: acb(1)}, {0: acb(1), 1: acb(3), 2: acb(1)}, {0: acb(1)}], 2)
     >>> complex(found.determinant), found.unknowns(2)[0].real, found.rows[2][2].real
     ((5+0j), [0.200000000000000 +/- 4.45e-17], [0.200000000000000 +/- 4.45e-17])

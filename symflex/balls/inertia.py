@@ -40,8 +40,6 @@ def elimination_order(size: int, pairs: Iterable[tuple[int, int]]) -> tuple[int,
 
     ``pairs`` are the places of entries, (i, i) of those on the diagonal.
 
-    Examples
-    --------
     >>> elimination_order(3, [(0, 0), (0, 1), (1, 1), (1, 2)])
     (0, 1, 2)
     """

@@ -21,8 +21,6 @@ def stays_inside(step: arb | acb, reach: arb) -> bool:
 
     The step is enclosed for all slopes on the box; ``reach`` is its exact half side.
 
-    Examples
-    --------
     >>> box = arb(1.4, 0.1)
     >>> stays_inside((arb(1.4) ** 2 - 2) / (2 * box), arb(0.1))
     True
@@ -37,8 +35,6 @@ def narrowed(root: Ball, newton: Callable[[Ball], Ball], steps: int, share: floa
     Where a box holds the root, so does Newton's operator of it. The last of at most so many steps is the
     first that leaves more than a share of the box.
 
-    Examples
-    --------
     >>> root = narrowed(arb(1.4, 0.1), lambda x: x.mid() - (x.mid() ** 2 - 2) / (2 * x), 9, 0.5)
     >>> root.rad() < 1e-14 and root.overlaps(arb(2).sqrt())
     True

@@ -34,8 +34,6 @@ class UndecidedError(Exception):
 class precision:  # noqa: N801 (reads as a statement)
     """Compute with ``bits`` bits, at least 2, inside the block; restore the former precision on every exit.
 
-    Examples
-    --------
     >>> import flint
     >>> before = flint.ctx.prec
     >>> with precision(200):
@@ -66,8 +64,6 @@ def current_bits() -> int:
 def precisions(first: int, last: int) -> Iterator[int]:
     """Yield ``first`` and its doubles as long as they are at most ``last``.
 
-    Examples
-    --------
     >>> list(precisions(64, 300))
     [64, 128, 256]
     """
@@ -103,8 +99,6 @@ def current_terms() -> int:
 def bits_for_digits(digits: int) -> int:
     """Return the bits that ``digits`` decimal digits need, with a few to spare.
 
-    Examples
-    --------
     >>> bits_for_digits(50)
     183
     """
@@ -114,8 +108,6 @@ def bits_for_digits(digits: int) -> int:
 def to_mpmath(ball: arb) -> mpmath.mpf:
     """Return the midpoint of a real ball, exactly.
 
-    Examples
-    --------
     >>> from flint import arb
     >>> to_mpmath(arb(0.75))
     mpf('0.75')

@@ -84,8 +84,6 @@ def value_at(
 def raised(base: Arithmetic, exponent: int) -> Arithmetic:
     """Return an integer power of a ball or a series, not finite where it divides by zero.
 
-    Examples
-    --------
     >>> raised(acb_series([2, 1], 2), -1), raised(acb_series([0, 1], 2), -1)[0].is_finite()
     (0.500000000000000 + (-0.250000000000000)*x + O(x^2), False)
     """
@@ -103,8 +101,6 @@ def raised(base: Arithmetic, exponent: int) -> Arithmetic:
 def binary_exponent(value: acb) -> int | None:
     """Return about the binary logarithm of a ball's size, None for zero and what is not finite.
 
-    Examples
-    --------
     >>> binary_exponent(acb(5)), binary_exponent(acb(0))
     (3, None)
     """
@@ -120,8 +116,6 @@ def balancing(sizes: Sequence[Mapping[int, int]], columns: int, passes: int) -> 
 
     ``sizes`` are the binary exponents of what is not zero, row by row and by column; units make them differ.
 
-    Examples
-    --------
     >>> balancing([{0: 10, 1: 0}, {0: 10, 1: 4}], 2, 2)
     ([-10, -10], [0, 6])
     """
@@ -141,8 +135,6 @@ def balancing(sizes: Sequence[Mapping[int, int]], columns: int, passes: int) -> 
 def series_quotient(above: Sequence[acb], below: Sequence[acb], count: int) -> list[acb]:
     """Return the first coefficients of a quotient of power series; the divisor's first is not zero.
 
-    Examples
-    --------
     >>> [complex(c) for c in series_quotient([acb(1)], [acb(1), acb(-2)], 3)]
     [(1+0j), (2+0j), (4+0j)]
     """

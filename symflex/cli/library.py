@@ -318,8 +318,6 @@ def _unit_json(unit: Unit) -> dict[str, object]:
 def in_si(unit: Unit) -> str:
     """Return a unit in SI base units, exactly where that is short.
 
-    Examples
-    --------
     >>> from symflex.quantities import unit_of
     >>> in_si(unit_of("in")), in_si(unit_of("deg")), in_si(unit_of("rpm")), in_si(unit_of("lbf"))
     ('0.0254 m', 'pi/180 rad', '1/60 cycle/s', '4.4482216152605 N')

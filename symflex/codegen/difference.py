@@ -76,8 +76,6 @@ class DifferenceEquation:
     def assignments(self, number: Callable[[float], str] = repr) -> list[tuple[str, str]]:
         """Return targets and values of one step, of the input x and states w; x and y are the output then.
 
-        Examples
-        --------
         >>> from symflex import loads
         >>> lag = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s + 2)"')
         >>> sampled = lag.transfer_function("y", "u").bind().discretise("1", "tustin")

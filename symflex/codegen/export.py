@@ -247,8 +247,6 @@ class Language:
         does not fit in double precision, SF229 and SF910 when a function without a short formula has no band
         form; UsageError: SF902 when ``stem`` cannot be the name of a companion.
 
-        Examples
-        --------
         >>> from symflex import pipeline
         >>> from symflex.codegen.exporters import EXPORTERS
         >>> model = pipeline.loads('''
@@ -325,8 +323,6 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
 
     Those of a ``dialect``, another file, take the place of those that define one of the same names.
 
-    Examples
-    --------
     >>> [names for names in parts_of("matlab.m") if "columns" in names]
     [('columns',)]
     """
@@ -350,8 +346,6 @@ def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterab
 
     Text of a model, which might look like a call, is no part of the code.
 
-    Examples
-    --------
     >>> called_parts("f(x)", {("a",): "def a(): pass", ("f", "g"): "def f(): a()", ("h",): ""})
     ['def a(): pass', 'def f(): a()']
     """

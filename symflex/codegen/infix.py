@@ -165,8 +165,6 @@ def in_lines(text: str, width: int) -> list[str]:
 
     Only blanks are broken at, so a name longer than a line stays whole.
 
-    Examples
-    --------
     >>> in_lines("a * (b + c) / d", 10)
     ['a * (b +', 'c) / d']
     """

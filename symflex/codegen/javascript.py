@@ -431,8 +431,6 @@ class PairFunctions:
 def _quotient_of(code: tree.Straight) -> tree.Straight:
     """Return code whose first two values are a numerator and a denominator.
 
-    Examples
-    --------
     >>> _quotient_of(tree.Straight((), (), (tree.Negate(tree.Divide(tree.ONE, tree.Laplace())),))).values[1]
     Laplace()
     """
@@ -486,8 +484,6 @@ INTRODUCTION = (
 def string(text: str) -> str:
     r"""Return a string literal that ends neither a script nor a comment of a page.
 
-    Examples
-    --------
     >>> string("</script>\u2028")
     '"\\u003c/script>\\u2028"'
     """

@@ -172,8 +172,6 @@ def julia_module(contents: Contents) -> Export:
 def module_name(text: str) -> str:
     """Return a text as the name of a module, capitals for the first letters of words.
 
-    Examples
-    --------
     >>> module_name("six_mass"), module_name("Main"), module_name("2 masses, joined"), module_name("")
     ('SixMass', 'Main_', 'P2MassesJoined', 'TransferFunctions')
     """

@@ -201,8 +201,6 @@ class LocalFunctions(PrivateFunctions):
 def main_name(text: str) -> str:
     """Return a text as the name of a function file: the text itself where it can be one.
 
-    Examples
-    --------
     >>> main_name("six_mass"), main_name("exp"), main_name("2 masses, joined"), main_name("")
     ('six_mass', 'exp_', 'p_2_masses__joined', 'model')
     """

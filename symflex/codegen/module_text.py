@@ -117,8 +117,6 @@ def identifiers(
     texts of more than the ``longest`` number of characters are cut. Different keys have different
     identifiers: letters, digits and underscores of ASCII, a letter first.
 
-    Examples
-    --------
     >>> dict(identifiers({"a": "lambda", "b": "lambda_", "c": "k", "d": "2x)", "e": "k"}, {"lambda"}))
     {'a': 'lambda_2', 'b': 'lambda_', 'c': 'k', 'd': 'p_2x_', 'e': 'k_'}
     >>> dict(identifiers({"a": "stiffness_1", "b": "stiffness_2"}, {}, longest=9))
@@ -152,8 +150,6 @@ def inert(text: str) -> str:
     Line ends become spaces, double quotes single ones, characters that do not print their code points,
     and the marks at which doctest and reStructuredText begin to obey are pulled apart.
 
-    Examples
-    --------
     >>> inert("mass of\n the \u202e body")
     'mass of the <U+202E> body'
     >>> inert('a' + '"' * 3 + '>' * 3 + ' b')
@@ -168,8 +164,6 @@ def inert(text: str) -> str:
 class BlockComment:
     r"""How a language spells a comment, and what must not stand in one.
 
-    Examples
-    --------
     >>> BlockComment("/*", "*/", " * ", ("??",)).lines(["a */ b ??/", "c\\"])
     ['/* a * / b ? ?/', ' * c\\.', ' */']
     """

@@ -62,8 +62,6 @@ if TYPE_CHECKING:
 class StateEquations:
     r"""The equations of one exact realisation, for print.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

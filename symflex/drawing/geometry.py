@@ -50,8 +50,6 @@ class Extent:
     def overlaps(self, other: Extent) -> bool:
         """Tell whether two rectangles share more than an edge.
 
-        Examples
-        --------
         >>> [Extent(0, 0, 2, 2).overlaps(Extent(x, 0, 3, 2)) for x in (1, 2)]
         [True, False]
         """
@@ -73,8 +71,6 @@ def union(boxes: Iterable[Extent]) -> Extent:
 def free_level(room: Extent, limit: float, occupied: Sequence[Extent], *, is_up: bool) -> float:
     """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way.
 
-    Examples
-    --------
     >>> round(free_level(Extent(0, 0, 4, 2), 0.0, [Extent(3, 1, 5, 6)], is_up=True), 1)
     6.1
     """
@@ -157,8 +153,6 @@ class Placed:
     def extents(self) -> tuple[Extent, ...]:
         """Rectangles that cover it, small ones along what is slanted.
 
-        Examples
-        --------
         >>> slanted = Placed("element", "a", (Stroke(((0, 0), (30, 40))),))
         >>> any(e.overlaps(Extent(20, 0, 30, 10)) for e in slanted.extents)
         False
@@ -177,8 +171,6 @@ class Placed:
     def rotated(self, dx: float, dy: float) -> Placed:
         """Return a part turned about the origin, so that x runs in a direction; its texts stay upright.
 
-        Examples
-        --------
         >>> Placed("wire", "", (Stroke(((0, 0), (2, 1))),)).rotated(0, -1).strokes[0].points
         ((0, 0), (1, -2))
         """

@@ -92,8 +92,6 @@ def filled(parts: Sequence[str], width: float, size: float = SMALL) -> list[Lett
 def name_latex(name: str) -> str:
     r"""Return a name in mathematics, cut where it is long.
 
-    Examples
-    --------
     >>> print(name_latex("x_tip"), name_latex("a" * 64))
     x_{\mathrm{tip}} \mathrm{aaaaaaaaaaaaa\ldots}
     """

@@ -494,8 +494,6 @@ def depths(
 ) -> Depths:
     """Return a root at even stations, the greatest as 1; nothing of a coefficient that does not vary.
 
-    Examples
-    --------
     >>> found = depths(Sum((Number(Fraction(1)), Name("x"))), (0.0, 1.0), {}, 1)
     >>> [round(found[i], 2) for i in (0, 12, 24)]
     [0.5, 0.75, 1.0]

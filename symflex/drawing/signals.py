@@ -201,8 +201,6 @@ def whole(value: Expression) -> Expression:
 def formula(block: PlacedBlock) -> Expression | None:
     """Return the transfer function of a block with its values, None if it has no formula.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression
     >>> from symflex.library.blocks import BLOCKS
     >>> from symflex.model import PlacedBlock

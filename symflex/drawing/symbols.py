@@ -114,8 +114,6 @@ def drawn(strokes: str) -> Callable[[float], Strokes]:
     The x of a point is a share of the symbol's length, with points after it, its y is in points: ``.5-4,3``
     is 4 points before the middle and 3 above the axis.
 
-    Examples
-    --------
     >>> [stroke.points for stroke in drawn("line 0,0 .5-4,0; thin .5-4,3 .5-4,-3")(24.0)]
     [((0.0, 0.0), (8.0, 0.0)), ((8.0, 3.0), (8.0, -3.0))]
     """
@@ -170,8 +168,6 @@ DEEPEST: Final = 4.2  # the same of one that tapers, where it is deepest
 def half_depth(depths: Sequence[float], share: float) -> float:
     """Return half the width of a member at a share of its length.
 
-    Examples
-    --------
     >>> half_depth((), 0.3), half_depth((1.0, 0.5), 0.0)
     (2.2, 4.2)
     """

@@ -223,8 +223,6 @@ def _lumped(row: int, form: LinearForm, at: Mapping[Variable, int], entries: _En
 def _band_order(count: int, rows: Sequence[Sequence[int]]) -> list[int]:
     """Return places of unknowns such that those in one row stand close (Cuthill & McKee 1969, reversed).
 
-    Examples
-    --------
     >>> _band_order(4, [[0, 3], [3, 1], [1, 2]])
     [3, 1, 0, 2]
     """

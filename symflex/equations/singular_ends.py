@@ -44,8 +44,6 @@ class UnsolvedEndError(ValueError):
 def vanishing_order(value: Factored, h: fmpz_mpoly) -> tuple[int, Factored]:
     """Return how often a linear polynomial is a factor of a value, and the value with it in front.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> ring = Ring(("l", "x"))
     >>> l, x = Factored.generator(ring, "l"), Factored.generator(ring, "x")

@@ -19,8 +19,6 @@ class Source:
 class Span:
     r"""A half-open range of characters ``start <= i < end`` of a source.
 
-    Examples
-    --------
     >>> span = Span(Source("a.toml", "x = 1\nk = 2\n"), 6, 7)
     >>> span.line, span.column, span.text
     (2, 1, 'k')
@@ -90,8 +88,6 @@ SHOWN_COLUMNS = 160
 class Diagnostic:
     """One problem, with a stable code.
 
-    Examples
-    --------
     >>> from symflex.errors import Source, Span
     >>> source = Source("a.toml", 'm = "3 kgg"')
     >>> print(Diagnostic("SF201", "unknown unit 'kgg'", Span(source, 7, 10), "did you mean 'kg'?").render())
@@ -136,8 +132,6 @@ def _excerpt(span: Span) -> list[str]:
 def printable(text: str, kept: str = "") -> str:
     r"""Return ``text`` with control characters escaped but those kept: a file cannot drive a terminal.
 
-    Examples
-    --------
     >>> print(printable("\x1b[2J\n", kept="\n"), end="")
     \x1b[2J
     """
@@ -147,8 +141,6 @@ def printable(text: str, kept: str = "") -> str:
 def nearest(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
     """Return a hint naming the closest known name, or ``None`` when none is close.
 
-    Examples
-    --------
     >>> nearest("sprnig", ["mass", "spring"])
     "did you mean 'spring'?"
     >>> nearest("X", ["x", "XY"]), nearest("x_1", ["x", "F"])
@@ -168,8 +160,6 @@ def nearest(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
 def counted(count: int, noun: str) -> str:
     """Return a number of things.
 
-    Examples
-    --------
     >>> counted(1, "pole"), counted(0, "zero"), counted(3, "zero")
     ('1 pole', 'no zeros', '3 zeros')
     """

@@ -73,8 +73,6 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
     Raises ValueError, with the part that has none: a function that is not smooth or not known, an exponent
     that is no whole number. Raises ZeroDivisionError where a denominator is the number zero.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, format_expression, parse
     >>> from symflex.errors import Text
     >>> for text in ("a*x^3 + sin(x)*y", "sqrt(x)/x"):
@@ -116,8 +114,6 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
 def rate(expression: Expression, varies: Callable[[Expression], bool]) -> Expression:
     """Return the derivative in time, by the chain rule over names, and derivatives, that vary.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, format_expression, parse
     >>> from symflex.errors import Text
     >>> text = Text.alone("text", "m*sin(x)*x'")
@@ -145,8 +141,6 @@ def without_brackets(expression: Expression, varies: Callable[[Expression], bool
 def elementary(expression: Expression) -> Expression:
     """Return an expression whose powers of half a number are roots, and other broken ones exponentials.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression, parse
     >>> from symflex.errors import Text
     >>> format_expression(elementary(parse(Text.alone("text", "x^1.5 + 10^(-x)"))))
@@ -173,8 +167,6 @@ def simplified(expression: Expression, values: Mapping[str, Expression]) -> Expr
 
     Raises ZeroDivisionError where a denominator becomes the number zero.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression, parse
     >>> from symflex.errors import Text
     >>> format_expression(simplified(parse(Text.alone("text", "a*cos(x) + b*sin(x)/c")), {"x": number(0)}))

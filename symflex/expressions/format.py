@@ -64,8 +64,6 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
     Any other number prints as numerator over denominator and is read back as the ``Quotient`` of two
     integers, of the same value; a negative number is read back as the ``Negative`` of a positive one.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> s, m = Name("s"), Name("m")
     >>> format_expression(Product((m, Power(s, Number(Fraction(2))))))
@@ -150,8 +148,6 @@ def _unsigned(node: Expression) -> Expression:
 def number_text(value: Fraction) -> str:
     """Print a non-negative number exactly: an integer, a short decimal, or numerator over denominator.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> [number_text(Fraction(text)) for text in ("3", "21/10000", "4.7e-12", "2/3", "5e17")]
     ['3', '0.0021', '4.7e-12', '2/3', '5e17']

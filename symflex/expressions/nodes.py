@@ -194,8 +194,6 @@ class Equation(Expression):
 def number(value: Fraction | int) -> Expression:
     """Return a number; a negative one is minus a positive one.
 
-    Examples
-    --------
     >>> number(-2)
     Negative(operand=Number(value=Fraction(2, 1)))
     """
@@ -206,8 +204,6 @@ def number(value: Fraction | int) -> Expression:
 def sum_of(terms: Iterable[Expression]) -> Expression:
     """Return the sum of any number of terms, in order; of none, zero.
 
-    Examples
-    --------
     >>> from symflex.expressions.nodes import Name
     >>> sum_of([Name("a"), number(0), Sum((Name("b"), Name("c")))])
     Sum(terms=(Name(name='a'), Name(name='b'), Name(name='c')))
@@ -228,8 +224,6 @@ def sum_of(terms: Iterable[Expression]) -> Expression:
 def product_of(factors: Iterable[Expression]) -> Expression:
     """Return the product of any number of factors, its numbers gathered in front; of none, one.
 
-    Examples
-    --------
     >>> from symflex.expressions.nodes import Name
     >>> product_of([Name("a"), number(-2), Name("b"), number(3)])
     Negative(operand=Product(factors=(Number(value=Fraction(6, 1)), Name(name='a'), Name(name='b'))))
@@ -260,8 +254,6 @@ def quotient(numerator: Expression, denominator: Expression) -> Expression:
 
     Raises ZeroDivisionError when the denominator is the number zero.
 
-    Examples
-    --------
     >>> from symflex.expressions.nodes import Name
     >>> quotient(number(-1), Name("s"))
     Negative(operand=Quotient(numerator=Number(value=Fraction(1, 1)), denominator=Name(name='s')))
@@ -282,8 +274,6 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
     ``x^0`` is 1 for every x, as in polynomials. Raises ZeroDivisionError when the base is the number zero and
     the exponent a negative number.
 
-    Examples
-    --------
     >>> from symflex.expressions.nodes import Name
     >>> power(negative(Name("s")), 3)
     Negative(operand=Power(base=Name(name='s'), exponent=Number(value=Fraction(3, 1))))
@@ -310,8 +300,6 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
 def negative(operand: Expression) -> Expression:
     """Return minus an expression; minus minus x is x, minus zero is zero.
 
-    Examples
-    --------
     >>> from symflex.expressions.nodes import Name
     >>> negative(negative(Name("a")))
     Name(name='a')
@@ -343,8 +331,6 @@ def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative,
 
     A call stands before the names in its argument.
 
-    Examples
-    --------
     >>> x = Name("x")
     >>> names(Sum((Call("sin", x), Attribute("motor", "i"), x)))  # doctest: +NORMALIZE_WHITESPACE
     (Call(name='sin', argument=Name(name='x'), order=0), Name(name='x'), Attribute(owner='motor', name='i'),
@@ -393,8 +379,6 @@ def fold(
     is written; ``call`` a call and its argument's value; the others values. Raises TypeError on what has no
     value by itself, such as an equation.
 
-    Examples
-    --------
     >>> x = Name("x")
     >>> fold(Sum((Power(x, Number(Fraction(2))), Negative(x))), number=Fraction, name={"x": Fraction(3)}.get,
     ...      power=lambda base, exponent: base**exponent.value, call=lambda call, argument: argument)
@@ -436,8 +420,6 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     new tree is flat like every tree and otherwise not simplified; parts without a replaced name are the same
     objects as before, and rebuilt parts keep their place in the text.
 
-    Examples
-    --------
     >>> a, b, c = Name("a"), Name("b"), Name("c")
     >>> substitute(Sum((a, c)), {"a": Sum((b, c)), "c": a})
     Sum(terms=(Name(name='b'), Name(name='c'), Name(name='a')))
@@ -457,8 +439,6 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
 def replace_values(expression: Expression, mapping: Mapping[Expression, Expression]) -> Expression:
     """Replace names, values of fields at points, derivatives along x, and brackets by expressions.
 
-    Examples
-    --------
     >>> value = Call("w", Name("l"))
     >>> replace_values(Sum((value, Name("x"))), {value: Name("tip")})
     Sum(terms=(Name(name='tip'), Name(name='x')))
@@ -470,8 +450,6 @@ def replace_values(expression: Expression, mapping: Mapping[Expression, Expressi
 def replace_node(expression: Expression, old: Expression, new: Expression) -> Expression:
     """Replace every part of an expression that is equal to one.
 
-    Examples
-    --------
     >>> power = Power(Name("x"), Number(Fraction(2)))
     >>> replace_node(Sum((power, Name("x"))), power, Name("y"))
     Sum(terms=(Name(name='y'), Name(name='x')))

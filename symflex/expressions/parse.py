@@ -70,8 +70,6 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -
     underscore, SF103 for text beyond the limits, SF223 for a bracket with primes without ``brackets``. Only
     the first problem is reported.
 
-    Examples
-    --------
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("robot.toml", "m*s + 2.5e-3")
     >>> tree = parse(Text(source.text, Span(source, 0, 12)))
@@ -95,8 +93,6 @@ def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
 
     Raises SpecError as :func:`parse`; SF111 also when there is not exactly one ``=``.
 
-    Examples
-    --------
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("beam.toml", "w''(l) = 0")
     >>> parse_equation(Text(source.text, Span(source, 0, 10)))

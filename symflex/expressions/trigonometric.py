@@ -44,8 +44,6 @@ HALF: Final = Fraction(1, 2)
 def shorter(expression: Expression) -> Expression:
     """Return the shorter of an expression and its expansion with products of sines and cosines as sums.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression, parse
     >>> from symflex.errors import Text
     >>> text = Text.alone("text", "m*(l*cos(a + b)*cos(a) + l*sin(a)*sin(a + b)) + cos(c)")

@@ -173,8 +173,6 @@ def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np
 
     ``reach`` is half the width of what is shown; infinite values become gaps.
 
-    Examples
-    --------
     >>> drawable(np.array([1 + 1j, 3e9j, -np.inf]), 2.0).tolist()
     [(1+1j), 100j, (nan+nanj)]
     """
@@ -194,8 +192,6 @@ NARROWEST = 1e-6  # least length of an axis over its ends: its ticks have six di
 class AxisLimits:
     """Ends of axes in place of those that a figure would choose.
 
-    Examples
-    --------
     >>> AxisLimits(x=(-10.0, 0.0)).y is None
     True
     """

@@ -17,8 +17,6 @@ Raster = tuple[bytes, dict[str, int]]
 class ShownFigure(Figure):
     r"""A figure that belongs to no window, and that a notebook shows where it is a cell's value.
 
-    Examples
-    --------
     >>> data, size = ShownFigure(figsize=(3.5, 2.0))._repr_png_()
     >>> data[:4], size
     (b'\x89PNG', {'width': 420, 'height': 240})

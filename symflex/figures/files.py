@@ -114,8 +114,6 @@ def pgf_text(text: str, *, is_math: bool = True) -> str:
 
     ``is_math`` is False when dollar signs are dollar signs.
 
-    Examples
-    --------
     >>> print(pgf_text(r"Gain [dB re 1 $\mathrm{m/N}$]"), pgf_text("$10^{2}$ 5%", is_math=False))
     Gain [dB re 1 $\mathrm{m/N}$] \$10\textasciicircum{}\{2\}\$ 5\%
     >>> print(pgf_text(r"$\input{x}$"))

@@ -140,8 +140,6 @@ def draw_shapes(
 def heading(shape: EnclosedModeShape) -> str:
     r"""Return natural frequency and damping ratio, or loss factor, of a mode, or its pole if that is real.
 
-    Examples
-    --------
     >>> from flint import arb
     >>> from symflex.analysis.modes import EnclosedModeShape
     >>> from symflex.roots import Root
@@ -162,8 +160,6 @@ def heading(shape: EnclosedModeShape) -> str:
 def label_of_value(value: float, digits: int) -> str:
     r"""Return a number with all its significant digits, trailing zeros too.
 
-    Examples
-    --------
     >>> label_of_value(11, 4), label_of_value(12345.6, 4), label_of_value(0.000149, 3), label_of_value(2e9, 4)
     ('11.00', '12346', '0.000149', '2.000\\cdot 10^{9}')
     """

@@ -58,8 +58,6 @@ class RootMark:
     def value(self) -> str:
         r"""The root in four digits, with its conjugate, in matplotlib's mathematics.
 
-        Examples
-        --------
         >>> RootMark("zero", complex(-1989.6, 0)).value, RootMark("pole", complex(0, 1516.54), 2).value
         ('$-1990$', '$\\pm 1517\\,\\mathrm{j}$ (2)')
         """
@@ -125,8 +123,6 @@ def choose_view(
     resonances up to a hundred times the lowest, and the real roots of their size.
     ``ratios`` are the smallest and the largest width over height.
 
-    Examples
-    --------
     >>> marks = [RootMark("pole", s) for s in (-2 + 70j, -2 - 70j, -5000 + 0j)]
     >>> view = choose_view(marks, None, (0.6, 1.8))
     >>> view.shows(marks[0]), view.shows(marks[2]), view.re[0] > -150
@@ -226,8 +222,6 @@ Box = tuple[float, float, float, float]  # left, bottom, right, top [points]
 class Panel:
     """A panel of a given size that shows a view, and the roots drawn in it.
 
-    Examples
-    --------
     >>> from symflex.figures.s_plane import View
     >>> panel = Panel(View((-10.0, 10.0), (-10.0, 10.0), frozenset()), 1.0, 1.0, (5 + 0j,))
     >>> panel.at(5 + 0j)

@@ -111,8 +111,6 @@ def paper_style(font: str = DEFAULT_FONT) -> AbstractContextManager[None]:
 def family_of(text: str, font: str) -> list[str] | None:
     """Return the families of a text that the font lacks letters for, None when it has them all.
 
-    Examples
-    --------
     >>> family_of("Two masses", "latex"), family_of("a < b", "latex"), family_of("a < b", "times")
     (None, ['STIXGeneral', 'DejaVu Sans'], None)
     """
@@ -141,8 +139,6 @@ def write_titles(figure: Figure, titles: Sequence[Sequence[str]], above: float, 
 def title_lines(title: str | None, width: float) -> list[str]:
     """Return a title broken to a width [inches], but not at equals signs, without what does not print.
 
-    Examples
-    --------
     >>> title_lines("Two masses, one pole at s = 0", 1.5)
     ['Two masses, one pole at', 's = 0']
     """
@@ -185,8 +181,6 @@ def label_of(end: Output | Input) -> str:
 def label_of_name(name: str) -> str:
     r"""Return a name in mathematics: words upright, Greek letters as such, what follows ``_`` as subscript.
 
-    Examples
-    --------
     >>> print(label_of_name("X_tip"), label_of_name("omega_p1"), label_of_name("x2"), label_of_name("y_s"))
     X_{\mathrm{tip}} \omega_{\mathrm{p1}} x_{2} y_{s}
     """
@@ -227,8 +221,6 @@ def _unit_part(token: re.Match[str]) -> str:
 def label_of_unit(unit: str) -> str:
     r"""Return a unit in upright mathematics, empty for a pure or unknown one.
 
-    Examples
-    --------
     >>> print(label_of_unit("m/(N*s^2)"), label_of_unit("uA/kOhm"))
     $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega}$
     """
@@ -241,8 +233,6 @@ TIGHT_DOT: Final = r"\!\cdot\!"
 def power_of_ten(decimal: str, times: str) -> str:
     r"""Return a decimal in mathematics, without a factor 1 before a power of ten.
 
-    Examples
-    --------
     >>> print(power_of_ten("2.1e-11", r"\cdot "), power_of_ten("-1e+06", r"\cdot "), power_of_ten("95", ""))
     2.1\cdot 10^{-11} -10^{6} 95
     """
@@ -256,8 +246,6 @@ def power_of_ten(decimal: str, times: str) -> str:
 def label_of_frequency(value: float) -> str:
     """Return a number on a logarithmic axis, written out where that is short.
 
-    Examples
-    --------
     >>> [label_of_frequency(f) for f in (0.1, 20, 1e6)]
     ['0.1', '20', '$10^{6}$']
     """
@@ -269,8 +257,6 @@ def label_of_frequency(value: float) -> str:
 def number_label(value: float) -> str:
     r"""Return a number in four digits in matplotlib's mathematics.
 
-    Examples
-    --------
     >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
     ('25', '10^{6}', '2.5\\times 10^{-7}')
     """

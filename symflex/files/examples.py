@@ -38,8 +38,6 @@ def examples_folder() -> Path:
 def examples() -> dict[str, Path]:
     """Return the paths of all examples by their names, each folder before the models in it.
 
-    Examples
-    --------
     >>> [name for name in examples() if name.startswith("frames")][:3]
     ['frames', 'frames/l_frame', 'frames/pin_ended_cross']
     """
@@ -61,8 +59,6 @@ def title_of(name: str, path: Path) -> str:
 def example_of(path: str) -> str | None:
     """Return the name of the example whose file a path seems to mean; ``None`` if there is none.
 
-    Examples
-    --------
     >>> example_of("derivations/classics/quarter_car.toml"), example_of("my_car.toml")
     ('quarter_car', None)
     """
@@ -75,8 +71,6 @@ def find_example(name: str) -> Path:
 
     Raises UsageError: SF902 when there is none.
 
-    Examples
-    --------
     >>> find_example("classics/quarter_car") == find_example("quarter_car")
     True
     >>> find_example("quarter_cart")

@@ -24,8 +24,6 @@ def write_atomically(path: Path, data: bytes) -> None:
     and the path is not a symbolic link, a folder or a device. Raises UsageError: SF903, with the reason; the
     old content, if any, is untouched and no temporary file remains.
 
-    Examples
-    --------
     >>> write_atomically(Path("no/such/folder/a.svg"), b"")
     Traceback (most recent call last):
     symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
@@ -39,8 +37,6 @@ def check_writable(path: Path) -> None:
 
     Raises UsageError: SF903 as :func:`write_atomically`, as far as that is known beforehand.
 
-    Examples
-    --------
     >>> check_writable(Path("no/such/folder/a.svg"))
     Traceback (most recent call last):
     symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
@@ -166,8 +162,6 @@ def _sync_folder(folder: Path) -> None:
 def free_name(stem: str, taken: Iterable[str], suffix: str = "") -> str:
     """Return a file's name that is not taken, not even where capitals count as small letters.
 
-    Examples
-    --------
     >>> free_name("Beam", ["beam.csv"], ".csv")
     'Beam_2.csv'
     """

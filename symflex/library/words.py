@@ -145,8 +145,6 @@ FORMULAS = {("T_i", "k_i"): 'k_i = "k_p/T_i"', ("T_n", "k_i"): 'k_i = "k_p/T_n"'
 def key_meant(word: str, known: Iterable[str]) -> str | None:
     """Return which of the known keys an unknown one means, None if that is not plain.
 
-    Examples
-    --------
     >>> key_meant("c", ("between", "b")), key_meant("Kp", ("k_p", "k_i")), key_meant("x", ("k",))
     ('b', 'k_p', None)
     """
@@ -158,8 +156,6 @@ def key_meant(word: str, known: Iterable[str]) -> str | None:
 def thing(word: str) -> Thing | None:
     """Return what a word names, in any case, with blanks or hyphens; None if nothing is known of it.
 
-    Examples
-    --------
     >>> thing("Op-Amp").use, thing("ball screw").how
     ('op_amp', 'ratio = "10 mm/rev"')
     >>> thing("x") is None

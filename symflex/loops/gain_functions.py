@@ -189,8 +189,6 @@ class GainFunctions:
 def exponent(expression: Expression, gain: str) -> Fraction | None:
     """Return the power of a gain that an expression is, but for a factor; ``None`` of anything else.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, Product
     >>> exponent(Call("sqrt", Product((Name("m"), Name("K")))), "K")
     Fraction(1, 2)

@@ -16,8 +16,6 @@ __all__ = ["COORDINATE", "is_tapered", "varies_along_x"]
 def varies_along_x(expression: Expression) -> bool:
     """Tell whether the coordinate stands in an expression that may hold it.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, Product
     >>> varies_along_x(Product((Name("A_0"), Name("x")))), varies_along_x(Name("A_0"))
     (True, False)

@@ -68,8 +68,6 @@ def named_brackets(
     an unknown without a derivative. No coefficient is differentiated then: ``(E*I*w'')'' = p`` becomes
     ``M'' = p`` and ``E*I*w'' = M``.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression, parse_equation
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("", "(A*x*u')' = s^2*u")

@@ -178,8 +178,6 @@ class Use:
 def turned_name(name: str, cycles: int) -> Expression:
     """Return a name with the 2 pi that make its cycles radians.
 
-    Examples
-    --------
     >>> from symflex.expressions import format_expression
     >>> [format_expression(turned_name("f", n)) for n in (1, 2, -1)]
     ['2*pi*f', '4*pi^2*f', 'f/(2*pi)']

@@ -40,8 +40,6 @@ SQUARES = {
 def direction_of(angle: Expression) -> Mapping[str, Expression]:
     """Return the cosine and sine of an angle, and the products that turning a matrix takes.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, format_expression
     >>> angle = Sum((Name("alpha"), Quotient(Name("pi"), Number(Fraction(2)))))
     >>> {name: format_expression(e) for name, e in direction_of(angle).items()}

@@ -26,8 +26,6 @@ def check_label(label: Text) -> str:
 
     Raises SpecError: SF230, at the offending characters.
 
-    Examples
-    --------
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("a.toml", r"\omega_{p1}")
     >>> check_label(Text(source.text, Span(source, 0, 11)))

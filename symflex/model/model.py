@@ -77,8 +77,6 @@ class ModelParameter:
     def as_written(self, value: ExactValue | None = None) -> tuple[ExactValue | None, str]:
         """Return a value, by default the parameter's own, in the unit that was written, with that unit.
 
-        Examples
-        --------
         >>> E = ModelParameter("E", ExactValue(Fraction(70 * 10**9)), "Pa", written_unit="GPa",
         ...               scale=ExactValue(Fraction(10**9)))
         >>> E.as_written()
@@ -417,8 +415,6 @@ class Model:
     def is_closed_loop(self) -> bool:
         r"""True when a signal depends on itself: by others, or by what it drives in the network.
 
-        Examples
-        --------
         >>> from symflex import pipeline
         >>> text = 'symflex = 1\ninputs.r = {}\nsignals.y = "2*(r - y)"\noutputs.y_out = "y"'
         >>> pipeline.loads(text).is_closed_loop

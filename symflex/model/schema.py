@@ -44,8 +44,6 @@ RANGE: Schema = {"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2}
 def json_schema() -> Schema:
     """Return the schema of a specification.
 
-    Examples
-    --------
     >>> branches = json_schema()["properties"]["elements"]["additionalProperties"]["oneOf"]
     >>> spring = next(branch for branch in branches if branch["title"] == "spring")
     >>> spring["required"], spring["properties"]["k"]["description"]

@@ -236,8 +236,6 @@ def outside(written: str, described: str, span: Span | None) -> Diagnostic:
 def nearest_name(name: str, known: Sequence[str]) -> str | None:
     """Return a hint naming the closest known name, or all of them when none is close and they are few.
 
-    Examples
-    --------
     >>> nearest_name("K", ["m", "k"]), nearest_name("c", ["m", "k"])
     ("did you mean 'k'?", 'known names: m, k')
     """

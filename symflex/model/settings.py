@@ -33,8 +33,6 @@ def read_settings(texts: Sequence[str], option: str = OPTION) -> dict[str, str]:
 
     Raises UsageError: SF902 for a text that is not NAME=VALUE, or a name that is given twice.
 
-    Examples
-    --------
     >>> read_settings(["k=80 kN/m", "m = 2"])
     {'k': '80 kN/m', 'm': '2'}
     """
@@ -119,8 +117,6 @@ def spread_box(
 
     Values that hold pi are enclosed. Raises UsageError: SF804 for none, or for values of the wrong sign.
 
-    Examples
-    --------
     >>> from symflex.model.model import ExactValue, ModelParameter
     >>> m = ModelParameter("m", ExactValue(Fraction(2)), spread=Fraction(1, 10))
     >>> spread_box([m]), spread_box([m], Fraction(1, 2))

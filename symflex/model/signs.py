@@ -56,8 +56,6 @@ BIT_LIMIT = 4_000
 class Line:
     """The parameters that places along x are made of.
 
-    Examples
-    --------
     >>> from symflex.expressions import Negative, Number, Quotient, Sum
     >>> l, half = Name("l"), Quotient(Name("l"), Number(Fraction(2)))
     >>> line = Line({}, frozenset({"l"}), frozenset(), {})
@@ -450,8 +448,6 @@ def sign_between(
     ``value`` and ``slope`` enclose the function and its slope on a ball of x; ``is_zero`` says of each end
     whether the function vanishes there.
 
-    Examples
-    --------
     >>> sign_between((arb(0), arb(1)), lambda x: x * (1 - x), lambda x: 1 - 2 * x, (True, True))
     1
     >>> sign_between((arb(0), arb(1)), lambda x: x - 1, lambda x: arb(1), (False, True))
@@ -479,8 +475,6 @@ def sign_between(
 def sign_of(number: arb | None) -> int | None:
     """Return the sign of all numbers of a ball, ``None`` if they have none in common.
 
-    Examples
-    --------
     >>> sign_of(arb(-3)), sign_of(arb(0, 1)), sign_of(arb("nan"))
     (-1, None, None)
     """

@@ -51,8 +51,6 @@ LONG: Final = "a formula this long is not written"
 def typst(tf: AnyTransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as displays of Typst, one a row.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> from symflex.print.forms import print_forms
     >>> model = pipeline.loads('symflex = 1\nparameters.k = 2\ninputs.u = {}\noutputs.y = "k*u/(s^2 + k)"')

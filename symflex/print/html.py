@@ -30,8 +30,6 @@ def escape_html(text: str) -> str:
     writing. Dollar signs and backslashes stand in elements of their own, so that no typesetter of a page
     finds mathematics.
 
-    Examples
-    --------
     >>> print(escape_html("<b>5 & 6</b>"), escape_html(r"\(x\)"))
     &lt;b&gt;5 &amp; 6&lt;/b&gt; <span>\</span>(x<span>\</span>)
     """
@@ -79,8 +77,6 @@ MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
 def passages_html(passages: Iterable[Passage]) -> str:
     """Return what a command says as paragraphs and tables.
 
-    Examples
-    --------
     >>> from symflex.print.text import Passage
     >>> print(passages_html([Passage(["a <b>", "  of it"])]))
     <p>a &lt;b&gt;<br>&emsp;of it</p>

@@ -31,8 +31,6 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     A name that ``symbols`` lack becomes a plain symbol. A function of x that only a differential equation
     determines becomes an undefined function, or its derivative at a point.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, Sum
     >>> to_sympy(Sum((Name("a"), Name("b"))), {})
     a + b
@@ -66,8 +64,6 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     them. Raises ModelError: SF235 when it is not rational in s; BudgetError: SF501 when its polynomials are
     too large to be multiplied out.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

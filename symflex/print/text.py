@@ -250,8 +250,6 @@ class Passage(NamedTuple):
 def passages_text(passages: Iterable[Passage], width: int | None = None) -> str:
     r"""Return passages for a terminal, an empty line between two; their lines broken at ``width`` if given.
 
-    Examples
-    --------
     >>> table = [("f [Hz]", "zeta"), ("9.5", "0.01")]
     >>> print(passages_text([Passage(["two poles"], table), Passage(["no zeros"])]))
     two poles

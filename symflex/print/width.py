@@ -20,8 +20,6 @@ from typing import Final
 class Width:
     """How wide something is at the three sizes of mathematics [em of ten points].
 
-    Examples
-    --------
     >>> Width(1.0, 0.7, 0.5) + Width(0.5, 0.4, 0.35)
     Width(text=1.5, script=1.1, tiny=0.85)
     >>> Width(1.0, 0.7, 0.5).raised
@@ -56,8 +54,6 @@ class Width:
 def total(widths: Iterable[Width]) -> Width:
     """Return the width of things side by side.
 
-    Examples
-    --------
     >>> total([Width(1.0, 0.7, 0.5), Width(0.5, 0.4, 0.35)])
     Width(text=1.5, script=1.1, tiny=0.85)
     """
@@ -223,8 +219,6 @@ _GREEK: Final = _table(
 def greek_width(command: str) -> Width:
     """Return the width of a Greek letter.
 
-    Examples
-    --------
     >>> greek_width("zeta").text, greek_width("Omega").text
     (0.512, 0.723)
     """

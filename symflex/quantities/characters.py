@@ -25,8 +25,6 @@ _GROUP: Final = 3
 def code_point(character: str) -> str:
     """Return the number and name of a character that may look like another, to follow it in a message.
 
-    Examples
-    --------
     >>> code_point("\u2212"), code_point(",")
     (' (U+2212 MINUS SIGN)', '')
     """
@@ -42,8 +40,6 @@ IMAGINARY_UNIT = "the imaginary unit is j, as in 'k*(1 + j*eta)'; elements take 
 def character_hint(value: str, position: int) -> str | None:
     """Return what to write in place of the character of ``value`` at ``position``.
 
-    Examples
-    --------
     >>> character_hint("0,05 m", 1), character_hint("10⁻³", 2), character_hint("5 − 3", 2)
     ("write a decimal point: '0.05'", "write '^-3'", "write '-'")
     """
@@ -89,8 +85,6 @@ def _comma_hint(value: str, position: int) -> str:
 def ascii_name(text: str) -> str:
     """Return a name of letters in ASCII for one with others, empty where there is none.
 
-    Examples
-    --------
     >>> ascii_name("ω_n"), ascii_name("Dämpfer"), ascii_name("Δφ"), ascii_name("質量")
     ('omega_n', 'Daempfer', 'Deltaphi', '')
     """
@@ -112,8 +106,6 @@ def _spelled(character: str) -> str:
 def name_hint(text: str) -> str | None:
     r"""Return how a name is written that is not in ASCII, and how its letters are printed all the same.
 
-    Examples
-    --------
     >>> print(name_hint("ζ"), name_hint("a-b"), sep="\n")
     names are ASCII: write 'zeta', which latex = '\zeta' prints as before
     None

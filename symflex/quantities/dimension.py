@@ -13,8 +13,6 @@ _ZERO: Final = Fraction(0)
 class Dimension:
     """Exponents of the SI base units; angles and cycles have dimension one.
 
-    Examples
-    --------
     >>> length, time = Dimension(m=Fraction(1)), Dimension(s=Fraction(1))
     >>> str(length / time**2)
     'm/s^2'

@@ -148,8 +148,6 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
 
     Raises RejectedError with offsets in ``value``.
 
-    Examples
-    --------
     >>> constant, placed = evaluate("1/4 mm", "quantity")
     >>> constant.magnitude, placed.unit.scale, (placed.start, placed.end)
     (Fraction(1, 4), Fraction(1, 1000), (4, 6))

@@ -34,8 +34,6 @@ class Quantity:
     def angular(self) -> tuple[Fraction, int]:
         """Return (rational, power of pi) with a cycle counted as 2 pi radians.
 
-        Examples
-        --------
         >>> parse_quantity(Text.alone("a.toml", "11 Hz")).angular()
         (Fraction(22, 1), 1)
         """
@@ -56,8 +54,6 @@ def parse_quantity(text: Text) -> Quantity:
     Raises SpecError: SF201 for an unknown unit, SF202 for a malformed quantity, SF103 for one beyond the
     limits.
 
-    Examples
-    --------
     >>> stiffness = parse_quantity(Text.alone("a.toml", "35 kN/m"))
     >>> stiffness.magnitude, str(stiffness.dimension), stiffness.unit
     (Fraction(35000, 1), 'N/m', 'kN/m')
@@ -79,8 +75,6 @@ def parse_unit(text: Text) -> Unit:
 
     Raises SpecError: SF201 for an unknown unit, SF202 for a malformed one, SF103 for one beyond the limits.
 
-    Examples
-    --------
     >>> parse_unit(Text.alone("a.toml", "mm/rev")).scale
     Fraction(1, 1000)
     """
@@ -94,8 +88,6 @@ def unit_of(text: str) -> Unit:
 
     Every text is remembered, so this is for literals; read a user's text with :func:`parse_unit`.
 
-    Examples
-    --------
     >>> str(unit_of("N*m/A").dimension), unit_of("N*m/rad").radians
     ('V*s', -1)
     """
@@ -116,8 +108,6 @@ def looks_like_quantity(text: str) -> bool:
     expression: ``1/3``, ``2*pi``. Every text that :func:`parse_quantity` reads with a unit is one of the
     above.
 
-    Examples
-    --------
     >>> [looks_like_quantity(text) for text in ("2 m", "3kg", "-0.5", "5 1/s", "2 kgg")]
     [True, True, True, True, True]
     >>> [looks_like_quantity(text) for text in ("2*m", "m", "1/3", "2/s", "k_t 3", "")]

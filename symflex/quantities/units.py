@@ -21,8 +21,6 @@ from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 class Unit:
     """A unit as ``scale * pi**pi_power`` times a product of SI base units.
 
-    Examples
-    --------
     >>> (UNITS["in"] ** 2).scale
     Fraction(16129, 25000000)
     """
@@ -66,8 +64,6 @@ class Unit:
     def root(self, degree: int) -> Unit | None:
         """Return the exact root of the unit, or ``None`` when it is not a unit of this kind.
 
-        Examples
-        --------
         >>> str(UNITS["m"].root(2).dimension), UNITS["Hz"].root(2)
         ('m^(1/2)', None)
         """
@@ -295,8 +291,6 @@ def unit_named(symbol: str) -> Unit | None:
 
     A symbol of the table goes before a prefixed reading: ``min`` is the minute.
 
-    Examples
-    --------
     >>> unit_named("krpm").scale, unit_named("Krpm")
     (Fraction(50, 3), None)
     """
@@ -315,8 +309,6 @@ def run_together(symbol: str) -> tuple[Unit, Unit] | None:
     The usual products are read without a sign between their factors. A digit is a power, as in UCUM, and
     that of the last factor only, like a power that follows.
 
-    Examples
-    --------
     >>> [str(unit.dimension) for unit in run_together("kgm2")], run_together("Nkg"), run_together("ms")
     (['kg', 'm^2'], None, None)
     """
@@ -335,8 +327,6 @@ def run_together(symbol: str) -> tuple[Unit, Unit] | None:
 def unit_hint(symbol: str) -> str | None:
     """Return what an unknown symbol was probably meant to be.
 
-    Examples
-    --------
     >>> unit_hint("KN"), unit_hint("kgmm")
     ("did you mean 'kN'?", "did you mean 'kg*mm'?")
     """
@@ -369,8 +359,6 @@ def unit_hint(symbol: str) -> str | None:
 def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
     """Return how a unit is written that has another letter, a mass for a force, or one slash too many.
 
-    Examples
-    --------
     >>> from symflex.quantities import unit_of
     >>> unit_slip("lb/ft", unit_of("lb/ft").dimension, unit_of("N/m").dimension)
     "'lb' is a mass, 'lbf' a force: write 'lbf/ft'"
@@ -409,8 +397,6 @@ def _letter_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
 def unit_doubt(unit: str) -> tuple[str, str] | None:
     """Return how a unit is read that data sheets mean differently, and how what they mean is written.
 
-    Examples
-    --------
     >>> unit_doubt("mV/g")
     ("'g' is a gram", "for the acceleration of gravity write 'mV/g_n'")
     >>> unit_doubt("J/kg"), unit_doubt("L/min")

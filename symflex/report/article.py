@@ -133,8 +133,6 @@ def _drawn_width(picture: PageFigure) -> float:
 def picture_size(svg: str) -> tuple[float, float] | None:
     """Return width and height of a drawing [pt], None if it does not say.
 
-    Examples
-    --------
     >>> picture_size('<svg height="10pt" viewBox="0 0 20 10" width="20pt">')
     (20.0, 10.0)
     """

@@ -154,8 +154,6 @@ def text(*runs: Run) -> Paragraph:
 def sentence(words: str) -> str:
     """Return words with a capital letter at the beginning and a full stop at the end.
 
-    Examples
-    --------
     >>> sentence(": 2 of 2 roots enclosed."), sentence(", not stable"), sentence(".")
     ('2 of 2 roots enclosed.', 'Not stable.', '')
     """
@@ -177,8 +175,6 @@ def parted(sections: Sequence[Section]) -> tuple[Block, ...]:
 def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
     """Return columns with plain heads.
 
-    Examples
-    --------
     >>> [c.side for c in columns("Meaning", ("Value", "number"))]
     ['text', 'number']
     """
@@ -188,8 +184,6 @@ def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
 def filled(heads: tuple[PageColumn, ...], rows: Sequence[tuple[Cell, ...]], latex: str = "") -> Table:
     """Return a table without the columns in which no row says anything.
 
-    Examples
-    --------
     >>> filled(columns("Name", "Meaning"), [(("k",), ("",)), (("b",), ("–",))]).rows
     ((('k',),), (('b',),))
     """
@@ -214,8 +208,6 @@ _RAISED: Final = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 def exponents(decimal: str) -> str:
     """Return a decimal such as ``-1.5e-3`` as it is written by hand.
 
-    Examples
-    --------
     >>> exponents("-1.5e-3"), exponents("0.25")
     ('−1.5·10⁻³', '0.25')
     """
@@ -227,8 +219,6 @@ def exponents(decimal: str) -> str:
 def unit_text(unit: str) -> str:
     """Return a unit, nothing for a pure number.
 
-    Examples
-    --------
     >>> unit_text("kg*m^2"), unit_text("1")
     ('kg·m²', '')
     """
@@ -250,8 +240,6 @@ class ChapterPart:
 def code_of(error: SymflexError) -> int:
     """Return the exit code for what a report lacks: 4 not certified, 5 a budget; 0 where it is not to be had.
 
-    Examples
-    --------
     >>> from symflex.errors import BudgetError, ModelError
     >>> code_of(BudgetError()), code_of(ModelError())
     (5, 0)

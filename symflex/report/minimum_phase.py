@@ -38,8 +38,6 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
 
     ``explained`` says what its zeros are the poles of.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -54,8 +54,6 @@ class Compliance:
 def compliances(model: Model) -> tuple[Compliance, ...]:
     """Return what gives way in a model, in the order of its text.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1
@@ -207,8 +205,6 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     model stay as they are. Distributed models have no such limit, nor have models without any compliance.
     Zeros are None where nothing moves, as of a structure that only springs hold to ground.
 
-    Examples
-    --------
     >>> model = pipeline.loads('''
     ... symflex = 1
     ... elements.body = { type = "mass", at = "x", m = 2 }

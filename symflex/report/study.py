@@ -277,8 +277,6 @@ def _result(result: T | SymflexError) -> T:
 def attempt(compute: Callable[[], T]) -> T | SymflexError:
     """Return a result, or the error that says why there is none.
 
-    Examples
-    --------
     >>> def fail():
     ...     raise SymflexError
     >>> attempt(lambda: 1), attempt(fail)

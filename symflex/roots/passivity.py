@@ -117,8 +117,6 @@ def energy_proof(
     loss factors, parameters that depend on s, elements that are not of this program, fields beside elements
     or signals, or a value of the wrong sign.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> text = '''
     ... symflex = 1

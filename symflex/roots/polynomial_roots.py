@@ -34,8 +34,6 @@ def find_polynomial_roots(
     SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate, SF506 when
     the time is over: ``found`` is a tuple of the roots proved until then.
 
-    Examples
-    --------
     >>> from symflex.roots.problem import RootProblem
     >>> roots = find_polynomial_roots(RootProblem.from_rationals([25, 6, 1]), 5)
     >>> [(root.decimal(5).re, root.decimal(5).im) for root in roots]

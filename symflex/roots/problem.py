@@ -39,8 +39,6 @@ class RealConstant:
 class PolynomialInS:
     """A polynomial in s whose coefficients are integer polynomials in real constants; SF403 for zero.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> p = PolynomialInS.from_rationals([Fraction(1, 2), 0, Fraction(1, 3)])
     >>> p.degree, p.integers()
@@ -193,8 +191,6 @@ def split(problem: RootProblem) -> Splitting:
 
     It is exact over Q(constants), the constants taken as algebraically independent.
 
-    Examples
-    --------
     >>> splitting = split(RootProblem.from_rationals([0, 0, 4, 4, 1, 1]))  # s^2 (s + 1) (s^2 + 4)
     >>> splitting.zeros, [(part.polynomial.integers(), part.in_square) for part in splitting.parts]
     (2, [((4, 1), True), ((1, 1), False)])

@@ -44,8 +44,6 @@ class Everything:
 class Band:
     """The roots with natural frequency abs(s)/(2 pi) from ``low`` (0: no limit) to ``high`` [Hz].
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> Band(Fraction(1, 10), Fraction(1000)).to_json_dict()
     {'kind': 'band', 'low_hz': 0.1, 'high_hz': 1000.0}
@@ -168,8 +166,6 @@ def region_of(given: RootsOptions, mark: str = "") -> Region | None:
     Of ``modes``, ``mode``, ``band`` and ``region`` at most one is given (else SF902, as for limits that are
     none, or a number of a mode below 1); ``mark`` stands before their names in messages.
 
-    Examples
-    --------
     >>> from symflex.options import RootsOptions
     >>> region_of(RootsOptions(band=(0.1, 20)))
     Band(low=Fraction(1, 10), high=Fraction(20, 1))

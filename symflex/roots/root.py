@@ -175,8 +175,6 @@ class LossyRoot(Root):
 def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
     """Print a complex number with at most ``digits`` significant digits in each part, all certified.
 
-    Examples
-    --------
     >>> decimals(arb(1, 1e-3), arb(2) / 3, 6)
     RootDecimals(re='1.00', im='0.666667', radius='1.1e-3')
     >>> decimals(arb(0), arb(0, 1e-16), 6)
@@ -218,8 +216,6 @@ def figure(value: arb, digits: int, *, trimmed: bool = False) -> str:
     Every number in the ball lies within half a unit of the last digit. Where fewer than three digits do so,
     the radius follows. ``trimmed`` takes zeros away from the end, as ``g`` does.
 
-    Examples
-    --------
     >>> figure(arb(2) / 3, 6), figure(arb("0.12345", 1e-5), 6), figure(arb(1.75, 0.6), 6)
     ('0.666667', '0.123', '1.75 +- 0.61')
     >>> figure(arb(0, 1e-16), 6), figure(arb(1) / 2, 6), figure(arb(1) / 2, 6, trimmed=True)
@@ -242,8 +238,6 @@ def figure(value: arb, digits: int, *, trimmed: bool = False) -> str:
 def overlap(a: Root, b: Root) -> bool:
     """Tell whether two roots may be the same.
 
-    Examples
-    --------
     >>> one = Root(arb(0), arb(4, 0.1), 1, on_imaginary_axis=True, is_real=False)
     >>> overlap(one, Root(arb(0), arb(4.1, 0.1), 1, on_imaginary_axis=True, is_real=False))
     True
@@ -280,8 +274,6 @@ def groups(roots: Sequence[Root]) -> list[list[Root]]:
 
     Each is proved by itself, so that images may differ within their enclosures.
 
-    Examples
-    --------
     >>> one, other = (Root(arb(re, 1e-9), arb(0), 1, on_imaginary_axis=False, is_real=True) for re in (-2, 2))
     >>> len(groups([one, other])), len(groups([one, replace(other, re=arb(2.1, 1e-9))]))
     (1, 2)
@@ -306,8 +298,6 @@ def count_modes(roots: Sequence[Root]) -> int:
 def root_at_zero(order: int, reach: arb | float = 0) -> list[Root]:
     """Return a root of an order at 0, or as one all that lie so close to it; none of order 0.
 
-    Examples
-    --------
     >>> [root.multiplicity for root in root_at_zero(2)], root_at_zero(0)
     ([2], [])
     """
@@ -327,8 +317,6 @@ def mirror_images(roots: Sequence[Root], *, even: bool, real: bool = True) -> li
 
     If the function is not ``real``, none are images in the real axis, and for even functions -s is one of s.
 
-    Examples
-    --------
     >>> root = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
     >>> [(r.decimal(1).re, r.decimal(1).im) for r in mirror_images([root], even=True)]
     [('-3', '4'), ('-3', '-4'), ('3', '4'), ('3', '-4')]

@@ -97,8 +97,6 @@ def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows
     its rank among equal weights; ranks differ. What weighs most in a row is solved for. SF502 when
     coefficients become too large.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> from symflex.state_space.popov import FieldElement
     >>> ring = Ring(("s",))
@@ -181,8 +179,6 @@ def add_term(target: dict[Position, FieldElement], key: Position, value: FieldEl
 class FieldElement:
     """A quotient of integer polynomials in lowest terms.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> ring = Ring(("s", "k", "m"))
     >>> k, m = (FieldElement.of(ring.generator(n), ring.constant(1)) for n in "km")

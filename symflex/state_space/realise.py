@@ -66,8 +66,6 @@ def realise(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> Sta
     SF236 for an output that grows with s, SF251 with loss factors, SF30x for a singular model, SF502 when the
     coefficients become too large.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -77,8 +77,6 @@ class Design:
 
     SF507 for more than a million points.
 
-    Examples
-    --------
     >>> grid = Design((Axis("m", (ExactValue(Fraction(1)), ExactValue(Fraction(2)))),))
     >>> grid.count, grid.names, [point[0].rational for point in grid.points]
     (2, ('m',), [Fraction(1, 1), Fraction(2, 1)])
@@ -141,8 +139,6 @@ def too_many_points(count: int | str) -> BudgetError:
 def between(limits: Range, count: int) -> tuple[ExactValue, ...]:
     """Return values from one limit to the other, equally spaced in the range's scale.
 
-    Examples
-    --------
     >>> limits = Range("k", ExactValue(Fraction(0)), ExactValue(Fraction(1)))
     >>> [str(value.rational) for value in between(limits, 3)]
     ['0', '1/2', '1']
@@ -242,8 +238,6 @@ def read_design(
     without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for one that is
     assumed positive, also as the limit of a range; SF507 too many points.
 
-    Examples
-    --------
     >>> from symflex.model import ModelParameter
     >>> design = read_design([ModelParameter("k", None)], ["k=1:100:log:3"])
     >>> [str(point[0].rational) for point in design.points]
@@ -262,8 +256,6 @@ def design_of(
 ) -> Design:
     """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
 
-    Examples
-    --------
     >>> from symflex.model import ModelParameter
     >>> parameters = [ModelParameter(name, None) for name in ("k", "m")]
     >>> design_of(parameters, {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape

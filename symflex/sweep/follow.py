@@ -90,8 +90,6 @@ def predecessors(design: Design) -> Predecessors:
     In a grid that is the neighbour towards the first value of the last axis that is not there yet. Draws are
     reached from the one in the middle outwards, each from the nearest that is closer to the middle.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> from symflex.model import ExactValue
     >>> from symflex.sweep.design import Axis, Design
@@ -170,8 +168,6 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
     factor, in the same order. ``steps`` is the way through the design; ``between`` is asked where names are
     in doubt.
 
-    Examples
-    --------
     >>> s = np.array([[1j, 2j], [1.1j, 1.9j]])
     >>> follow(s, np.zeros(2, int), Predecessors((0, 1), (-1, 0), (-1, -1), (1.0, 1.0))).mode.tolist()
     [[0, 1], [0, 1]]

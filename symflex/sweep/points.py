@@ -52,8 +52,6 @@ class Doubles:
 def doubles(re: arb, im: arb) -> Doubles:
     """Round an enclosure.
 
-    Examples
-    --------
     >>> from flint import arb
     >>> from symflex.roots import precision
     >>> with precision(128):
@@ -382,8 +380,6 @@ def _margins_of(stability: StabilityMap) -> dict[str, Pair]:
 def logarithmic(low: Fraction, high: Fraction, count: int) -> list[float]:
     """Return frequencies between two, equally spaced in their logarithm, the same on every computer.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> logarithmic(Fraction(1), Fraction(100), 3)
     [1.0, 10.0, 100.0]

@@ -133,8 +133,6 @@ HOUR = 3600.0
 def chunk_size(count: int) -> int:
     """Return how many points a worker solves at a time, and the most that a kill loses per worker.
 
-    Examples
-    --------
     >>> [chunk_size(count) for count in (7, 10_000, 1_000_000)]
     [1, 50, 1000]
     """
@@ -251,8 +249,6 @@ def _stacked(arrays: Sequence[Array]) -> Array:
 def time_left(seconds: float) -> str:
     """Return a time in words.
 
-    Examples
-    --------
     >>> time_left(7.2), time_left(190.0), time_left(7300.0)
     ('8 s', '3 min 10 s', '2 h 2 min')
     """

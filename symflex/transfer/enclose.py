@@ -26,8 +26,6 @@ MOST_FACTORS = 64
 def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:
     """Return the exact value of an expression of rational numbers, ``None`` when it is anything else.
 
-    Examples
-    --------
     >>> from symflex.expressions import Number, Quotient
     >>> rational_value(Quotient(Number(Fraction(8)), Number(Fraction(6))), {})
     Fraction(4, 3)
@@ -70,8 +68,6 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
     It is one of numbers, ``pi``, named constants and elementary functions. Raises ModelError: SF228 when the
     value is not a finite real number.
 
-    Examples
-    --------
     >>> from symflex.expressions import Call, Number
     >>> from fractions import Fraction
     >>> enclose(Call("sqrt", Number(Fraction(4))), {}).contains(2)
@@ -120,8 +116,6 @@ def constant_tangent(
     Not finite where the expression has no derivative, such as ``sqrt(k)`` at ``k = 0``. Roots are those of
     the positive part of a ball where all that is meant ``is_real``.
 
-    Examples
-    --------
     >>> from symflex.expressions import Call, Name
     >>> root = Call("sqrt", Name("k"))
     >>> constant_tangent(root, {"k": first_order(arb(4), 1)})
@@ -174,8 +168,6 @@ def principal_values(
     ``number`` that of a number, which is exact by default. A value is not finite where the expression divides
     by zero.
 
-    Examples
-    --------
     >>> from symflex.expressions import Call, Name
     >>> principal_values(Call("sqrt", Name("s")), 2, lambda _: [acb(4), acb(-4)])
     [2.00000000000000, 2.00000000000000j]

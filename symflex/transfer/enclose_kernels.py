@@ -297,8 +297,6 @@ def square_root(x: Value) -> Value:
 
     Whether the ball crosses the cut of the principal root does not matter then.
 
-    Examples
-    --------
     >>> from flint import acb, arb
     >>> bool((square_root(acb(arb(-4, 1))) ** 2).contains(acb(-4)))
     True

@@ -72,8 +72,6 @@ class ProbeSetting:
 class Probes:
     """The test points of one transfer function; its values at them are found once.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -41,8 +41,6 @@ class Constraint:
 def hold(model: Model, coordinates: Coordinates) -> Constraint:
     """Return a model with one coordinate held, or with two locked to each other.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> from symflex.library.elements import Variable
     >>> model = pipeline.loads('''

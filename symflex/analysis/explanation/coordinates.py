@@ -158,8 +158,6 @@ def in_one_way(model: Model) -> Model:
 
     Points are equal by the parameters' values where they have some.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1
@@ -233,8 +231,6 @@ def parted_at(model: Model, output: str) -> Model:
 
     Nothing is changed where the output shows no point, or more than one, or elements lie in the plane.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1
@@ -290,8 +286,6 @@ def parted_at(model: Model, output: str) -> Model:
 def joined_values(model: Model) -> list[list[Expression]]:
     """Return the groups of values that conditions make equal.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -82,8 +82,6 @@ def ends_of_field(field: FieldProblem) -> str:
 
     A force or moment that an input applies leaves the end what it is.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -107,8 +107,6 @@ def explain_zeros(model: Model, bound: AnyBoundFunction, located: PoleZeroMap) -
 
     Determinants of networks in nested form are compared at points, see :mod:`.at_points`.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -49,8 +49,6 @@ def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = No
     ``typical`` is a matrix whose entries are as large as those of this one are in general. Rows and columns
     are scaled after it; where entries vanish by the singularity itself, they tell nothing of the scale.
 
-    Examples
-    --------
     >>> found = null_space(acb_mat([[1, -2], [-2, 4]]))
     >>> x, y = found.basis[0]
     >>> (x / y).contains(2), found.is_refuted
@@ -90,8 +88,6 @@ class SingularPair:
 def singular_pair(matrix: acb_mat, typical: acb_mat) -> SingularPair | None:
     """Return the vectors of a matrix whose null space has at most one dimension; None on balls too wide.
 
-    Examples
-    --------
     >>> pair = singular_pair(acb_mat([[1, -2], [-2, 4]]), acb_mat([[1, 1], [1, 1]]))
     >>> pair.corner.contains(0), (pair.right[0] / pair.right[1]).contains(2)
     (True, True)

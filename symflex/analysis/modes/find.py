@@ -59,8 +59,6 @@ def mode_shape(bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS)
     or a multiple pole fewer shapes than its multiplicity; SF406 (UncertifiedError) when the equations cannot
     be told to be singular at the pole.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

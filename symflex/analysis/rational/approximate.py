@@ -144,8 +144,6 @@ def approximate(
     SF402 when the function is identically zero, SF405 when residues, or the behaviour near s = 0, cannot be
     determined.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

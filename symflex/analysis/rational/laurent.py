@@ -381,8 +381,6 @@ def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[
 def about_zero(ball: arb) -> arb:
     """Return a ball that holds zero with its centre there, any other as it is.
 
-    Examples
-    --------
     >>> about_zero(arb(0.5, 1)).mid(), about_zero(arb(2, 1)).mid()
     (0, 2.00000000000000)
     """
@@ -508,8 +506,6 @@ def square_root(series: Value) -> Value:
     The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm. A
     ball that holds zero counts as zero before it.
 
-    Examples
-    --------
     >>> root = square_root(acb_series([0, 0, -4, -8], 4))
     >>> [complex(c) for c in root.coeffs()]
     [0j, 2j, 2j]

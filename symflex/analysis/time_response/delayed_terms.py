@@ -256,8 +256,6 @@ def _product(a: Mapping[Delay, Amplitude], b: Mapping[Delay, Amplitude]) -> dict
 def later(delay: Delay, other: Delay) -> Delay:
     """Return by how much one delay is longer than another.
 
-    Examples
-    --------
     >>> later(((0, Fraction(2)),), ((0, Fraction(1)), (1, Fraction(3))))
     ((0, Fraction(1, 1)), (1, Fraction(-3, 1)))
     """

@@ -139,8 +139,6 @@ def _estimated_rest(sizes: Sequence[float]) -> float:
     quarter before and all beyond are a geometric sequence. Of several families, such as two beams', some
     hardly move what is seen; in order of their sizes these come last.
 
-    Examples
-    --------
     >>> round(_estimated_rest([1 / n**2 for n in range(1, 65)]), 3)  # all beyond are 0.0155
     0.018
     """

@@ -143,8 +143,6 @@ def exact_values(values: npt.ArrayLike, count: int) -> list[Fraction]:
 
     Raises UsageError: SF811 when they are not finite, fewer than two, or not as many as their times.
 
-    Examples
-    --------
     >>> exact_values([0, 0.1], 2)
     [Fraction(0, 1), Fraction(1, 10)]
     """

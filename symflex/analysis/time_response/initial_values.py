@@ -46,8 +46,6 @@ def free_motion(model: Model, pair: tuple[str, str], initial: Mapping[str, str])
     Raises ModelError: SF235 for beams, rods and delays; UsageError: SF203 for a value in another unit, SF902
     for what is no state nor a multiple of one.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> text = 'symflex = 1\nsignals.y = "(u - y)/(2*s)"\ninputs.u = {}\noutputs.Y = "y"'
     >>> free_motion(pipeline.loads(text), ("Y", "u"), {"y": "3"}).ratio.denominator().expand()

@@ -51,8 +51,6 @@ class SampleTimes:
     def evenly(cls, until: Fraction, points: int) -> SampleTimes:
         """Return so many times from 0 to ``until``, exactly evenly spaced.
 
-        Examples
-        --------
         >>> SampleTimes.evenly(Fraction(1, 2), 3).seconds.tolist()
         [0.0, 0.25, 0.5]
         """
@@ -64,8 +62,6 @@ class SampleTimes:
 
         Raises UsageError: SF811 when they are not finite, not negative and increasing, or too many.
 
-        Examples
-        --------
         >>> SampleTimes.of([0, 0.5, 2.0]).step is None
         True
         """
@@ -93,8 +89,6 @@ class SampleTimes:
     def exactly(self) -> list[Fraction]:
         """Return the times as what they mean: even ones as multiples of their step, others as decimals.
 
-        Examples
-        --------
         >>> SampleTimes.of([0.1, 0.3]).exactly()
         [Fraction(1, 10), Fraction(3, 10)]
         """
@@ -116,8 +110,6 @@ class SampleTimes:
 
         Where only one is left another follows, as the digits of a response are those of its largest value.
 
-        Examples
-        --------
         >>> start, later = SampleTimes.evenly(Fraction(1), 5).since(arb(0.6))
         >>> start, [round(float(t), 3) for t in later.enclosed()]
         (3, [0.15, 0.4])
@@ -169,8 +161,6 @@ def _refused(message: str) -> UsageError:
 def default_until(bound: AnyBoundFunction, roots: PoleZeroMap | None = None) -> float:
     """Return a time [s] by which the slowest motion has died away, or has been seen often enough.
 
-    Examples
-    --------
     >>> from symflex import loads
     >>> lag = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s + 2)"')
     >>> default_until(lag.transfer_function("y", "u").bind().bound)

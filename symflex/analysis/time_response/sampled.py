@@ -144,8 +144,6 @@ class Gathered:
 def is_precise(values: Sequence[arb], digits: int) -> bool:
     """Tell whether all balls are narrow beside the largest value.
 
-    Examples
-    --------
     >>> is_precise([arb(0, 1e-13), arb(1)], 12), is_precise([arb(0, 1e-3), arb(1)], 12)
     (True, False)
     """

@@ -154,8 +154,6 @@ def difference(x: Term, y: Term) -> Term:
 def product(x: Term, y: Term) -> Term:
     """Return the product of two numbers.
 
-    Examples
-    --------
     >>> product(Term("w", Kind.IMAGINARY), Term("w", Kind.IMAGINARY)).text
     '-(w * w)'
     """
@@ -272,8 +270,6 @@ _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 def statement(opening: str, value: str, depth: int) -> list[str]:
     """Return ``opening value;`` on as many lines as it needs.
 
-    Examples
-    --------
     >>> statement("return", "a + b", 1)
     ['    return a + b;']
     """

@@ -26,8 +26,6 @@ def differentiated(code: tree.Straight) -> tree.Straight:
 
     Assignments of constants stay as they are; what does not vary with s has the derivative ``0``.
 
-    Examples
-    --------
     >>> s, k = tree.Laplace(), tree.ParameterValue("k")
     >>> code = tree.Straight((), (tree.Assignment("t_1", tree.Add((k, s))),), (tree.Multiply((k, s)),))
     >>> differentiated(code).values[1]

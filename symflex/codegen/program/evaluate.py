@@ -40,8 +40,6 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
 
     Raises ModelError: SF233 when it is too large or too small for double precision.
 
-    Examples
-    --------
     >>> from fractions import Fraction
     >>> nearest_double(Fraction(1, 10)), nearest_double(Fraction(1), 1)
     (0.1, 3.141592653589793)
@@ -131,8 +129,6 @@ def number_of(node: tree.CodeNode, numbers: Mapping[str, Values]) -> Values:
 
     ``numbers`` are the values of assignments that depend on no argument either.
 
-    Examples
-    --------
     >>> number_of(tree.Add((tree.RealNumber(Fraction(1)), tree.Assigned("c_1"))), {"c_1": 2.0})
     3.0
     >>> number_of(tree.ParameterValue("m"), {}) is None

@@ -152,8 +152,6 @@ def canonical(pairs: tuple[tuple[int, int], ...], parity: int) -> tuple[Term, in
 def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Term, int], ...]:
     """Return the derivative of a term with respect to ``q_position`` at zero, as a combination of terms.
 
-    Examples
-    --------
     >>> [derivative_at_zero((((1, 1),), 0), 0, k) for k in range(3)]
     [(((((0, 0),), 0), 1),), (((((0, 0),), 0), 1),), ()]
     """

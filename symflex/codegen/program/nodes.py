@@ -30,8 +30,6 @@ class CodeNode:
     Operands are nodes. In the table of a :class:`~symflex.codegen.program.forge.Forge` they are numbers of
     nodes, which stand before.
 
-    Examples
-    --------
     >>> Divide(Laplace(), ParameterValue("k")).children
     (Laplace(), ParameterValue(name='k'))
     >>> Divide(Laplace(), ParameterValue("k")).with_children([Laplace(), Laplace()])
@@ -220,8 +218,6 @@ class RootFactor(CodeNode):
     def spelled(self) -> CodeNode:
         """The factor in sums and products.
 
-        Examples
-        --------
         >>> RootFactor(Laplace(), (-2.0, 0.0), (0.0, 0.0)).spelled
         Add(terms=(RealNumber(value=Fraction(2, 1), pi_power=0), Laplace()))
         """

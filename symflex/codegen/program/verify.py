@@ -101,8 +101,6 @@ class Verification:
     def text(self) -> str:
         """Return the sentence that stands in the docstring.
 
-        Examples
-        --------
         >>> Verification("V/F", "closed", 3.1e-16, DEFAULT_BAND, 400).text()
         'verified: worst relative error 3.1e-16 over 0.1 Hz ... 10 kHz against ball arithmetic'
         """
@@ -122,8 +120,6 @@ def _error_text(error: float) -> str:
 def frequency_text(hertz: Fraction) -> str:
     """Return a frequency with a prefix that keeps it short.
 
-    Examples
-    --------
     >>> [frequency_text(Fraction(t)) for t in ("0.1", "1000", "2.5e6", "1e-5")]
     ['0.1 Hz', '1 kHz', '2.5 MHz', '1e-05 Hz']
     """

@@ -155,8 +155,6 @@ def private_copy(function: Callable[..., object]) -> str:
 def for_one_library(text: str, name: str) -> str:
     """Return the text of functions with the argument ``xp`` replaced by a library's name.
 
-    Examples
-    --------
     >>> for_one_library("def _f(xp, x): return g(xp, xp.exp(x))", "jnp")
     'def _f(x): return g(jnp.exp(x))'
     """

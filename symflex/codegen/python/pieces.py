@@ -421,8 +421,6 @@ def in_pieces(program: Piecewise) -> Piecewise:
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:
     """Return for every piece the results of tests under which it serves.
 
-    Examples
-    --------
     >>> from symflex.codegen.program.nodes import Condition, Laplace, Straight
     >>> piece = CodePiece(Straight((), (), (ONE, ONE)))
     >>> test = Condition(Laplace(), 1.0, ONE)

@@ -38,8 +38,6 @@ CAP = 0.05  # added to the deviation, so that a grid does not follow what a star
 def wild_lines(omega: Real, values: Complex) -> Whole:
     """Return the lines that deviate from a power law of their neighbours as these do not.
 
-    Examples
-    --------
     >>> omega = np.arange(4.0, 200.0, 4.0)
     >>> values = 1 / omega**2 + 0j
     >>> values[7] *= 30
@@ -81,8 +79,6 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
 def step_line(omega: Real, values: Complex) -> int | None:
     """Return the line after which all others are larger or smaller by a factor; None if there is none.
 
-    Examples
-    --------
     >>> omega = np.arange(60.0)
     >>> values = 1 / (1 + 0.01j * omega)
     >>> step_line(omega, np.where(omega > 30, 1.05, 1) * values), step_line(omega, values)
@@ -106,8 +102,6 @@ def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> W
 
     An interval is halved where the sum of squares of what lies off its chord, over the deviation, is largest.
 
-    Examples
-    --------
     >>> omega = np.linspace(1, 50, 5000)
     >>> sharp = 1 / (100 - omega**2 + 0.02j * omega)
     >>> chosen = telling_lines(omega, sharp, np.full(5000, 0.01), 200)
@@ -142,8 +136,6 @@ def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> W
 def written_step(numbers: Real) -> Real:
     """Return how far apart numbers are that a file's few digits can tell, at each; 0 where it has many.
 
-    Examples
-    --------
     >>> written_step(np.array([9.985, 10.23, 104.6])).tolist(), written_step(np.array([np.pi, 2.0])).tolist()
     ([0.001, 0.01, 0.1], [0.0, 0.0])
     """

@@ -77,8 +77,6 @@ def observe(response: MeasuredResponse) -> Observation:
     Lines have a distance of one over the length of a record; where that is not the same throughout, None,
     they are taken as the values themselves.
 
-    Examples
-    --------
     >>> from symflex.data.measurement import MeasuredResponse
     >>> seen = observe(MeasuredResponse("Y/U", np.arange(10.0, 20.0), np.ones(10), window="hann"))
     >>> bool(np.allclose(seen(np.ones(seen.omega.size)), 1))

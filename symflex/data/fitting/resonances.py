@@ -140,8 +140,6 @@ class Resonances:
     def real_corners(self) -> list[float]:
         """Return the corner frequencies of all real poles, the single one and those in pairs.
 
-        Examples
-        --------
         >>> round(Resonances.of([(6.0, 1.25, 9.0, 0.1)]).real_corners()[1], 12)
         12.0
         """

@@ -316,8 +316,6 @@ def _is_name(text: str) -> bool:
 def _named(text: str) -> str:
     """Return a name made of the letters and digits of a text; empty if it has none.
 
-    Examples
-    --------
     >>> _named("Signal 2"), _named("2024-05 Höhe.csv"), _named("s")
     ('Signal_2', 'Y_2024_05_Hohe_csv', 's_')
     """

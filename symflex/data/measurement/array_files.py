@@ -46,8 +46,6 @@ class ByteReader:
 
     ``order``, ``<`` or ``>``, is which end of a number comes first.
 
-    Examples
-    --------
     >>> reader = ByteReader(bytes([0, 0, 0, 2, 1]), ">")
     >>> reader.integer("i4"), reader.left
     (2, 1)

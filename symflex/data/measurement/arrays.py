@@ -209,8 +209,6 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
 
     SF602 arrays missing, ambiguous or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
 
-    Examples
-    --------
     >>> (one,) = responses_of({"F": np.arange(1.0, 9), "H": np.ones(8)}, "a.mat", "a")
     >>> one.name, one.frequency_hz.size
     ('a', 8)

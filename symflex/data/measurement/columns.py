@@ -185,8 +185,6 @@ class Assembled:
 def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     """Return what a name, and the unit in a row below it, say a column is.
 
-    Examples
-    --------
     >>> meaning_of("Trace 2: Gain: Phase (°)").factor, meaning_of("Freq(kHz)").factor
     (0.017453292519943295, 1000.0)
     >>> meaning_of("S11(REAL)").kind, meaning_of("S11(REAL)").label, meaning_of("Time").kind
@@ -293,8 +291,6 @@ def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> C
 def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[ColumnMeaning]:
     """Return what columns are; letters such as X and Y, or R and theta, mean something beside each other.
 
-    Examples
-    --------
     >>> [m.kind for m in meanings_of(["Freq", "X (V)", "Y (V)"])]
     ['frequency', 'real', 'imaginary']
     """
@@ -343,8 +339,6 @@ def names_of(made: Sequence[Assembled], stem: str) -> list[str]:
 def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[ColumnMeaning]:
     """Return what ``--columns`` says of columns, in order; SF902 for an unknown word or too many of them.
 
-    Examples
-    --------
     >>> [m.kind for m in columns_asked("f,-,mag_db,phase", 4)]
     ['frequency', '', 'magnitude', 'phase']
     """
@@ -622,8 +616,6 @@ def _hertz(column: DataColumn, guesses: list[str]) -> Real:
 def unit_by_round_ends(lines: Real) -> str | None:
     """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; ``None`` if unclear.
 
-    Examples
-    --------
     >>> unit_by_round_ends(2 * np.pi * np.array([1.0, 50])), unit_by_round_ends(np.array([1.0, 50]))
     ('rad/s', 'Hz')
     """

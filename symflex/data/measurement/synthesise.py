@@ -110,8 +110,6 @@ def synthesise(
 
     SF902 for a plan that cannot be meant, or where what the sensor shows is not finite in the band.
 
-    Examples
-    --------
     >>> plan = MeasurementPlan(1.0, 50.0, 0.5, averages=20, noise=0.01)
     >>> seen = synthesise("y/u", lambda omega: 1 / (1 + 0.01j * omega), plan)
     >>> seen.values.size, bool(np.all(seen.coherence > 0.9)), seen.is_synthetic

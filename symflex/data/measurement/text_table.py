@@ -92,8 +92,6 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
 def number(cell: str, decimal: str = ".") -> float | complex | None:
     """Return the number that a cell means; complex for ``1+2j``, ``(1,2)`` and ``(-3dB,45deg)``, or None.
 
-    Examples
-    --------
     >>> number("2,5", ","), number("1.0D+3"), number("1-2i"), number("x")
     (2.5, 1000.0, (1-2j), None)
     """

@@ -34,8 +34,6 @@ _SHOWN = 40
 def diagnose_unclosed(source: Source, text: str, statement: Statement) -> Diagnostic:
     r"""Return the diagnostic of a statement with a quote or bracket that is never closed.
 
-    Examples
-    --------
     >>> from symflex.model.spec.scan import scan
     >>> source = Source("a.toml", 'm = "60 kg\n')
     >>> print(diagnose_unclosed(source, source.text, scan(source).statements[0]).render())

@@ -109,8 +109,6 @@ def specification_of(source: Source, read: Callable[[str], Source]) -> str:
 
     Raises SpecError: SF105 for a line that cannot be read, or a component without a linear model.
 
-    Examples
-    --------
     >>> text = "low-pass\nV1 in 0 AC 1\nR1 in out 10k\nC1 out 0 4n7 ; ceramic\n.end"
     >>> print(specification_of(Source("rc.cir", text), Source))  # doctest: +ELLIPSIS
     symflex = 1

@@ -27,8 +27,6 @@ def parse(source: Source) -> Spec:
     Raises SpecError: SF101 (syntax) and SF102 (a key or table defined twice), one diagnostic for each error,
     at most 20; or one SF103 when the text passes a limit (size, nesting, entries, length of numbers).
 
-    Examples
-    --------
     >>> from symflex.errors import Source
     >>> spec = parse(Source("a.toml", '[parameters]\nm_1 = 0.1\n'))
     >>> mass = spec.root.get("parameters").value.get("m_1")
@@ -48,8 +46,6 @@ def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
     a header that is wrong or repeated, entries go to the table it seems to name. Raises SpecError: SF103 when
     the text passes a limit; nothing is then kept of it.
 
-    Examples
-    --------
     >>> from symflex.errors import Source
     >>> spec, problems = parse_with_recovery(Source("a.toml", 'm_1 = 60 kg\nm_2 = "20 kg"\n'))
     >>> print(problems[0].render())

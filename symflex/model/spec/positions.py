@@ -201,8 +201,6 @@ class _PositionReader:
 def decode_key(raw: str) -> str:
     r"""Return the key a bare or quoted key part means.
 
-    Examples
-    --------
     >>> decode_key('"V_act/F"'), decode_key("m_1"), decode_key(r'"\u03c9"')
     ('V_act/F', 'm_1', 'ω')
     """

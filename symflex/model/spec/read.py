@@ -31,8 +31,6 @@ def read(path: str | Path) -> Source:
     file or it cannot be opened. Raises SpecError: SF901 when it is too large or not UTF-8, with the byte
     offset.
 
-    Examples
-    --------
     >>> read("no/such.toml")
     Traceback (most recent call last):
     symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no/such.toml': No such file or directory
@@ -160,8 +158,6 @@ _EXPONENT = re.compile(r"[+-]?[0-9][0-9_]*+(?:\.[0-9_]*+)?[eE]([+-]?[0-9_]++)")
 def number_problem(literal: str) -> str | None:
     """Say why a number is refused, or ``None`` when it is not (or is not a number).
 
-    Examples
-    --------
     >>> number_problem("1e999999999")
     'exponent 999999999; exponents go from -400 to 400'
     >>> number_problem("1e400") is None

@@ -216,8 +216,6 @@ def scan(source: Source) -> Scan:
 
     Raises SpecError: SF103 when a limit is passed; SF101 when the text holds half a surrogate pair.
 
-    Examples
-    --------
     >>> found = scan(Source("a.toml", 'k = "2 N/m" # stiff\n\n[b]\n'))
     >>> [found.text[s.start : s.end] for s in found.statements]
     ['k = "2 N/m" # stiff', '[b]']

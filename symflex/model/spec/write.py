@@ -33,8 +33,6 @@ def write(mapping: Mapping[str, object]) -> str:
     :func:`symflex.model.spec.parse` gives the mapping back. Raises SpecError: SF104 for a value that cannot
     be written, with its path; SF103 for one that passes a limit.
 
-    Examples
-    --------
     >>> print(write({"symflex": 1, "parameters": {"m": {"value": "2 kg"}, "k": Fraction(1, 3)}}), end="")
     symflex = 1
     <BLANKLINE>

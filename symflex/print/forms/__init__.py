@@ -289,8 +289,6 @@ def with_shared_denominators(
 
     All of them are read back with that name. Raises InternalError: SF992 as :func:`print_form` does.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> from symflex.print.text import form_text
     >>> model = pipeline.loads('''
@@ -334,8 +332,6 @@ def with_shared_denominators(
 def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
     """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -59,8 +59,6 @@ def _spelled_out(tf: TransferFunction) -> Hidden:
 def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
     """Return a form with lines for all names that cancelled factors need besides its own, and these factors.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> from symflex.print.forms import print_form
     >>> from symflex.expressions import format_expression

@@ -25,8 +25,6 @@ class Naming:
     def take(self, stem: str, wanted: int = 1) -> tuple[str, ...]:
         """Return the stem, or numbered ones where several are wanted or it is taken.
 
-        Examples
-        --------
         >>> Naming({"E"}).take("q"), Naming({"q_1"}).take("q", 2), Naming({"q"}).take("q")
         (('q',), ('q_2', 'q_3'), ('q_1',))
         """
@@ -38,8 +36,6 @@ class Naming:
     def family(self, stems: Sequence[str], members: int) -> tuple[str, ...]:
         """Return names numbered from zero, of the first stem that leaves all of them free.
 
-        Examples
-        --------
         >>> Naming({"K_1"}).family("KL", 2)
         ('L_0', 'L_1')
         """

@@ -63,8 +63,6 @@ STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
 def nested_form(tf: NestedTransferFunction) -> PrintedForm:
     """Return a nested transfer function for print.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> from symflex.expressions import format_expression
     >>> model = pipeline.loads('''

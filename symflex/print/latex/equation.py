@@ -60,8 +60,6 @@ def equation_label(name: str) -> str:
 
     Different names have different labels: a slash remains where ``_over_`` could be read in two ways.
 
-    Examples
-    --------
     >>> equation_label("V_tip/F"), equation_label("a/b_over_c")
     ('eq:V_tip_over_F', 'eq:a/b_over_c')
     """
@@ -108,8 +106,6 @@ def formula_latex(
 
     ``left`` is LaTeX already; the pairs of ``where`` are lines below the equation.
 
-    Examples
-    --------
     >>> print(formula_latex("y", Name("omega_p1"), (), {}, width_mm=80))
     \begin{align*}
       y &= \omega_{p1}

@@ -22,8 +22,6 @@ def column_width(said: float | str) -> float:
 
     Raises UsageError: SF902 when it is neither, or not between 80 and 1000 mm.
 
-    Examples
-    --------
     >>> column_width("ieee"), column_width("120 mm"), column_width(120)
     (88.5, 120.0, 120)
     """

@@ -158,8 +158,6 @@ def _table_of(
 def decimal_text(value: ExactValue) -> str:
     """Return a value as a decimal, with pi to eighty digits; without trailing zeros unless it is rounded.
 
-    Examples
-    --------
     >>> from symflex.model import ExactValue
     >>> values = ("0.11", "2/3", "210000000000", "-4.7e-12", "955377")
     >>> [decimal_text(ExactValue(Fraction(v))) for v in values]

@@ -89,8 +89,6 @@ def escape_text(text: str) -> str:
     written as their Latin base letter where they have one and as ``[U+4E2D]`` otherwise; a word too long for
     a narrow column may be broken anywhere.
 
-    Examples
-    --------
     >>> print(escape_text(r"100 % of \input{x} & k_1^2"))
     100 \% of \textbackslash{}input\{x\} \& k\_1\textasciicircum{}2
     >>> print(escape_text("Größe ω\n中"))

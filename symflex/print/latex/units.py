@@ -27,8 +27,6 @@ _POWERS: Final = {"1": "", "2": r"\squared", "3": r"\cubed"}
 def siunitx_unit(unit: str) -> str | None:
     r"""Return the argument of ``\unit`` or ``\qty``; empty for a pure number, ``None`` when it has none.
 
-    Examples
-    --------
     >>> print(siunitx_unit("N*s/m"), siunitx_unit("kg*m^2"), siunitx_unit("m/(V*s^2)"))
     \newton\second\per\metre \kilogram\metre\squared \metre\per\volt\per\second\squared
     >>> siunitx_unit("1"), siunitx_unit(r"\input{x}")
@@ -44,8 +42,6 @@ def siunitx_unit(unit: str) -> str | None:
 def quantity_latex(number: str, unit: str) -> str:
     r"""Return a number with its unit; a unit that siunitx lacks is set as text.
 
-    Examples
-    --------
     >>> print(quantity_latex("0.5", "m"), quantity_latex("3", "1"), quantity_latex("2", "furlong"))
     \qty{0.5}{\metre} \num{3} \num{2}~furlong
     """

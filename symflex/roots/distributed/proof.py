@@ -144,8 +144,6 @@ WIDER = 1e-3  # how far beyond its limits, in ln, a ring is searched
 def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
     """Return neighbourhoods of points, those that meet as one.
 
-    Examples
-    --------
     >>> (hole,) = holes_about([1 + 0j, 1.01 + 0j])
     >>> round(hole.low, 6), round(hole.high, 6)
     (-0.05, 0.05995)

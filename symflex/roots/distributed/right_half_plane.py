@@ -131,8 +131,6 @@ def _end(side: Side, reached: float) -> tuple[float, str]:
 def gaps_text(half_planes: Iterable[RightHalfPlane]) -> str:
     """Say why roots of several functions may be missing, each reason once and how far all are known.
 
-    Examples
-    --------
     >>> gaps_text([RightHalfPlane((), "no end", 20.0), RightHalfPlane((), "no end", 10.0)])
     'known up to 1.592 Hz only: no end'
     """

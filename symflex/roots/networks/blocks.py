@@ -36,8 +36,6 @@ def most_zeros(cramer: CramerEquations) -> int | None:
 def blocks_of(entries: Sequence[Mapping[int, object]]) -> list[tuple[list[int], list[int]]] | None:
     """Return rows and columns of each block of a square matrix; ``None`` where its determinant is zero.
 
-    Examples
-    --------
     >>> blocks_of([{0: "k", 1: "b"}, {1: "m"}])
     [([1], [1]), ([0], [0])]
     >>> blocks_of([])

@@ -67,8 +67,6 @@ def mirrored(cramer: CramerEquations) -> tuple[bool, bool]:
 def _has_parity(entries: Sequence[Mapping[int, int | None]]) -> bool:
     """Tell whether rows and columns have parities that make up those of all entries.
 
-    Examples
-    --------
     >>> _has_parity([{0: 0, 1: 1}, {0: 1, 1: 0}]), _has_parity([{0: 0, 1: 1}, {0: 0, 1: 0}])
     (True, False)
     >>> _has_parity([{0: None, 1: 1}, {0: 1}])

@@ -188,8 +188,6 @@ def groups(discs: Sequence[Disc]) -> list[tuple[Disc, ...]]:
 def connected(discs: Sequence[Disc]) -> list[tuple[int, ...]]:
     """Return the indices of the discs in groups that touch each other, directly or through others.
 
-    Examples
-    --------
     >>> connected([Disc(acb(0), arb(1)), Disc(acb(3), arb(1)), Disc(acb(4), arb(0.5))])
     [(0,), (1, 2)]
     """
@@ -241,8 +239,6 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
 
     They are exact points with imaginary part positive or exactly zero; None when it does not settle.
 
-    Examples
-    --------
     >>> [f"{float(g.imag):.12f}" for g in propose_by_laguerre(acb_poly([-2, 1, -2, 1]))]
     ['1.000000000000', '0.000000000000']
     """
@@ -368,8 +364,6 @@ def propose_by_durand_kerner(polynomial: acb_poly) -> tuple[acb, ...] | None:
 
     They are exact points with imaginary part positive or exactly zero; None when the roots do not separate.
 
-    Examples
-    --------
     >>> [int(g.imag.unique_fmpz()) for g in propose_by_durand_kerner(acb_poly([4, 0, 1]))]
     [2]
     """
