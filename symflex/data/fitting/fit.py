@@ -216,7 +216,7 @@ def fit_resonances(
     for the best of all; ``is_gain_free`` holds anyway without bases.
 
     The best fit is returned in any case; ``poor`` says why it is no good one. Pole pairs outside the band and
-    real poles are residual terms, and no resonances. Lines that are wild are left out.
+    real poles are residual terms, not resonances. Outliers are left out.
 
     SF902 for an unknown start or criterion, or options that contradict each other; SF605 too few lines for
     what is asked; SF615 a base that vanishes in the band.
@@ -489,7 +489,9 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             if errors.zeta_z[r, i] > max(abs(modes.zeta_z[r, i]), LEAST_DAMPING) or (
                 errors.omega_z[r, i] > WEAK * abs(modes.omega_z[r, i])
             ):
-                warnings.append(f"{pair} is not determined by the data: its error is of its own size")
+                warnings.append(
+                    f"{pair} is not determined by the data: its standard error is as large as its value"
+                )
                 continue
             if abs(modes.zeta_z[r, i]) > OVERDAMPED:
                 lacking = "behaviour that a gain, a power of s and resonances cannot have"

@@ -43,7 +43,7 @@ def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator
     yield Passage([f"{INDENT}poles{none}"], [HEAD, *rows] if rows else ())
     rows = _residual_terms(fit)
     if rows:
-        yield Passage([f"{INDENT}residual terms: poles that are no resonances in the band"], [HEAD, *rows])
+        yield Passage([f"{INDENT}residual terms: poles that are not resonances in the band"], [HEAD, *rows])
     for r in range(modes.responses):
         yield _zeros(fit, r)
     if shapes is not None:

@@ -35,7 +35,7 @@ def modes_at(
         frequencies = frequencies[: len(hertz)] if lowest else frequencies
         near = all(abs(a - b) < within for a, b in zip(frequencies, hertz, strict=False))
         is_true = is_true and near and len(frequencies) == len(hertz)
-        which = f"{counted(len(frequencies), 'mode')}, {'the lowest' if lowest else 'all that it has'}"
+        which = f"{counted(len(frequencies), 'mode')}, {'the lowest' if lowest else 'and no others'}"
         lines.append(f"{stem} has {which}, at {', '.join(f'{f:.2f}' for f in frequencies)} Hz.")
     return judged(is_true, "\n".join(lines))
 
@@ -95,8 +95,8 @@ def added_per_mode(
         are_real = all(z.place == "real axis" for z in function.zeros)
         is_true = is_true and (more_zeros, more_poles) == wanted and (are_real or not zeros_are_real)
         is_true = is_true and function.modes > 0
-        more = f"{counted(more_poles, 'pole')} and {counted(more_zeros, 'zero')} more"
-        line = f"In {stem}, {function.tf} has {more} with {counted(function.modes, 'mode')}"
+        more = f"{counted(more_poles, 'more pole')} and {counted(more_zeros, 'more zero')}"
+        line = f"In {stem}, {function.tf} has {more} than if rigid, with {counted(function.modes, 'mode')}"
         line += ", and its zeros are real" if zeros_are_real and are_real else ""
         if needs_dampers and function.undamped is not None:
             line += f"; without dampers it has {counted(function.undamped[0], 'zero')}"
@@ -111,8 +111,8 @@ def fewer_zeros_added(models: Models, of: tuple[str, ...]) -> Finding:
     (zeros, poles), (more, _) = one.added or (0, 0), other.added or (0, 0)
     return judged(
         zeros < more and one.modes >= other.modes,
-        f"With {counted(one.modes, 'mode')} {one.tf} has {counted(zeros, 'zero')} and "
-        f"{counted(poles, 'pole')} more; {other.tf}, with {other.modes}, {counted(more, 'zero')} more.",
+        f"With {counted(one.modes, 'mode')}, {one.tf} has {counted(zeros, 'more zero')} and "
+        f"{counted(poles, 'more pole')} than if rigid; {other.tf}, with {other.modes}, has {more} more.",
     )
 
 
@@ -192,7 +192,7 @@ def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
     facts = functions(models, of)
     words = {True: "minimum phase", False: "nonminimum phase"}
     said = [(f"In {stem}, {f.tf} is {words[f.is_minimum_phase]}", f) for stem, f in facts]
-    lines = [f"{start}, {f.condition}: {f.reason}." for start, f in said]
+    lines = [f"{start} {f.condition.replace('always', 'for all values')}: {f.reason}." for start, f in said]
     is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in facts)
     return judged(is_true, "\n".join(lines))
 

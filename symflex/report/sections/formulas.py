@@ -200,7 +200,7 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
             text("It is the derived function times ", mathematics(audit.ratio, audit.tf.model), ".")
         )
     if audit.correction is not None:
-        blocks.append(text("Right, in the same symbols:"))
+        blocks.append(text("Corrected, in the same symbols:"))
         lines = audit.correction.lines if audit.correction.lines != where else ()
         blocks.append(_formula(audit, audit.correction.expression, lines, f"{audit.tf.name}, corrected"))
     if audit.changes:

@@ -213,11 +213,11 @@ def _together(colocation: DynamicColocation) -> Block:
     pair = (Code(colocation.tf), " and ", Code(colocation.reference))
     status = () if colocation.is_decided else (" ", Badge("not certified", "bad"))
     if not colocation.begins:
-        return text(*pair, f" are not together{within} at {colocation.limits[0]:g} Hz.", *status)
+        return text(*pair, f" do not move together{within} at {colocation.limits[0]:g} Hz.", *status)
     if colocation.edge is None:
-        return text(*pair, f" stay together{within} up to {colocation.limits[1]:g} Hz, the end of the band.")
+        return text(*pair, f" move together{within} up to {colocation.limits[1]:g} Hz, the end of the band.")
     edge = decimal(colocation.edge / tau)
-    return text(*pair, f" stay together{within} up to {edge} Hz, where {colocation.parting}.", *status)
+    return text(*pair, f" move together{within} up to {edge} Hz, where {colocation.parting}.", *status)
 
 
 def decimal(value: arb) -> str:
