@@ -21,8 +21,7 @@ from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
 TWO_STATES = 2
-PAIR_TERMS = 60_000
-"""Terms up to which powers of a pair of wavenumbers are replaced: some seconds."""
+PAIR_TERMS = 60_000  # terms up to which powers of a pair of wavenumbers are replaced: some seconds
 
 
 @dataclass(frozen=True, eq=False)

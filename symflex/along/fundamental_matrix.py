@@ -46,8 +46,7 @@ if TYPE_CHECKING:
 Derived = TypeVar("Derived", arb_poly, Polynomial)
 Matrix = list[list[Polynomial]]  # entries as polynomials in u
 GUARD = 32  # bits beyond those asked for: products of a few dozen steps round a few hundred times
-BEYOND = 32
-"""Polynomials in u are bounded on a disc so many times larger than what they are used on."""
+BEYOND = 32  # polynomials in u are bounded on a disc so many times larger than what they are used on
 FEWEST_BITS = 30  # precision of orders in u that hardly matter
 ASIDE = 1 / 16
 """Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
@@ -58,8 +57,7 @@ WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 TINY = 2.0**-200
 """Share of the largest abs(u), of which a smaller one is not distinguished where much is left to spare."""
-MOST_MEMORY = 4e9
-"""Bytes of all steps: a library that asks for more than there is ends the process."""
+MOST_MEMORY = 4e9  # bytes of all steps: a library that asks for more than there is ends the process
 SMALL = 2.0**-10  # share of what a value moves by on a ball, that may be left out of its series
 
 

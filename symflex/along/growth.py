@@ -31,8 +31,7 @@ BALANCED = 0.1  # bits by which rows and columns may differ
 SHARE = 4  # the radius on which coefficients are bounded, over the length of a step
 FIRST_SHARE = 6
 """The same of a first step from a start where they have poles; solutions are bounded on half of it."""
-SHORTEST = 1e-5
-"""Share of the whole below which the radius of a step means that there is a singularity."""
+SHORTEST = 1e-5  # share of the whole below which the radius of a step means that there is a singularity
 ROUNDING = 2.0**-50  # rounding of a position in doubles: a singularity at an end is met then, too
 MOST_STEPS = 1000
 """Ten times those of a thousand modes, and more than coefficients need that anyone means."""

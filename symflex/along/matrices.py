@@ -31,10 +31,8 @@ FEWEST_BITS = 192
 """Least precision of an expansion, which roots to 30 digits need; half of it saves a third of the time."""
 LOW = 8.0
 """Power of e by which waves grow below which no expansion is made for a smaller s alone: some three modes."""
-BESIDE_MODES = 1
-"""Half waves that motion of a body as a whole, and masses at ends, may take besides."""
-BEYOND_MODES = 1.2
-"""How far beyond the last root circles are drawn on which roots are counted [in s]."""
+BESIDE_MODES = 1  # half waves that motion of a body as a whole, and masses at ends, may take besides
+BEYOND_MODES = 1.2  # how far beyond the last root circles are drawn on which roots are counted [in s]
 FURTHER = 1.5
 """How much further than asked for an expansion reaches [in s], so that not every mode needs another.
 

@@ -99,14 +99,10 @@ def _phase_of(roots: Iterable[Root], omega: npt.NDArray[np.float64]) -> npt.NDAr
 LONGEST_STEP = 0.1
 SMALLEST_STEP = 1e-9
 """Smallest step in ln(s): if a ball along it still contains zero, a root lies on the axis."""
-DETOUR = 4.0
-"""Width of the way around a root, in lengths of the step that meets it."""
-
-STEEPEST = 1e11
-"""Slope of ln G over ln(s) from which on a frequency is as good as a root."""
+DETOUR = 4.0  # width of the way around a root, in lengths of the step that meets it
+STEEPEST = 1e11  # slope of ln G over ln(s) from which on a frequency is as good as a root
 SHORTEST_SHARE = 1e-6
-ROUNDING = 1e-14
-"""Relative, by which frequencies may leave the band that they were made for."""
+ROUNDING = 1e-14  # relative, by which frequencies may leave the band that they were made for
 
 Point = tuple[complex, "Sample"]
 
@@ -368,8 +364,7 @@ def respond(
 BEYOND_BAND = (1.5, 1.1)
 """Roots are taken out of a network's phase up to so many times its highest frequency, the second where not
 all so far up can be proved; the rest turns slowly."""
-TO_REST = 12
-"""Frequencies below the lowest at which that rest is followed to s = 0, over three decades."""
+TO_REST = 12  # frequencies below the lowest at which that rest is followed to s = 0, over three decades
 
 
 def _network_turns(

@@ -25,15 +25,11 @@ from symflex.balls import precision
 from symflex.expressions import Expression, format_expression, quotient
 
 How = Literal["proved", "measured"]
-AXIS_POINTS = 800
-"""Frequencies at which signs are compared, evenly spaced in their logarithm."""
+AXIS_POINTS = 800  # frequencies at which signs are compared, evenly spaced in their logarithm
 AXIS_BITS = 256
-HALVINGS = 30
-"""Bisections of a step, until it is a thousand millionth of itself."""
-LONGEST_TEXT = 80
-"""Characters of a factor that is shown."""
-PROBES = 5
-"""Frequencies at which the phase of an undamped system is looked at."""
+HALVINGS = 30  # bisections of a step, until it is a thousand millionth of itself
+LONGEST_TEXT = 80  # characters of a factor that is shown
+PROBES = 5  # frequencies at which the phase of an undamped system is looked at
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,8 +163,7 @@ def _is_quadrature(value: acb) -> bool:
     return bool(abs(value.real).upper() < abs(value.imag).lower() * arb(2) ** -100)
 
 
-_Event = tuple[Literal["pole", "zero"], float]
-"""What lies where [Hz] on the imaginary axis."""
+_Event = tuple[Literal["pole", "zero"], float]  # what lies where [Hz] on the imaginary axis
 
 
 @dataclass(frozen=True, slots=True)

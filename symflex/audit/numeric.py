@@ -21,8 +21,7 @@ from symflex.transfer.enclose import principal_values
 from symflex.transfer.probes import probes_of
 
 POINTS = 40
-DIGITS = 50
-"""Printed and derived function agree when they do to so many digits, at so many points."""
+DIGITS = 50  # printed and derived function agree when they do to so many digits, at so many points
 BITS_PER_DIGIT = 4
 FIRST_BITS = 256
 LAST_BITS = 8192

@@ -17,8 +17,7 @@ from flint import arb
 
 from symflex.balls.precision import UndecidedError
 
-Rows = list[dict[int, "arb"]]
-"""A symmetric matrix, every entry off the diagonal in both of its rows."""
+Rows = list[dict[int, "arb"]]  # a symmetric matrix, every entry off the diagonal in both of its rows
 
 
 def _is_usable(value: arb | None) -> bool:

@@ -12,11 +12,12 @@ import os
 import re
 import signal
 import sys
+from collections.abc import Callable
 from contextlib import nullcontext
 from functools import wraps
 from math import inf
 from time import monotonic
-from typing import IO, TYPE_CHECKING, Final
+from typing import IO, Final
 
 import click
 
@@ -25,9 +26,6 @@ from symflex.cli import BUDGET_EXCEEDED, WATCHED
 from symflex.cli.progress import Waiting
 from symflex.cli.reporting import show_error
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 MEMORY: Final = "2 GB"
 MEMORY_VARIABLE: Final = "SYMFLEX_MEMORY"

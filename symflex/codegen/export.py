@@ -38,11 +38,8 @@ from symflex.model import Model, ModelParameter
 from symflex.model.loss_factors import check_causal
 from symflex.transfer import AnyTransferFunction
 
-BAND = "band"
-"""The form of code that is a product over poles and zeros."""
-
-ACCURACY = 1e-13
-"""Relative error of exported code above which the user is warned."""
+BAND = "band"  # the form of code that is a product over poles and zeros
+ACCURACY = 1e-13  # relative error of exported code above which the user is warned
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,19 +9,15 @@ Input: a drawing, and what is to be joined. Output: the wires that find a way, e
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from heapq import heappop, heappush
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from symflex.drawing.geometry import BLACK, THIN, Extent, Placed, Stroke, around, union
+from symflex.drawing.geometry import BLACK, THIN, Drawing, Extent, Placed, Point, Stroke, around, union
 from symflex.drawing.symbols import circle, head
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from symflex.drawing.geometry import Drawing, Point
 
 CELL: Final = 2.5  # width of the grid on which wires are routed [points]
 CLEAR: Final = 1.6  # space between a wire and what it passes

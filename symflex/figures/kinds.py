@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING
 
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from symflex.analysis.modes import EnclosedModeShape
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.figures.axes import FREE, AxisLimits, Canvas, axes_of
+from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.bode import draw_bode
-from symflex.figures.figure import raster_of
+from symflex.figures.figure import Raster, raster_of
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.in_time import draw_responses
 from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
@@ -23,26 +26,15 @@ from symflex.figures.runs import panels_of
 from symflex.figures.sensitivity import draw_sensitivity
 from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
+from symflex.loops import AnyLoop
+from symflex.loops.chart import StabilityChart
 from symflex.loops.clouds import root_clouds
-from symflex.options import PlotOptions, axis_ends, band_ends
+from symflex.loops.stability_map import StabilityMap
+from symflex.model import Model
+from symflex.options import PlotOptions, Stated, axis_ends, band_ends
 from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from fractions import Fraction
-
-    from matplotlib.figure import Figure
-
-    from symflex.analysis.modes import EnclosedModeShape
-    from symflex.figures.axes import AxesGiven, Drawing
-    from symflex.figures.figure import Raster
-    from symflex.loops import AnyLoop
-    from symflex.loops.chart import StabilityChart
-    from symflex.loops.stability_map import StabilityMap
-    from symflex.model import Model
-    from symflex.options import Stated
-    from symflex.transfer import AnyBoundFunction
+from symflex.transfer import AnyBoundFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
@@ -139,8 +131,6 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
 
     Raises UsageError: SF902 for what are not limits, and for two of the frequencies of a Bode plot.
 
-    Examples
-    --------
     >>> part_shown("bode", PlotOptions(band=("1", "1 kHz"), ylim=("-60 dB", "0")))[0]
     (Fraction(1, 1), Fraction(1000, 1))
     """

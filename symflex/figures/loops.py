@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import cycle, pairwise
@@ -9,6 +10,8 @@ from math import pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle
 
@@ -16,6 +19,7 @@ from symflex.analysis.response import adaptive_grid, default_band, grid_about, r
 from symflex.figures.axes import (
     FREE,
     RIGHT_HALF_PLANE,
+    Canvas,
     draw_points,
     draw_zero_lines,
     drawable,
@@ -51,8 +55,10 @@ from symflex.figures.style import (
     title_lines,
 )
 from symflex.loops import (
+    AnyLoop,
     Loop,
     NetworkLoop,
+    RootLocus,
     closed_loop,
     closed_loop_roots,
     find_stable_gains,
@@ -62,21 +68,13 @@ from symflex.loops import (
     require_arrival,
     trace_locus,
 )
-from symflex.roots import Band
+from symflex.roots import Band, PoleZeroMap
+from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import hertz
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     import numpy.typing as npt
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.figures.axes import Canvas
-    from symflex.loops import AnyLoop, RootLocus
-    from symflex.roots import PoleZeroMap
-    from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import AnyBoundFunction
 
 
 HEIGHT_INCHES: Final = 3.3

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import cycle
 from math import ceil, floor
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from symflex.figures.axes import Canvas
 from symflex.figures.loops import draw_curves, point_along
 from symflex.figures.style import COLOURS, QUIET
+from symflex.loops import AnyLoop
+from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.figures.axes import Canvas
-    from symflex.loops import AnyLoop
-    from symflex.transfer import AnyBoundFunction
 
 CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)  # of L/(1 + L), with a contour each
 REACH_DB, WIDEST = 40, 1080  # magnitudes [dB] and phases [deg] shown at most, unless others are asked for
@@ -100,8 +98,6 @@ def _phases_and_levels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.com
 def _contour(level: float) -> npt.NDArray[np.complex128]:
     """Return where ``L/(1 + L)`` has a magnitude, as phases from -360 degrees and levels.
 
-    Examples
-    --------
     >>> contour = _contour(6.0206)  # 2: from L = -2 to L = -2/3
     >>> round(float(contour.imag.max()), 1), round(float(contour.imag.min()), 1)
     (6.0, -3.5)

@@ -8,10 +8,12 @@ from math import log10
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from symflex.analysis.response import default_band, grid_about
 from symflex.errors import UncertifiedError
 from symflex.figures.axes import (
+    Canvas,
     add_legend_above,
     root_figure,
     set_frequency_axis,
@@ -28,17 +30,13 @@ from symflex.figures.style import (
     number_label,
     title_lines,
 )
-from symflex.loops import Loop, NetworkLoop, closed_loop_roots, loop_gain, nominal_gain
+from symflex.loops import AnyLoop, Loop, NetworkLoop, closed_loop_roots, loop_gain, nominal_gain
 from symflex.loops.locus import is_straight
 from symflex.loops.peak import loop_peaks
 from symflex.roots import Band
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-    from matplotlib.figure import Figure
-
-    from symflex.figures.axes import Canvas
-    from symflex.loops import AnyLoop
 
 HEIGHT_INCHES: Final = 2.4
 LOWEST_DB: Final = 63.0  # magnitudes are shown from so far below 0 dB

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from symflex.figures.axes import root_figure, set_round_ticks
+from symflex.figures.axes import Canvas, root_figure, set_round_ticks
 from symflex.figures.style import COLOURS, QUIET, label_of_name, label_of_unit
 from symflex.loops.chart import StabilityChart, word_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from symflex.figures.axes import Canvas
-    from symflex.loops.stability_map import StabilityMap
+from symflex.loops.stability_map import StabilityMap
 
 STABLE: Final = "#DDEBF5"
 """A tint, pale enough for every line on it."""

@@ -237,8 +237,7 @@ def timoshenko(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
 
 BENDING = ("euler-bernoulli", "rayleigh", "timoshenko")
 FRAME_STATES = ("u", "v", "theta", "f_u", "f_v", "tau")
-VECTORS = ((0, 1), (3, 4))
-"""The pairs of states of a member of a frame that turn with the axes."""
+VECTORS = ((0, 1), (3, 4))  # the pairs of states of a member of a frame that turn with the axes
 
 
 def _in_the_plane(bending: FieldTheory, along: FieldTheory) -> FieldTheory:
@@ -273,8 +272,7 @@ FIELDS |= {f"frame-{name}": _in_the_plane(FIELDS[name], rod) for name in BENDING
 FIELDS |= {f"inextensible-frame-{name}": _in_the_plane(FIELDS[name], inextensible) for name in BENDING}
 
 
-TERM_LIMIT = 5_000
-"""Terms of the adjugate up to which field equations are solved in closed form."""
+TERM_LIMIT = 5_000  # terms of the adjugate up to which field equations are solved in closed form
 
 
 @dataclass(frozen=True, slots=True, eq=False)

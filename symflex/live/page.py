@@ -46,8 +46,7 @@ FACTOR: Final = 10
 """A slider without a ``range`` goes from the declared value over this to the declared value times this."""
 LARGEST_DRAWING: Final = 60  # elements of a model that is drawn
 LONGEST_FORMULA: Final = 60_000  # characters of MathML that a page shows: some forty lines
-SHOWN: Final = 0.6
-"""How large a drawing is beside the formula, as a share of its size in a report."""
+SHOWN: Final = 0.6  # how large a drawing is beside the formula, as a share of its size in a report
 MAX_WIDTH: Final = re.compile(r' style="max-width:([0-9.]+)in"')
 STYLE_ATTRIBUTE: Final = re.compile(r' style="([^"]*)"')
 

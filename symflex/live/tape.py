@@ -60,8 +60,6 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
 
     ``names`` are the identifiers of parameters, by their names in the model.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.load("derivations/eppinger1988/two_mass.toml")
     >>> tf = pipeline.derive_all(model)[0]

@@ -10,28 +10,20 @@ parameter rests. Interval Newton proves a root about every point (Hansen 1968), 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
 from math import floor, hypot
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.balls import precision
 from symflex.budget import spend
-from symflex.loops.boxes import BITS, FirstOrder
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction, FirstOrder, OpenBox
+from symflex.transfer import TransferFunction
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
-    from symflex.transfer import TransferFunction
-
-Point = tuple[float, float, float]
-"""Two parameters in parts of their ranges, and a frequency [rad/s]."""
+Point = tuple[float, float, float]  # two parameters in parts of their ranges, and a frequency [rad/s]
 LONGEST, SHORTEST = 1 / 64, 1e-6  # steps along a curve, in parts of the ranges
 BEND = 0.1  # part of a step by which a curve may leave its tangent
 NEWTON_STEPS, CONVERGED = 6, 1e-12

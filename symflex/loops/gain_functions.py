@@ -28,8 +28,7 @@ Limits = tuple[Fraction | None, Fraction | None]
 NEAREST_ZERO = 70  # halvings of the range towards zero; what is left is looked at as one piece
 EACH_RATIO = 3.7
 MOST_FAILED = 8
-NARROW_BITS = 20
-"""Parts in which gains stay undecided, to a relative accuracy, until all others do."""
+NARROW_BITS = 20  # parts in which gains stay undecided, to a relative accuracy, until all others do
 MOST_INTERVALS = 4_000
 """Intervals in each part of a range, whose ends have that ratio, so that none is a short number; what is left
 is undecided."""

@@ -7,10 +7,10 @@ they go to, as certified maps, and curves between them by Newton's method from g
 from __future__ import annotations
 
 from cmath import isfinite, phase, rect
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -25,14 +25,9 @@ from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import is_right
+from symflex.roots.pole_zero_map import Exclusion, is_right
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.equations_at import EssentialSingularityError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.roots.pole_zero_map import Exclusion
-    from symflex.transfer import BoundTransferFunction
 
 Traceable = LoopFunction | LoopInDisc  # what poles are followed in
 DEFAULT_MODES = 5

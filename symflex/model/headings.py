@@ -38,8 +38,7 @@ SECTIONS = (
     "drawing",
 )
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
-CONSEQUENCES = ("SF210", "SF218")
-"""What is noted of a name that was lost with a mistake elsewhere."""
+CONSEQUENCES = ("SF210", "SF218")  # what is noted of a name that was lost with a mistake elsewhere
 NEEDED = {"inputs": 'F = { force = "x_act" }', "outputs": 'X = "x_tip"'}
 """Sections that no specification is without, with an example of each."""
 

@@ -23,8 +23,7 @@ from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 if TYPE_CHECKING:
     from symflex.model.reading import Reader
 
-Setting = str | int | float | Fraction | Decimal
-"""A quantity with its unit, or a number in SI units."""
+Setting = str | int | float | Fraction | Decimal  # a quantity with its unit, or a number in SI units
 OPTION = "--set"
 
 

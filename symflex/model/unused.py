@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from symflex.model.model import Definition, Model, PlacedElement
 
 SHOWN = 4
-ALIKE = 0.8
-"""Least ratio of ``difflib`` for a typing error: 'grond' is 0.9 like 'ground', 'round_1' 0.77."""
+ALIKE = 0.8  # least ratio of difflib for a typing error: 'grond' is 0.9 like 'ground', 'round_1' 0.77
 
 
 def unused(model: Model) -> tuple[Diagnostic, ...]:

@@ -35,8 +35,7 @@ from symflex.model.scope import COORDINATE
 if TYPE_CHECKING:
     from symflex.model.network import Draft
 
-SIZE_LIMIT = 200
-"""Nodes of what is written out: definitions of definitions would double at every level."""
+SIZE_LIMIT = 200  # nodes of what is written out: definitions of definitions would double at every level
 
 
 def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:

@@ -168,8 +168,7 @@ def bound_html(bound: BoundTransferFunction) -> str:
     return "\n".join((*lines, "</div>"))
 
 
-DIGITS: Final = 10
-"""Significant digits shown at most; fewer where the enclosure does not certify them."""
+DIGITS: Final = 10  # significant digits shown at most; fewer where the enclosure does not certify them
 
 
 def roots_html(located: PoleZeroMap) -> str:

@@ -50,8 +50,7 @@ from symflex.transfer.probes import SOLVED_BITS, Probes, probes_of
 if TYPE_CHECKING:
     from symflex.print.forms.printed import PrintedForm
 
-PRECISIONS: Final = (64, 192, 576)
-"""Bits at which points are tried that are not decided with fewer."""
+PRECISIONS: Final = (64, 192, 576)  # bits at which points are tried that are not decided with fewer
 LONGEST_TEXT: Final = 5000  # characters of one form that are parsed, at some 10 microseconds each
 ENOUGH: Final = 24
 """Bits of a value that leave a wrong form no place to hide, as points have no meaning."""

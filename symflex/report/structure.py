@@ -190,8 +190,7 @@ def _points(expression: Expression, unknowns: tuple[str, ...]) -> set[str]:
 
 
 Values = tuple[tuple[str, "Expression"], ...]
-Counts = tuple[int, int]
-"""Zeros and poles."""
+Counts = tuple[int, int]  # zeros and poles
 RigidCounts = tuple[int | None, int]
 """The same; no zeros are counted where the function itself vanishes, or grows without bound."""
 RESONANCES: Final = ("omega_p", "omega_z")

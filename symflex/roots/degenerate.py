@@ -40,8 +40,7 @@ if TYPE_CHECKING:
 NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
 POINT_DIGITS = 50
 """Digits of degenerate points: more than those that tell roots of the equations from them."""
-NARROW = 128
-"""Binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones."""
+NARROW = 128  # binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones
 WIDER = 100  # doublings of the radius of the disc in which the determinants are bounded
 SPARE = 8
 """Values on the circle beyond those that the bound takes: orders from about so high on are not counted."""

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
     Start = Callable[["Sought"], Iterator[RootSearch | LosslessSearch]]
 
-POLYNOMIAL = "polynomial"
-"""What stands in a certificate where engines are chosen by degree."""
+POLYNOMIAL = "polynomial"  # what stands in a certificate where engines are chosen by degree
 LOSSLESS = "lossless"
 GUESS_AND_PROVE = "guess-and-prove"
 SUBDIVISION = "subdivision"
@@ -98,8 +97,6 @@ ROOT_FINDERS: Mapping[str, Guess | Start] = {**GUESSES, **SEARCHES}
 def proposers_for(degree: int) -> tuple[Proposer, ...]:
     """Return what guesses the roots of a polynomial, one after the other until one settles.
 
-    Examples
-    --------
     >>> [len(proposers_for(degree)) for degree in (4, 40, 400)]
     [2, 2, 1]
     """

@@ -38,8 +38,7 @@ NO_STABILITY: Final = StabilityVerdict(
     reason="loss factors hold only on s = j*omega and do not decide stability",
 )
 COMPLEX: Final = "coefficients are complex, and poles need no conjugates"
-DOUBLINGS: Final = 5
-"""How often digits are doubled until a root differs from its mirror image."""
+DOUBLINGS: Final = 5  # how often digits are doubled until a root differs from its mirror image
 UNJUDGED: Final = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))
 """With which stability is not asked for where it means nothing."""
 

@@ -34,16 +34,12 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.signs import Line, sign_between, sign_of, value_along
 
 BITS = 128
-MOST_STATES = 6
-"""Most states of a field whose displacements and forces are identified by trial."""
+MOST_STATES = 6  # most states of a field whose displacements and forces are identified by trial
 MOST_TOGETHER = 4
 """Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
-LOSS, INERTIA = 1, 2
-"""The powers of s of a damping and of a mass."""
-LINE = 2
-"""States of a field whose waves go to and fro."""
-BEAM = 4
-"""States of a field whose equation is of fourth order."""
+LOSS, INERTIA = 1, 2  # the powers of s of a damping and of a mass
+LINE = 2  # states of a field whose waves go to and fro
+BEAM = 4  # states of a field whose equation is of fourth order
 Matrix = list[list[Factored]]
 Pair = tuple[int, int, int]
 """The number of a displacement, that of its force, and the sign of the work they do."""

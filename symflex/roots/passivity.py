@@ -65,10 +65,8 @@ from symflex.transfer.of_model import assemble
 
 PASSIVE = "passive, nothing supplies energy"
 COMPRESSED = "compressed members supply energy only to slow motion, which has no pole in the right half-plane"
-OBSERVED = "(output)"
-"""No name of a specification reads so."""
-Powers = dict[tuple[int, int], arb]
-"""Coefficients of a polynomial, by the powers of s and of the gain."""
+OBSERVED = "(output)"  # no name of a specification reads so
+Powers = dict[tuple[int, int], arb]  # coefficients of a polynomial, by the powers of s and of the gain
 Ends = tuple[Variable | None, ...]
 """What moves, or acts, at the nodes of an element; ``None`` at the reference."""
 GROWING = ((1, 1, -1, 1), (1, 1, 1, -1))

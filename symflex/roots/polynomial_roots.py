@@ -17,8 +17,7 @@ from symflex.roots.problem import RootProblem, Splitting, SquareFreePart, split
 from symflex.roots.root import GUARD_BITS, Root, count_roots, root_at_zero
 
 DISTINCTION_ROUNDS = 5  # doublings of the digits until roots of different factors are told apart
-ROUNDING = 1e-12
-"""Relative difference of two doubles below which their order is asked of the balls."""
+ROUNDING = 1e-12  # relative difference of two doubles below which their order is asked of the balls
 
 
 def find_polynomial_roots(

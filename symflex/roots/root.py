@@ -17,8 +17,7 @@ GUARD_BITS = 32  # bits kept beyond those of what is computed with
 FLOAT_BITS = 128  # precision of frequencies and comparisons: more than twice the bits of a double
 PLAIN_FROM = -5  # decimal exponent from which numbers are written without one
 NEARLY_ZERO = "~0"  # what people read where a number is not told from zero
-ROUNDING = 1e-15
-"""What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
+ROUNDING = 1e-15  # what doubles of enclosures' ends may be off by, relative to them: a few times 2^-53
 NEIGHBOURS = 8  # modes of nearly the same frequency among which images of a root are looked for
 FEWEST_ALONE = 3  # digits below which a number that stands alone says how far it may be off
 HUNDRED = 100  # two digits are fewer

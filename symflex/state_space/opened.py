@@ -34,8 +34,7 @@ from symflex.expressions import (
 from symflex.library.blocks import BLOCKS
 from symflex.model import Input, Model, Output, Signal
 
-PARTS_LIMIT = 100_000
-"""Parts that an expression may have once its definitions are opened."""
+PARTS_LIMIT = 100_000  # parts that an expression may have once its definitions are opened
 
 
 def opened(model: Model) -> Model:

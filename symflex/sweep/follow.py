@@ -41,8 +41,7 @@ LINE, FACTOR = 0.25, 0.5
 """What was foretold along a line, or by one factor, is trusted no further than to these shares of a move."""
 FAR = 1.5  # a root further in ln(s) from where any was foretold has a name of its own
 MEETING = 1e-9  # closer than this in ln(s), paths meet
-NEIGHBOURS = 32
-"""Nearest draws that are looked through for one closer to the middle, before all are."""
+NEIGHBOURS = 32  # nearest draws that are looked through for one closer to the middle, before all are
 PIECES = (4, 16)  # into how many a step is divided on which names are in doubt
 
 

@@ -47,8 +47,7 @@ LOSSY_TAPER = (
     "give eta in seconds, a damping time constant; or divide it into uniform members, which take eta_s",
 )
 """What is not available of members that taper, and what to do."""
-NAMES_SHOWN = 40
-"""Names of parameters without value that one message lists."""
+NAMES_SHOWN = 40  # names of parameters without value that one message lists
 
 
 def read_values(

@@ -19,8 +19,7 @@ from symflex.expressions import Call, Expression, Number, fold, format_expressio
 from symflex.model import ExactValue
 from symflex.quantities import IMAGINARY_UNIT
 
-MOST_FACTORS = 64
-"""Power of a ball about 0 that is multiplied out, as logarithms tell nothing of it."""
+MOST_FACTORS = 64  # power of a ball about 0 that is multiplied out, as logarithms tell nothing of it
 
 
 def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:

@@ -323,14 +323,12 @@ def square_root(x: Value) -> Value:
     return acb_series(coefficients, x.prec)
 
 
-FINER = 2**30
-"""Parts of the least distance of two roots to which they are isolated at the second try."""
+FINER = 2**30  # parts of the least distance of two roots to which they are isolated at the second try
 ROOM = 2  # box that is tried about a root, over the step to the root of an outermost polynomial
 WIDENINGS = 6
 """Boxes that are tried about one root, each so much wider than the last: 1.5^6 is eleven times the first."""
 GROWTH = 1.5
-STEPS = 8
-"""Newton steps that narrow a box at most; few are taken, as each has to leave a part of it."""
+STEPS = 8  # Newton steps that narrow a box at most; few are taken, as each has to leave a part of it
 HALF = 0.5  # steps that leave more than this of a box no longer double its digits
 LITTLE = 7 / 8  # boxes that Newton's operator makes no smaller than this share are left
 

@@ -23,8 +23,7 @@ from symflex.transfer.equations_at import NamedValues
 SEED = 7
 PASSES = 2  # passes of scaling rows and columns: units make entries differ by many powers of ten
 
-BESIDE = acb(1.0625, 0.03125)
-"""Times a root it is a point where nothing vanishes because of the root."""
+BESIDE = acb(1.0625, 0.03125)  # times a root it is a point where nothing vanishes because of the root
 
 Column = tuple[acb, ...]
 

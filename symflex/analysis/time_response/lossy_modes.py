@@ -42,14 +42,10 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.transfer import BoundTransferFunction
 
-SLOPE = 0.4999
-"""Decay on a ray at 120 degrees, over abs(s): no more than one half."""
-FAR = 1e4
-"""Largest ratio of least radii at which a ray at 120 degrees is preferred to the axis."""
-VAST = 1e60
-"""abs(s) [rad/s] at which the limit of a function is read off, with some 60 digits."""
-INWARD = 1 - 1e-12
-"""Factor on a radius, so that rounding moves it to the inside."""
+SLOPE = 0.4999  # decay on a ray at 120 degrees, over abs(s): no more than one half
+FAR = 1e4  # largest ratio of least radii at which a ray at 120 degrees is preferred to the axis
+VAST = 1e60  # abs(s) [rad/s] at which the limit of a function is read off, with some 60 digits
+INWARD = 1 - 1e-12  # factor on a radius, so that rounding moves it to the inside
 
 
 @dataclass(frozen=True, eq=False)

@@ -290,8 +290,6 @@ def term_of(part: PrincipalPart, integrations: int) -> ExponentialTerm:
 def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: int = 2000) -> int:
     """Return about how many modes bring a bound below a goal, from two counts and their bounds.
 
-    Examples
-    --------
     >>> _needed((10, 8.0), (20, 1.0), 1 / 8)  # it falls with the third power
     48
     """
@@ -323,8 +321,6 @@ def at_origin(series: LaurentSeries, integrations: int) -> list[ExponentialTerm]
 def over_powers(pole: acb, coefficients: tuple[acb, ...], integrations: int) -> list[acb]:
     """Return a principal part divided by ``s^integrations``.
 
-    Examples
-    --------
     >>> [complex(c) for c in over_powers(acb(2), (acb(1), acb(4)), 1)]  # 1/x + 4/x^2, over 2 + x
     [(-0.5+0j), (2+0j)]
     """

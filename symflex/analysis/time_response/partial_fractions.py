@@ -60,8 +60,6 @@ def values_of(
 
     With ``start`` and ``delay`` [s] at the times from number ``start`` on, each less the delay.
 
-    Examples
-    --------
     >>> from symflex.analysis.time_response.sample_times import SampleTimes
     >>> decay = ExponentialTerm(acb(-1), (acb(0), acb(2)))
     >>> [round(float(y), 6) for y in values_of([decay], SampleTimes.of([0.0, 1.0]))]

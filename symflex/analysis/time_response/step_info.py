@@ -59,8 +59,7 @@ MORE_DIGITS = 10  # digits of poles beyond those printed: differences of their t
 MODES_DIGITS, MOST_MODES = 8, 100
 """Digits of responses of waves, which need few high modes, and how many modes: more cost digits."""
 MODES_BITS = 128
-DELAYS_DIGITS = 60
-"""Digits of poles of loops with delays: high powers of their differences lose some."""
+DELAYS_DIGITS = 60  # digits of poles of loops with delays: high powers of their differences lose some
 FADED = 1e-11
 """Share of the final value that a response with delays may still have when residues replace its pieces."""
 SMOOTH_MODES = (400, 40, 20, 10, 5, 3)

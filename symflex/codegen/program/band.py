@@ -419,8 +419,6 @@ def _left(made: BandForm, s: acb, value: acb, slope: acb) -> tuple[acb, acb]:
 def _chebyshev(samples: Sequence[arb]) -> list[float]:
     """Return the coefficients of the polynomial with given values at Chebyshev points, from v = 1 down.
 
-    Examples
-    --------
     >>> from math import pi
     >>> [abs(round(c, 12)) for c in _chebyshev([arb((2 * i + 1) / 8 * pi).cos() for i in range(4)])]
     [0.0, 1.0, 0.0, 0.0]

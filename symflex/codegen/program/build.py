@@ -262,8 +262,7 @@ def _factors(generators: Generators) -> tuple[int, int]:
     return _quotient(generators, (above, below))
 
 
-OPERATION_LIMIT = 100_000
-"""Operations a program may have; beyond that its text would be many megabytes."""
+OPERATION_LIMIT = 100_000  # operations a program may have; beyond that its text would be many megabytes
 
 
 def build_nested(tf: NestedTransferFunction) -> Piecewise:

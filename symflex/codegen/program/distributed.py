@@ -57,8 +57,7 @@ CHOOSING, TOGETHER = 3, 2
 """Base lengths up to which every one may have series by itself, eight pieces for three of them, and those up
 to which that is not more than a module should hold; of more it is measured whether it serves."""
 
-CUTS = 12
-"""How often one base length is cut by another; two spans and a sensor need one or two."""
+CUTS = 12  # how often one base length is cut by another; two spans and a sensor need one or two
 
 LOCAL_TERMS = 30_000
 """Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
@@ -156,8 +155,7 @@ class Pieces:
         return self._makers[use]
 
 
-_Test = tuple[int, float, int]
-"""Expression, limit and scale of a condition."""
+_Test = tuple[int, float, int]  # expression, limit and scale of a condition
 
 
 _Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool, tuple["Dispersion", ...]]

@@ -31,14 +31,12 @@ Term = tuple[tuple[tuple[int, int], ...], int]
 """Pairs ``(a_i, b_i)``, one per length, and 0 for the cosine or 1 for the sine; the first b that is not zero
 is positive."""
 
-Key = tuple[Term, ...]
-"""One term per family."""
+Key = tuple[Term, ...]  # one term per family
 
 KernelSum = dict[Key, "fmpz_mpoly"]
 """Products of terms with their coefficients, which are free of the kernels that have families."""
 
-Powers = tuple[tuple[str, int], ...]
-"""Functions of one argument, and exponents."""
+Powers = tuple[tuple[str, int], ...]  # functions of one argument, and exponents
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -23,11 +23,8 @@ if TYPE_CHECKING:
 
 MINUS_J = (0, -1)
 
-LEAST = Fraction(1, 2**60)
-"""Part of the root of c_0 below which c_2 does not count."""
-
-Scales = dict[tuple[int, int], int]
-"""Per family and length, the exponent that is divided out of a sum."""
+LEAST = Fraction(1, 2**60)  # part of the root of c_0 below which c_2 does not count
+Scales = dict[tuple[int, int], int]  # per family and length, the exponent that is divided out of a sum
 
 
 @dataclass

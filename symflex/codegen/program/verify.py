@@ -31,14 +31,12 @@ from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunc
 from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
-DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
-"""Hz."""
+DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))  # hz
 
 MOST_WAVES = 300.0
 """Size of the largest exponent of a member that tapers up to which the error is measured by default."""
 
-SAMPLES = 400
-"""Frequencies at which the error is measured, besides those around poles and zeros."""
+SAMPLES = 400  # frequencies at which the error is measured, besides those around poles and zeros
 
 ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
 """Relative distances from a pole's or zero's frequency at which the error is measured as well."""
@@ -50,11 +48,8 @@ SIMILAR, MUCH_LONGER = 2.0, 2
 """Forms whose errors differ by less than this factor count as equally accurate, and the faster one is taken;
 how many times the operations of the shortest form recurrences may take when nothing can be measured."""
 
-LONG = 500
-"""Terms from which coefficients of powers of s are not expanded if another form is accurate."""
-
-ACCURATE = 1e-14
-"""Error below which no other form is looked for: some fifty roundings of a double."""
+LONG = 500  # terms from which coefficients of powers of s are not expanded if another form is accurate
+ACCURATE = 1e-14  # error below which no other form is looked for: some fifty roundings of a double
 
 SCAN, MOST_EXTREMES = 3000, 40
 """Frequencies over the band among which a distributed system's resonances and antiresonances are sought, and
@@ -64,8 +59,7 @@ LIGHT_NESTED, LEAST = 600, 0.05
 """Operations of a nested form from which fewer frequencies are looked at, and the part of them that is looked
 at in any case; of a network of beams a value takes 10 ms and more."""
 
-NAMED = 6
-"""Parameters without value that are named."""
+NAMED = 6  # parameters without value that are named
 
 BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
 """Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
@@ -79,8 +73,7 @@ ASIDE_OF_AXIS, HEIGHTS = 0.1, np.linspace(0.02, 0.98, 5)
 AT_A_POLE = 1e-14
 """Relative distance from a pole's frequency within which infinity may stand for the value: some roundings."""
 
-TINY = 1e-307
-"""What is smaller has no more digits in double precision."""
+TINY = 1e-307  # what is smaller has no more digits in double precision
 
 
 @dataclass(frozen=True, slots=True)

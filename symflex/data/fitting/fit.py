@@ -40,12 +40,10 @@ from symflex.options import FitOptions
 
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8  # of a response that is fitted
-WEAK = 0.5
-"""Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
+WEAK = 0.5  # standard error over the value from which a damping ratio, or a zero, is hardly determined
 WEAK_ROUNDED, MOST_ROUNDED = 0.2, 0.25
 """The same, and the share of the noise, where numbers of few digits make it: steps look like resonances."""
-LARGE = 2.0
-"""Sum of squares per degree of freedom from which coherence does not explain the residual."""
+LARGE = 2.0  # sum of squares per degree of freedom from which coherence does not explain the residual
 MEDIAN = 1.177  # median of the size of a complex Gaussian error whose parts have the deviation 1
 DECADE = 10.0
 """Frequency over that of an end of the band, or the other way round, from which a pole is far outside."""
@@ -55,8 +53,7 @@ that there may be where data do not say, lines that 14 pairs of poles leave enou
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
 NAMED_LINES = 6  # wild lines whose frequencies are listed
-ROUNDS = 3
-"""Rounds in which lines are left out or taken back; they end earlier when nothing changes."""
+ROUNDS = 3  # rounds in which lines are left out or taken back; they end earlier when nothing changes
 MOST_LINES, FEWEST_OF_EACH = 1000, 300
 """On which numbers of poles are compared: of all responses together, and of each at least."""
 DROWNED = 0.5  # deviation of each part over the magnitude from which a line shows noise

@@ -36,10 +36,8 @@ from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
 
 STEPS = 100  # evaluations of each residual; a search that takes more has lost its way
-TOLERANCE = 1e-9
-"""Relative, of parameters and cost: far below any standard error, far above rounding."""
-ROUGH = 1e-5
-"""The same of a search that another one follows: a thousandth of what tells two fits apart."""
+TOLERANCE = 1e-9  # relative, of parameters and cost: far below any standard error, far above rounding
+ROUGH = 1e-5  # the same of a search that another one follows: a thousandth of what tells two fits apart
 CAP = 0.05
 """Added to the deviation in the logarithmic residual, so that no single line pulls a poor start astray."""
 LARGEST_LAG = 3  # lines apart: one more than a Hann window correlates

@@ -32,8 +32,7 @@ KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)):
 
 MOST_MOVED, MOST_DAMPED = 0.1, 2.0
 """How far all responses may move the logarithm of a frequency, and of a damping ratio."""
-WEAK = 0.5
-"""Standard error of a damping ratio over its value from which a resonance has no mode shape."""
+WEAK = 0.5  # standard error of a damping ratio over its value from which a resonance has no mode shape
 RIGHT_ANGLE = 90.0
 MOST_STEPS = 200
 SINGULAR = 1e13  # condition of the normal equations from which a covariance means nothing

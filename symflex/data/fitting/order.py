@@ -37,8 +37,7 @@ Result = TypeVar("Result")
 
 
 CRITERIA = ("bic", "aicc")
-MOST_MODES = 12
-"""Beyond, ask for a number: each one tried costs a fit from up to three kinds of starts."""
+MOST_MODES = 12  # beyond, ask for a number: each one tried costs a fit from up to three kinds of starts
 EXTRA = 5
 """Poles beyond those of the resonances that are asked for: modes outside the band, and real ones."""
 PATIENCE, MORE_PATIENCE = 1, 3
@@ -54,13 +53,11 @@ WEAK = 0.5
 """Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
 FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
-FAR_OFF = 100.0
-"""Sum of squares per degree of freedom from which poles are missing, whatever the start."""
+FAR_OFF = 100.0  # sum of squares per degree of freedom from which poles are missing, whatever the start
 LOWER = 0.5  # how far the BIC has to fall for another start to count as better
 NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
-WELL_BELOW = 0.1
-"""The same of records, in units of the noise that they show where they are quietest."""
+WELL_BELOW = 0.1  # the same of records, in units of the noise that they show where they are quietest
 MOST_NUMERATORS, MOST_STARTS = 3, 4
 """The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
 MOST_SHAPES = 12  # numerators over each choice of poles among which the simplest is looked for
@@ -68,8 +65,7 @@ NARROW_BAND = 1.1  # ratio of the ends of a band in which a power of s is hardly
 SAME = 1e-3  # relative distance below which two starts have the same poles
 MOST_RISE = 1.5
 """Zeros moved to the other half-plane are a start where the misfit rises by no more than this factor."""
-CLEAR = 6.0
-"""Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
+CLEAR = 6.0  # difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995).
 HALF_FORGOTTEN = 1.66
 """What lines behind an exponential window share, 1.5 coth 1.5: the sum of ``1/(1 + (pi k/1.5)^2)`` over k."""
 UNLIKELY = 1e-5

@@ -48,8 +48,7 @@ SETTLED = 1e-6  # the least of its free constant
 SPARE = 2  # poles, or pairs of them, more than are looked for, which noise or a delay may take up
 GENEROUS = 10
 """Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
-REPHASED = 6
-"""Rounds in which magnitudes without a phase take that of the function fitted to them."""
+REPHASED = 6  # rounds in which magnitudes without a phase take that of the function fitted to them
 LARGEST_START = 0.3  # damping ratio beyond which a pole counts less and less as a resonance
 FREE_POWERS = (-2, -1, 0, 1, 2)
 """Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""

@@ -111,8 +111,7 @@ _ORDER: Final = re.compile(r"'fortran_order': (True|False)")
 _SHAPE: Final = re.compile(r"'shape': \(((?:\d{1,12}, ?)*\d{0,12}),?\)")
 _END, _END_SIZE, _END_64, _COMMENT = b"PK\x05\x06", 22, b"PK\x06\x07", 0xFFFF
 """The record that ends an archive: signature, size, its locator of 64 bits, the longest comment."""
-_DIRECTORY_LIMIT: Final = 2**20
-"""Bytes of an archive's list of members: some ten thousand of them."""
+_DIRECTORY_LIMIT: Final = 2**20  # bytes of an archive's list of members: some ten thousand of them
 
 
 def read_archive(data: bytes, limit: int, members: int) -> Arrays:

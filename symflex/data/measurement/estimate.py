@@ -41,8 +41,7 @@ Complex = npt.NDArray[np.complex128]
 
 SEGMENTS: Final = 8
 """Segments into which a record is cut by default, without overlap; with half an overlap there are 15."""
-LONGEST_SEGMENT: Final = 16_384
-"""Samples of a segment: a fit of more lines takes longer than it tells."""
+LONGEST_SEGMENT: Final = 16_384  # samples of a segment: a fit of more lines takes longer than it tells
 LEVELS: Final = 0.02  # share of a step or pulse by which a level may be off
 PULSE: Final = 0.1  # share of a record in which a pulse ends
 SETTLED: Final = 1e-4  # the same, below which what is left needs no window, noise or not
@@ -64,8 +63,7 @@ HELD: Final = 0.5
 """Share of samples equal to those before them from which an input is held between samples."""
 STOPPED: Final = 0.01
 """Share of a record in whose last level the input is switched off, which is left out."""
-DIES_AWAY: Final = 0.3
-"""Rms of the second half of a free decay over that of the first half, at most."""
+DIES_AWAY: Final = 0.3  # rms of the second half of a free decay over that of the first half, at most
 ENDS: Final = 0.05  # share of a record by whose samples its ends are judged
 
 

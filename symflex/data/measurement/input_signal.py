@@ -49,8 +49,7 @@ TIME = re.compile(
     rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
     re.I,
 )
-_AXIS = re.compile(r"x|x[- _]?axis", re.I)
-"""Names of a column that the unit below shows to be the time."""
+_AXIS = re.compile(r"x|x[- _]?axis", re.I)  # names of a column that the unit below shows to be the time
 _COUNTED = re.compile(r"^X,.*Start,Increment,?\nSequence,.*?,([^,\n]+),([^,\n]+),?$", re.M)
 """Above rows that are numbered, and begin at a time, with a distance (oscilloscopes)."""
 BESIDE: Final = 3

@@ -29,8 +29,7 @@ from symflex.data.measurement.text_table import MAX_CELLS
 from symflex.errors.optional import installed
 
 SECONDS: Final = 60
-MEMORY: Final = 2**31
-"""Limits of a process [s, bytes]: a sheet of 5 million cells takes 40 s and 1 GB."""
+MEMORY: Final = 2**31  # limits of a process [s, bytes]: a sheet of 5 million cells takes 40 s and 1 GB
 _CALL: Final = (
     "import sys; sys.path[:] = {}; from symflex.data.measurement.isolated import main; main({!r}, {})"
 )

@@ -63,8 +63,7 @@ _CLOCK_NAME = re.compile(r"time|stamp|clock|epoch", re.I)
 DAY: Final = 86_400
 _EPOCHS: Final = {1e-3: (1e11, 1e13), 1e-6: (1e14, 1e16), 1e-9: (1e17, 1e19)}
 """Where times since 1970 are if they are not in seconds, of this century."""
-_DAYS: Final = (36_526, 73_050)
-"""Numbers of days by which workbooks write the dates from 2000 to 2099."""
+_DAYS: Final = (36_526, 73_050)  # numbers of days by which workbooks write the dates from 2000 to 2099
 _RATE = re.compile(r"(?:sampl\w*|scan)[ _.]*(?:rate|freq\w*)|(?<![a-z])f_?s(?![a-z])|abtastrate", re.I)
 _INTERVAL = re.compile(
     r"sampl\w*[ _.]*(?:interval|period|time)|"  # "record length" is a number of samples

@@ -31,8 +31,7 @@ LOWEST_HZ: Final = 1e-15
 HIGHEST_HZ: Final = 1e15
 """Beyond, squares and slopes of responses leave what doubles can hold; light has 1e15 Hz."""
 MOST_SAMPLES: Final = 20_000_000
-BEYOND: Final = 6
-"""Lines above the highest one shown that are excited too: a window sees that far."""
+BEYOND: Final = 6  # lines above the highest one shown that are excited too: a window sees that far
 LEAST_EXCITED: Final = 0.5
 """The excitation begins at half the lowest frequency shown, so that all lines are driven."""
 

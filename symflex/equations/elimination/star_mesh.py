@@ -42,14 +42,12 @@ if TYPE_CHECKING:
     from symflex.algebra.propagators import Propagation, Propagator
     from symflex.equations import Equations
 
-KEPT_LAST = 8
-"""Rows an input may act on and be eliminated last; one that acts on more acts everywhere."""
+KEPT_LAST = 8  # rows an input may act on and be eliminated last; one that acts on more acts everywhere
 
 NO_UNKNOWN = -2
 """The own column of a row that is of no unknown, such as a condition of a field; inputs have column -1."""
 
-EXPLAINED = 2_500
-"""Unknowns up to which a singular system is explained: that takes a dense matrix."""
+EXPLAINED = 2_500  # unknowns up to which a singular system is explained: that takes a dense matrix
 
 
 @dataclass(frozen=True, eq=False)

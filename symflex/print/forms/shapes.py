@@ -64,8 +64,7 @@ MOST: Final = 15  # the same where whole numbers have as many
 FEW_DOUBLES: Final = 2
 """Numbers of more digits in a model that are printed with all of them, such as 1/60 as a double."""
 TOO_LONG: Final = 10**30  # a whole number in which nobody looks for numbers as they were typed
-LARGE: Final = 10**5
-"""A whole number from which a polynomial in s reads better with s^n alone in front."""
+LARGE: Final = 10**5  # a whole number from which a polynomial in s reads better with s^n alone in front
 MORE: Final = 1.3  # how many times as long a form with decimals may be
 SCALED: Final = ("monic", "constant")  # forms that say what a coefficient is divided by
 LINE: Final = 4  # characters by which one line in place of two has to be shorter than these

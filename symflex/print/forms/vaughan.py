@@ -48,8 +48,7 @@ from symflex.print.forms.notation import (
 from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 from symflex.transfer import TransferFunction
 
-TRADE = 4
-"""Characters that writing c_0 for a power of the wavenumber must save."""
+TRADE = 4  # characters that writing c_0 for a power of the wavenumber must save
 
 
 def vaughan_form(tf: TransferFunction) -> PrintedForm:

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 VALUE_DIGITS: Final = 7  # significant digits of a value that is not a shorter decimal
 ROOT_DIGITS: Final = 6
 """Significant digits of a root, where its radius certifies them and the column has room."""
-LONGEST_MEANING: Final = 400
-"""Characters of a description that a table prints; a row must fit a page."""
+LONGEST_MEANING: Final = 400  # characters of a description that a table prints; a row must fit a page
 _FEWEST_DIGITS: Final = 3
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 _LARGEST_PLAIN: Final = 5

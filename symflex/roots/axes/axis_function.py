@@ -27,16 +27,13 @@ from symflex.balls import bits_for_digits, precision, stays_inside
 from symflex.budget import spend
 from symflex.roots.root import GUARD_BITS
 
-FLOAT_BITS = 64
-"""Precision of signs and counts: a few bits more than doubles have."""
+FLOAT_BITS = 64  # precision of signs and counts: a few bits more than doubles have
 LINEAR, QUADRATIC = 1, 2
 REAL, IMAGINARY = 0, 1
-DECAYED = 2
-"""What is smaller than the last bit by this power is bounded rather than evaluated."""
+DECAYED = 2  # what is smaller than the last bit by this power is bounded rather than evaluated
 
 Doubles = npt.NDArray[np.float64]
-Rate = tuple[arb, arb]
-"""Coefficients of t and of t^2."""
+Rate = tuple[arb, arb]  # coefficients of t and of t^2
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,11 +120,9 @@ class AxisFunction:
         return max((abs(p + 2 * q * t) for p, q in self._phases), default=0.0)
 
 
-NONE = -1
-"""Stands for the position of an exponential in a term without one."""
+NONE = -1  # stands for the position of an exponential in a term without one
 ZERO = arb(0)
-Powers = tuple[tuple[int, arb], ...]
-"""Exponents of t, and coefficients."""
+Powers = tuple[tuple[int, arb], ...]  # exponents of t, and coefficients
 Term = tuple[int, int, Powers, Powers]
 """Position of an exponential, or none, of a phase, and what its cosine and sine are multiplied with."""
 
@@ -304,18 +299,12 @@ def _floats(powers: Powers) -> list[tuple[int, float]]:
     return [(n, float(c)) for n, c in powers]
 
 
-GUESS_BITS = 46
-"""Bits of a guess in doubles that are right as a rule."""
-LEAST_BITS = 16
-"""Right bits of a point below which no proof is tried."""
-MARGIN_BITS = 4
-"""Bits of a Newton step's accuracy that are not relied on."""
-ROUNDS = 40
-"""Interval Newton steps; each nearly doubles what is known, so that few are ever taken."""
-BISECTIONS = 100
-"""Nearly twice the bits of a double."""
-CLOSER = 1e-12
-"""Relative to t: no further Newton step is needed after one as short as this."""
+GUESS_BITS = 46  # bits of a guess in doubles that are right as a rule
+LEAST_BITS = 16  # right bits of a point below which no proof is tried
+MARGIN_BITS = 4  # bits of a Newton step's accuracy that are not relied on
+ROUNDS = 40  # interval Newton steps; each nearly doubles what is known, so that few are ever taken
+BISECTIONS = 100  # nearly twice the bits of a double
+CLOSER = 1e-12  # relative to t: no further Newton step is needed after one as short as this
 
 
 class AxisNewton:

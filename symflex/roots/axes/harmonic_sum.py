@@ -46,18 +46,13 @@ from symflex.roots.functions.kernel_function import ROOM, KernelFunction, deviat
 from symflex.transfer import BoundTransferFunction
 
 EIGHTH = pi / 4
-BESIDE = 0.3
-"""How far from the ends the largest terms are looked for, in x."""
-OUTWEIGHED = 0.8
-"""Most that all other terms may amount to, of the largest; less than 1."""
+BESIDE = 0.3  # how far from the ends the largest terms are looked for, in x
+OUTWEIGHED = 0.8  # most that all other terms may amount to, of the largest; less than 1
 FALL = 4.0
 """Factor by which other terms, divided by their number, must have decayed at the edge of a layer."""
-MARGIN = 1.1
-"""Factor on the width of a layer, because terms do not decay evenly."""
-FIRST_STEP = 0.5
-"""First step along the arc."""
-SHORTEST = 1e-12
-"""Share of the arc; a step that would have to be shorter says that a root lies on it."""
+MARGIN = 1.1  # factor on the width of a layer, because terms do not decay evenly
+FIRST_STEP = 0.5  # first step along the arc
+SHORTEST = 1e-12  # share of the arc; a step that would have to be shorter says that a root lies on it
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,8 +280,7 @@ def _most(value: acb, turn: tuple[arb, arb]) -> arb:
 
 LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
 """Power of x that wavenumbers are proportional to, by kind of dispersion."""
-UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}
-"""What t is multiplied with to be x."""
+UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}  # what t is multiplied with to be x
 
 
 @dataclass(frozen=True, eq=False)

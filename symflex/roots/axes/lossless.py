@@ -36,45 +36,27 @@ from symflex.roots.root import Root
 if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
 
-GRID = 0.8
-"""Largest change of a phase [rad] from one sample to the next."""
-BATCH = 4096
-"""Samples taken at once."""
-MOST_SAMPLES = 2_000_000
-"""Most samples of one search, before it is given up."""
-NEWTON_STEPS = 6
-"""Newton steps from a tenth of an oscillation to all digits of a double."""
-CLOSER = 1e-12
-"""Relative to t: no further Newton step is needed after one as short as this."""
-COUNT_BITS = 64
-"""Precision of turns, of which only the nearest integer is wanted."""
-HALF = 0.5
-"""Distance to one integer that separates it from all others."""
-ROUNDS = 40
-"""Tries to aim a circle at a mode by its number; the first or second hits as a rule."""
-SECANTS = 30
-"""Steps that aim a circle."""
-NEARLY = 0.2
-"""Turns [rad] to which a circle is aimed."""
+GRID = 0.8  # largest change of a phase [rad] from one sample to the next
+BATCH = 4096  # samples taken at once
+MOST_SAMPLES = 2_000_000  # most samples of one search, before it is given up
+NEWTON_STEPS = 6  # Newton steps from a tenth of an oscillation to all digits of a double
+CLOSER = 1e-12  # relative to t: no further Newton step is needed after one as short as this
+COUNT_BITS = 64  # precision of turns, of which only the nearest integer is wanted
+HALF = 0.5  # distance to one integer that separates it from all others
+ROUNDS = 40  # tries to aim a circle at a mode by its number; the first or second hits as a rule
+SECANTS = 30  # steps that aim a circle
+NEARLY = 0.2  # turns [rad] to which a circle is aimed
 ASIDE = (0.0, 0.6, -0.6, 1.2)
 """Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
 WITHIN, BEYOND = -1, 1
-SHARES = (0.5, 0.4, 0.6)
-"""Shares at which a ring is cut in two."""
-HALVINGS = 60
-"""Halvings of a ring until it is as thin as doubles can resolve."""
-FEW = 8
-"""Modes up to which their density says little of where the next ones are."""
-CLOSE = 1e-9
-"""Relative distance of two frequencies between which no circle is drawn."""
-DEPTH = 30.0
-"""How far below the first resonances roots are sought, in ln."""
-HIGHEST = 1e130
-"""abs(s) [rad/s] beyond which nothing is sought."""
-UNRELIABLE = 1e-10
-"""Relative to the terms of a sum, what is lost in rounding."""
-FIRST_PHASE = 1e-3
-"""Largest phase [rad] at the first sample."""
+SHARES = (0.5, 0.4, 0.6)  # shares at which a ring is cut in two
+HALVINGS = 60  # halvings of a ring until it is as thin as doubles can resolve
+FEW = 8  # modes up to which their density says little of where the next ones are
+CLOSE = 1e-9  # relative distance of two frequencies between which no circle is drawn
+DEPTH = 30.0  # how far below the first resonances roots are sought, in ln
+HIGHEST = 1e130  # abs(s) [rad/s] beyond which nothing is sought
+UNRELIABLE = 1e-10  # relative to the terms of a sum, what is lost in rounding
+FIRST_PHASE = 1e-3  # largest phase [rad] at the first sample
 
 
 @dataclass(frozen=True, slots=True)

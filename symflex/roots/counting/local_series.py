@@ -30,8 +30,7 @@ SHRUNK = 2.0**-6  # radius of the circle where values are taken, over that where
 ARCS = 32  # into which a circle is cut to bound a function on it, at first
 MOST_ARCS = 1024  # after halvings of those on which nothing is known
 WIDE_BITS = 64  # precision of bounds on wide balls, which lose all digits anyway
-REACH = 0.04
-"""Relative radius of the circle on which a function is bounded to expand it about a point."""
+REACH = 0.04  # relative radius of the circle on which a function is bounded to expand it about a point
 SERIES_POINTS = 20  # values that make a series of the usual accuracy
 SERIES_BITS = 128  # precision of these values
 BITS_A_POINT = 6  # what every value more adds to the accuracy of a series
@@ -162,13 +161,11 @@ def bound_on_circle(function: Entire, centre: acb, reach: arb, arcs: int) -> arb
 LEAST = 2  # coefficients without which nothing can be told
 FEWEST = 20  # terms where a bound is as small as the function
 MOST = 250  # terms; where more were needed, shorter steps are better
-STEP_SHRUNK = 0.25
-"""Radius of the circle where values are taken, over that where they are bounded."""
+STEP_SHRUNK = 0.25  # radius of the circle where values are taken, over that where they are bounded
 FIRST_ARCS = 16  # into which a circle is cut to bound a function on it, at first
 BITS = 160  # least precision: sums that cancel lose about half of them
 WIDER = 4  # radius to which a series is bounded, over that of the step it is made for
-BEYOND = 3
-"""Radius on which what is cut off a product of series is bounded, over that of the step."""
+BEYOND = 3  # radius on which what is cut off a product of series is bounded, over that of the step
 SHARP = 2.0**-20  # largest relative error of values at the ends of a step
 BLURRED = 2.0  # reported where that is exceeded: more than any step may turn
 COVERED = 0.4  # share of the radius of a bound in which the series serves for steps

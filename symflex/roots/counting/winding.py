@@ -22,8 +22,7 @@ from symflex.roots.functions.entire import Followed, Sample
 from symflex.roots.functions.kernel_function import ROOM
 
 RING = log(2)
-LARGEST_RING = 120
-"""Octaves searched for the lowest root, from that of one wave: more than 36 decades."""
+LARGEST_RING = 120  # octaves searched for the lowest root, from that of one wave: more than 36 decades
 FAR = 60.0  # logarithm of a frequency beyond all that matter
 SAME_ORDER = 0.05  # difference of a count from the order at 0, in turns, that rounding may cause
 LONGEST_STEP = 0.4  # longest step of a path [in z]
@@ -32,8 +31,7 @@ PHASE_STEP = 2.0
 DISAGREEMENT = 0.3
 """Largest difference between ln F at the end of a step and what the slopes at both ends predict."""
 BEND = 2.0  # largest change of ln F over a step that a change of slope may cause
-SMALLEST_STEP = 1e-13
-"""Smallest step of a path [in z]; a path that needs a shorter one meets a root."""
+SMALLEST_STEP = 1e-13  # smallest step of a path [in z]; a path that needs a shorter one meets a root
 NEARLY_WHOLE = 0.05  # difference from an integer, in turns, that rounding may cause
 WORK_LIMIT = 5_000_000  # terms evaluated in one search
 SHORTER = "ask for fewer modes or a smaller region"

@@ -136,8 +136,7 @@ class Count:
         return counted
 
 
-NEIGHBOURHOOD = 0.05
-"""Size of a neighbourhood where roots accumulate, relative to its distance from 0."""
+NEIGHBOURHOOD = 0.05  # size of a neighbourhood where roots accumulate, relative to its distance from 0
 WIDER = 1e-3  # how far beyond its limits, in ln, a ring is searched
 
 

@@ -27,12 +27,10 @@ from symflex.transfer import BoundTransferFunction
 ACCUMULATING = "poles accumulate in the right half-plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"
 NOT_COUNTED = "the poles in the right half-plane could not be counted"
-WAVES = 10.0
-"""Largest argument of a kernel up to which poles are counted where no end of them is known."""
+WAVES = 10.0  # largest argument of a kernel up to which poles are counted where no end of them is known
 FURTHER, LOWER = 30.0, 3000.0
 """Times that frequency to which roots on the axis are counted; it over that from which on none may be."""
-MARGIN = 1.01
-"""How far beyond the radius of a tail the path runs, so that its corners meet no root."""
+MARGIN = 1.01  # how far beyond the radius of a tail the path runs, so that its corners meet no root
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,7 @@ from symflex.roots.root import LossyRoot, Root, count_modes, overlap, root_at_ze
 CRAMER = "cramer"  # what stands in a certificate: the determinants of Cramer's rule, in discs
 WIDER = 1.01  # how far beyond the region the disc reaches
 GROWTH = 1.4
-SPARE = 1
-"""Roots beyond those asked for that a disc is to hold, so that its circle passes between two."""
+SPARE = 1  # roots beyond those asked for that a disc is to hold, so that its circle passes between two
 
 
 @dataclass(frozen=True, slots=True)

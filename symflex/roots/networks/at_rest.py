@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from symflex.roots.networks.cramer import CramerEquations
 
 
-SPARE_TERMS = 8
-"""Terms of a series beyond those that vanish; each pivot of an order takes as many."""
+SPARE_TERMS = 8  # terms of a series beyond those that vanish; each pivot of an order takes as many
 FEWEST = 4  # columns with fewest entries that are looked at for a pivot
 
 

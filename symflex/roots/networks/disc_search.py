@@ -26,26 +26,18 @@ RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)
 """Radius of the circle where a bound is taken over that where values are."""
 MOST_POINTS = 1000
 """Most points of a circle that may separate what is bounded beyond it from what lies on it."""
-SAMPLES = 6
-"""Points of a circle that tell how fast a function grows."""
-ROUGH_BITS = 24
-"""Precision of values that only say how large a function is."""
-SERIES_BITS = 64
-"""Bits to which a series gives the function where it is least on the circles looked at."""
+SAMPLES = 6  # points of a circle that tell how fast a function grows
+ROUGH_BITS = 24  # precision of values that only say how large a function is
+SERIES_BITS = 64  # bits to which a series gives the function where it is least on the circles looked at
 LEAST_CIRCLES = (1.0, 0.5, 0.25, 0.1, 0.03)
 WIDENED = 1.07
 TRIES = 8
-SMALLEST, LARGEST = 1e-6, 1e12
-"""Radius [rad/s] below which nothing is sought."""
-TOO_WIDE = 0.3
-"""Part by which a disc may be larger than it need be."""
-SHORT = 0.2
-"""How far the mean growth may stay below the number of all zeros."""
-UNLIKE = 12
-"""Times as many roots as the other has, and so many more, are enough of one function."""
+SMALLEST, LARGEST = 1e-6, 1e12  # radius [rad/s] below which nothing is sought
+TOO_WIDE = 0.3  # part by which a disc may be larger than it need be
+SHORT = 0.2  # how far the mean growth may stay below the number of all zeros
+UNLIKE = 12  # times as many roots as the other has, and so many more, are enough of one function
 REFINEMENTS = 40
-NEAR_AXIS = 2.0**-20
-"""Share of abs(s): a guess this close to the imaginary axis may lie on it."""
+NEAR_AXIS = 2.0**-20  # share of abs(s): a guess this close to the imaginary axis may lie on it
 
 
 @dataclass(frozen=True, eq=False)

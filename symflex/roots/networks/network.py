@@ -26,8 +26,7 @@ from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 ONE_WAY = "forces and motions are coupled in one direction only, as in a loop"
 LOSES = "something in it loses or supplies energy"
-MASS_BITS = 256
-"""Precision of the proof that inertia is not negative, if numbers are not rational."""
+MASS_BITS = 256  # precision of the proof that inertia is not negative, if numbers are not rational
 
 
 class OtherNetworkError(Exception):

@@ -47,8 +47,7 @@ if TYPE_CHECKING:
 
 WITTRICK_WILLIAMS = "wittrick-williams"
 """What stands in a certificate: the count of Wittrick and Williams."""
-WIDER = 1e-3
-"""How far beyond the limits of a band is searched, relative to them."""
+WIDER = 1e-3  # how far beyond the limits of a band is searched, relative to them
 NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"
 NOT_COUNTED = "the roots could not be counted"

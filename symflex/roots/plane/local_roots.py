@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 LEAST_BITS = 96  # least precision of a box, whatever digits are wanted
 BOX_SHARE = 0.4  # the box is so many of the bits smaller than the root is large
 MOST_TIMES = 16  # the first precision; beyond it a root is left to other means
-CLOSE = BOX_SHARE + 0.02
-"""The last Newton step before a box is drawn is by so many of the bits smaller."""
+CLOSE = BOX_SHARE + 0.02  # the last Newton step before a box is drawn is by so many of the bits smaller
 FIRST_BITS = 64  # precision of the first Newton steps
 STEPS = 80  # Newton steps in all
 SMALLER = 4  # a middle this many times closer to an axis than the box is large is put on it

@@ -39,8 +39,7 @@ FIRST_BITS = 128  # precision of points handed to proofs
 NEAR = 0.1  # size of cells in which a root without a box is enclosed by a circle
 NEIGHBOURS = 1e-4
 """Relative radius of the disc about a root in which others are sought that it may not be told from."""
-FADED = 100.0
-"""Width in ln of a ring where kernels do not vary faster further out, and roots are few."""
+FADED = 100.0  # width in ln of a ring where kernels do not vary faster further out, and roots are few
 HIGHEST = 300.0  # ln of the radius [rad/s] beyond which nothing is sought
 MODES_LIMIT = 2000  # most modes of one search; ask for further ones by a band
 

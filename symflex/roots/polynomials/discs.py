@@ -227,8 +227,7 @@ CONVERGED = 1e-13  # relative step after which none follows
 STALLED = 1e-6  # the same where steps do not become shorter any more: next to other roots
 NEARLY_REAL = 1e-8  # relative imaginary part that is taken for zero
 RESTART = 1e-3  # how far beside the last root the next search begins
-FRESH_ANGLES = (0.7, 2.5, 1.6)
-"""Angles of further starting points if the first leads nowhere [rad]."""
+FRESH_ANGLES = (0.7, 2.5, 1.6)  # angles of further starting points if the first leads nowhere [rad]
 LARGEST_LOGARITHM = 600.0  # largest logarithm of a modulus in doubles
 KICK_EVERY = 20  # steps after which one is turned aside, to leave a cycle
 DOUBLE_BITS = 64
