@@ -268,23 +268,30 @@ CAPTIONS: Final = {"drawing": "the model", "map": "poles and zeros", "bode": "fr
 
 
 def _sections() -> Iterator[str]:
+    """Yield each section as thumbnails that open their entries; pictures are loaded when they are seen."""
     for folder, title in FOLDERS.items():
-        yield f"\n## {title}\n"
+        yield f'\n## {title}\n\n<div class="thumbnails">'
         for entry in entries():
-            if Path(entry.path).parent.as_posix() != folder:
-                continue
-            yield f"### {entry.title}\n"
-            yield from (f"{html.escape(line)}\n" for line in (entry.source, entry.doc) if line)
-            yield f'<div class="gallery" id="{entry.stem}">'
-            for name, _ in entry.figures:
-                shown = "root locus" if name == "map" and "loops" in entry.path else CAPTIONS[name]
-                alt = html.escape(f"{entry.title}: {shown}", quote=True)
-                source = f"../gallery/{entry.stem}_{name}.svg"
-                yield f'<img class="{name}" src="{source}" alt="{alt}" loading="lazy">'
-                if name == "drawing":
-                    yield entry.formula
-            if not any(name == "drawing" for name, _ in entry.figures):
-                yield entry.formula
-            yield "</div>\n"
-            moves = f"[Move its parameters](gallery/{entry.stem}.html) · " if entry.path in MOVING else ""
-            yield f"{moves}[Specification](gallery/{entry.stem}.toml)\n"
+            if Path(entry.path).parent.as_posix() == folder:
+                yield from _entry(entry)
+        yield "</div>\n"
+
+
+def _entry(entry: Entry) -> Iterator[str]:
+    title, pictures = html.escape(entry.title), dict(entry.figures)
+    first = next(iter(pictures), "")
+    yield f'<details id="{entry.stem}"><summary>{_picture(entry, first)}<span>{title}</span></summary>'
+    yield from (f"<p>{html.escape(line)}</p>" for line in (entry.source, entry.doc) if line)
+    yield '<div class="gallery">'
+    if "drawing" in pictures:
+        yield _picture(entry, "drawing")
+    yield entry.formula
+    yield from (_picture(entry, name) for name in pictures if name != "drawing")
+    moves = f'<a href="{entry.stem}.html">Move its parameters</a> · ' if entry.path in MOVING else ""
+    yield f'</div><p>{moves}<a href="{entry.stem}.toml">Specification</a></p></details>'
+
+
+def _picture(entry: Entry, name: str) -> str:
+    shown = "root locus" if name == "map" and "loops" in entry.path else CAPTIONS.get(name, "")
+    alt = html.escape(f"{entry.title}: {shown}", quote=True)
+    return f'<img class="{name}" src="{entry.stem}_{name}.svg" alt="{alt}" loading="lazy">' if name else ""
