@@ -21,17 +21,19 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored
 from symflex.balls import Value, at_centre, ball, current_bits, precision
 from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.roots.distributed.far_out import right_tail
+from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
+from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.of_model import derive_nameless
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from flint import fmpz_mpoly
 
@@ -47,7 +49,7 @@ OCTAVES = 24
 """Pieces of the axis at first, each half as high as the next; the lowest begins at 0."""
 
 NEARLY = 1 / 8
-"""Part of what a box changes to which a value is as good as 0."""
+"""Share of a value that a box may leave and this still be as good as 0."""
 
 Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]
@@ -163,6 +165,22 @@ class CharacteristicFunction:
         lines = tuple(line for _, line in every) if all(line for _, line in every) else ()
         return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights), lines=lines)
 
+    def halves(self, box: OpenBox) -> list[OpenBox]:
+        """Return two parts of a box, parted along the parameter that contributes most to what is open.
+
+        Without an end of the poles that is one of the highest power of s.
+        """
+        spend()
+        sizes = box.weights or [
+            float((high - low) / (abs(low) + abs(high))) * (1 + (name in self.leading))
+            for name, (low, high) in zip(self.names, box.box, strict=True)
+        ]
+        i = max(range(len(sizes)), key=sizes.__getitem__)
+        low, high = box.box[i]
+        middle = (low + high) / 2
+        parts = [(*box.box[:i], ends, *box.box[i + 1 :]) for ends in ((low, middle), (middle, high))]
+        return [replace(box, box=part) if box.is_bounded else self.whole(part) for part in parts]
+
     def expanded(self, box: Box) -> FirstOrder:
         """Return the factors about the middle of a box."""
         return FirstOrder(self, self.tf, self.factors, box)
@@ -204,10 +222,10 @@ class CharacteristicFunction:
             if all(share < 1 for share, _ in shares):
                 continue
             # Where the box alone leaves it open, or nearly so, and as much as the piece, this is not halved.
-            is_open = any(_nearly_vanishes(*value) for value in values)
+            share, (*weights, by_piece) = max(shares, key=lambda each: each[0])
+            is_open = share - by_piece > 1 - NEARLY
             wide = sum((term.abs_upper() for _, terms in values for term in terms), arb(0))
-            is_spent = not sum((step.abs_upper() for step in steps), arb(0)) > wide
-            *weights, _ = max(shares, key=lambda each: each[0])[1]
+            is_spent = not wide.is_finite() or sum((step.abs_upper() for step in steps), arb(0)) <= wide
             line: Line = ()
             begin, end = low, high
             if len(ones) == 1:
@@ -249,6 +267,17 @@ class CharacteristicFunction:
     def _shared(self) -> dict[int, KernelValues]:
         return {}
 
+    def sums(self, tf: TransferFunction, polynomials: Sequence[fmpz_mpoly]) -> Summed | None:
+        """Return factors of a transfer function as sums of exponentials; None without a formula for them."""
+        if id(tf) not in self._summed:
+            value = Factored(tf.ratio.ring, Fraction(1), tuple((f, 1) for f in polynomials))
+            self._summed[id(tf)] = exponential_sums(value, tf.kernels)
+        return self._summed[id(tf)]
+
+    @cached_property
+    def _summed(self) -> dict[int, Summed | None]:
+        return {}
+
     def _bound(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
         fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
@@ -260,6 +289,7 @@ class FirstOrder:
 
     ``f(s, p)`` lies in ``f(s, p_0)`` plus slopes times the distances from the middle. A slope is that for
     all values of its parameter and of those before it, and for the middle of those after it (Hansen 1968).
+    Each f is divided by its exponential that is largest about s: as a length changes, little is left to turn.
     """
 
     function: CharacteristicFunction
@@ -268,57 +298,48 @@ class FirstOrder:
     box: Box
 
     @cached_property
-    def _wide(self) -> KernelValues:
-        return self.function.kernels(self.tf, self.box)
-
-    @cached_property
     def halves(self) -> list[arb]:
         """Half of each parameter's range."""
         return [ball((b - a) / 2) for a, b in self.box]
 
     @cached_property
-    def _known(self) -> list[KernelValues]:
-        """The evaluators at the middle, and along each parameter."""
+    def _evaluators(self) -> list[ExponentialValues | KernelFactors]:
+        """Those for the whole box, at its middle, and along each parameter."""
         middle = tuple(((a + b) / 2,) * 2 for a, b in self.box)
-        parts = [(*self.box[:i], *middle[i:]) for i in range(len(middle) + 1)]
-        return [
+        parts = [self.box, *((*self.box[:i], *middle[i:]) for i in range(len(middle) + 1))]
+        kernels = (
             self.function.kernels(self.tf, part, along)
-            for part, along in zip(parts, ("", *self.function.names), strict=True)
-        ]
+            for part, along in zip(parts, ("", "", *self.function.names), strict=True)
+        )
+        sums = self.function.sums(self.tf, self.polynomials)
+        if sums is None:
+            return [KernelFactors(each, self.polynomials) for each in kernels]
+        return [ExponentialValues(each, *sums) for each in kernels]
 
-    def generators(self, s: acb) -> Mapping[str, Value]:
+    def generators(self, s: acb) -> Place:
         """Return all generators to first order in s, for all s in a ball and for all parameters."""
-        return self._wide.at(acb_series([s, 1], 2))
+        return self._evaluators[0].at(acb_series([s, 1], 2))
 
-    def around(
-        self, s: acb, ones: Sequence[int], near: Mapping[str, Value] | None = None
-    ) -> list[tuple[acb, acb]]:
+    def around(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, acb]]:
         """Return values and slopes in s of some factors, for all s in a ball and for all parameters."""
-        at = near or self.generators(s)
-        values = [self._wide.polynomial(self.polynomials[i], at) for i in ones]
+        wide, near = self._evaluators[0], near or self.generators(s)
+        values = [wide.value(i, near, wide.largest([i], near)) for i in ones]
         return [(at_centre(value), _slope(value)) for value in values]
 
-    def at(
-        self, s: acb, ones: Sequence[int], near: Mapping[str, Value] | None = None
-    ) -> list[tuple[acb, list[acb]]]:
+    def at(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, list[acb]]]:
         """Return values of some factors at the middle of the box, and their slopes in every parameter.
 
         Wavenumbers are of one branch: that of ``near``, generators about s.
         """
         near = near or self.generators(s)
-        points = [(kernels, kernels.at(acb_series([s, 0], 2), near)) for kernels in self._known]
+        wide, middle, *others = self._evaluators
+        centre, points = middle.at(s, near), [(each, each.at(acb_series([s, 0], 2), near)) for each in others]
         found = []
-        for f in (self.polynomials[i] for i in ones):
-            value, *slopes = (kernels.polynomial(f, at) for kernels, at in points)
-            found.append((at_centre(value), [_slope(each) for each in slopes]))
+        for i in ones:
+            less = wide.largest([i], near)
+            slopes = [_slope(each.value(i, at, less)) for each, at in points]
+            found.append((at_centre(middle.value(i, centre, less)), slopes))
         return found
-
-
-def _nearly_vanishes(centre: acb, terms: Sequence[acb]) -> bool:
-    """Tell whether sums of terms, each times -1 to 1, take a value to 0, or almost."""
-    spread = sum((term * arb(0, 1) for term in terms), acb(0))
-    room = arb(0, NEARLY) * spread.abs_upper()
-    return (centre + spread + acb(room, room)).contains(0)
 
 
 def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:

@@ -12,15 +12,16 @@ boundary is decided but for a strip about a straight line, and halved until stri
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain, pairwise, product
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from symflex.budget import entered_budget, spend
+from symflex.budget import entered_budget
 from symflex.errors import BudgetError, SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
@@ -46,6 +47,8 @@ PARTS = 8
 """Parts of a box in either direction, its cells, that are decided by straight lines."""
 MOST_HALVINGS = 9
 """Halvings of each range: 4,096 cells along it."""
+SLENDER = 8
+"""How many times longer a box may be than wide, in parts of the ranges, where its other range is halved."""
 SMALLEST = 5e-4
 """Share of the smallest region in which poles are counted; smaller ones are left undecided."""
 ROUNDING = 1e-12
@@ -252,39 +255,44 @@ def find_chart(
     """
     reasons: list[str] = []
     free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)
-    pending = [(function.whole(ranges), (0, 0))]
+    pending, smallest, still_open = deque([function.whole(ranges)]), list[OpenBox](), free.size
     try:
         with entered_budget().share(SEARCH).entered():
-            for _ in range(MOST_HALVINGS):
-                free = free.repeat(2, 0).repeat(2, 1)
-                still_open = free.size - int(free.sum())
-                left: list[tuple[OpenBox, tuple[int, int]]] = []
-                places = (product((2 * x, 2 * x + 1), (2 * y, 2 * y + 1)) for _, (x, y) in pending)
-                parts = (halved(box, function) for box, _ in pending)
-                for box, place in zip(chain.from_iterable(parts), chain.from_iterable(places), strict=True):
-                    cells = free[tuple(slice(PARTS * i, PARTS * (i + 1)) for i in place)]
-                    if still_open > resolve * free.size and not cells.all():
-                        narrowed = function.narrowed(box) if box.is_bounded else box
-                        before = int(cells.sum())
-                        cells |= cells_without(narrowed)
-                        still_open -= int(cells.sum()) - before
-                        if any(narrowed.pieces) or not narrowed.is_bounded:
-                            left.append((narrowed, place))
-                    elif not cells.all():
-                        left.append((box, place))
-                pending = left
-                if still_open <= resolve * free.size:
-                    break
+            while pending and still_open > resolve * free.size:
+                for box in function.halves(pending[0]):
+                    sides = list(zip(ranges, box.box, strict=True))
+                    parts = [int((high - low) / (b - a)) for (low, high), (a, b) in sides]
+                    while len(free) < PARTS * max(parts):
+                        free, still_open = free.repeat(2, 0).repeat(2, 1), 4 * still_open
+                    steps = [len(free) // part for part in parts]
+                    starts = [int((a - low) / (high - low) * len(free)) for (low, high), (a, _) in sides]
+                    cells = free[tuple(slice(i, i + step) for i, step in zip(starts, steps, strict=True))]
+                    before = int(cells.sum())
+                    if before == cells.size:
+                        continue
+                    narrowed = function.narrowed(box) if box.is_bounded else box
+                    # Where a line bounds a box, or no end of the poles is known, the longer range is halved.
+                    if narrowed.lines or not box.is_bounded or max(parts) > SLENDER * min(parts):
+                        narrowed = replace(narrowed, weights=tuple(1 / part for part in parts))
+                    own = cells_without(narrowed)
+                    for axis, step in enumerate(steps):
+                        own = own.repeat(step // PARTS, axis)
+                    cells |= own
+                    still_open -= int(cells.sum()) - before
+                    if not cells.all():
+                        (smallest if max(parts) >> MOST_HALVINGS else pending).append(narrowed)
+                pending.popleft()
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
     # The ends do not belong to the ranges: there the order may be lower.
     rims = {(k, x) for k, ends in enumerate(ranges) for x in ends}
-    inner = (box for box, _ in pending if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
+    smallest += pending
+    inner = (box for box in smallest if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
     ends = {box.radius for box in inner if isinstance(box.radius, str)}
     regions_of, regions = _regions(function, free, ranges, reasons)
     return StabilityChart(
         function.names, tuple(units), ranges, tuple(nominal), regions_of, regions,
-        tuple(dict.fromkeys((*reasons, *ends))), tuple(box for box, _ in pending), function
+        tuple(dict.fromkeys((*reasons, *ends))), tuple(smallest), function
     )  # fmt: skip
 
 
@@ -304,15 +312,6 @@ def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
             reach += spread + abs(slope) * (1 / PARTS + ROUNDING)
         free &= abs(middle) > reach
     return free
-
-
-def halved(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
-    """Return the parts of a box, each range halved, the last range first."""
-    spend()
-    halves = [((low, (low + high) / 2), ((low + high) / 2, high)) for low, high in box.box]
-    # An end of the poles that is unknown for a box may be known for its parts.
-    is_known = box.is_bounded
-    return [replace(box, box=ends) if is_known else function.whole(ends) for ends in product(*halves)]
 
 
 def _regions(

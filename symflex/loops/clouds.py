@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Literal
 from symflex.errors import BudgetError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
 from symflex.loops.over import with_values
-from symflex.loops.spread import halves, middle_of, reach, spread_function
+from symflex.loops.spread import middle_of, reach, spread_function
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots.locate import locate
 from symflex.roots.region import Rectangle
@@ -173,7 +173,7 @@ def _is_free(function: CharacteristicFunction, box: Box, start: complex, way: co
     pending, done = [OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))], 0
     while pending and done < MOST_PARTS:
         each, done = function.narrowed(pending.pop(), path=(start - way, way)), done + 1
-        pending += halves(each, function) if any(each.pieces) else []
+        pending += function.halves(each) if any(each.pieces) else []
     return not pending
 
 

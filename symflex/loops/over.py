@@ -23,7 +23,7 @@ from symflex.balls import ball, bits_for_digits
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, OpenBox
-from symflex.loops.chart import StabilityChart, count_at, find_chart, halved
+from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
 from symflex.loops.loop import pick_gain
 from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
@@ -174,7 +174,7 @@ def find_intervals(
                     gaps.append(narrowed)
                 else:
                     left.append(narrowed)
-            halves = [half for box in left for half in halved(box, function)]
+            halves = [half for box in left for half in function.halves(box)]
             wide = _too_many(halves)
             for row in wide:
                 ends = f"{float(row[0].box[0][0]):.6g} and {float(row[-1].box[0][1]):.6g}"

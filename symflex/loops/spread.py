@@ -22,9 +22,8 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from symflex.balls import precision
-from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
-from symflex.loops.boxes import BITS, CharacteristicFunction, OpenBox
+from symflex.loops.boxes import BITS, CharacteristicFunction
 from symflex.loops.chart import count_at, located_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
@@ -164,7 +163,7 @@ def find_spread(function: CharacteristicFunction, box: Box, units: tuple[str, ..
                     s = complex(0, float(low + high) / 2)
                     if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
                         return unstable
-            pending += halves(each, function)
+            pending += function.halves(each)
     except BudgetError as error:
         reason = error.diagnostics[0].message
     except SymflexError as error:
@@ -202,23 +201,6 @@ def _at(result: SpreadStability, verdict: StabilityVerdict, point: Point) -> Spr
 def middle_of(box: Box) -> Point:
     """Return the middle of a box."""
     return tuple((low + high) / 2 for low, high in box)
-
-
-def halves(box: OpenBox, function: CharacteristicFunction) -> list[OpenBox]:
-    """Return two parts of a box, parted along the parameter that contributes most to what is open.
-
-    Without an end of the poles that is one of the highest power of s.
-    """
-    spend()
-    sizes = box.weights or [
-        float((high - low) / (abs(low) + abs(high))) * (1 + (name in function.leading))
-        for name, (low, high) in zip(function.names, box.box, strict=True)
-    ]
-    i = max(range(len(sizes)), key=sizes.__getitem__)
-    low, high = box.box[i]
-    middle = (low + high) / 2
-    parts = [(*box.box[:i], ends, *box.box[i + 1 :]) for ends in ((low, middle), (middle, high))]
-    return [replace(box, box=part) if box.is_bounded else function.whole(part) for part in parts]
 
 
 def reach(function: CharacteristicFunction, s: complex, box: Box) -> tuple[complex, list[complex]]:

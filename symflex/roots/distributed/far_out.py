@@ -20,7 +20,7 @@ from flint import acb, acb_poly, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, summed, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
-from symflex.balls import ball, precision
+from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
@@ -347,8 +347,9 @@ class _SumFarOut:
             unit = (value.log() / order + start).exp()
             named[law.wavenumbers[0]] = _Power(Fraction(power, order), unit)
         arguments = []
+        lengths = map(at_centre, self.sums.lengths)
         decays: dict[int, acb] = {}  # of delayed terms, such as what a belt loses on the way
-        for i, (argument, length) in enumerate(zip(self.sums.arguments, self.sums.lengths, strict=True)):
+        for i, (argument, length) in enumerate(zip(self.sums.arguments, lengths, strict=True)):
             if argument.wavenumber in to_and_fro and length.real > 0:
                 unit, rest = to_and_fro[argument.wavenumber]
                 decays[i] = rest * length
@@ -537,7 +538,7 @@ class _SumsOnAxis:
         if named is None:
             return False
         turns, sizes = [], list[_Power]()
-        for argument, length in zip(self.values.arguments, self.values.lengths, strict=True):
+        for argument, length in zip(self.values.arguments, map(at_centre, self.values.lengths), strict=True):
             turn, power, unit = named.get(argument.wavenumber, (0, Fraction(0), arb("nan")))
             # With an eighth of a turn mu (a + j b) is mu/sqrt(2) ((a - b) + j (a + b)).
             sizes.append(_Power(power, unit * length / arb(2 if turn == 1 else 1).sqrt()))

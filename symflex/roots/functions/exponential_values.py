@@ -87,7 +87,8 @@ class ExponentialValues:
     def valued(self, amplitude: Amplitude, halvings: int = 0) -> Valued:
         """Return an amplitude over a power of two with the values of all constants in place."""
         evaluator = self.evaluator
-        varying = {0, *(evaluator.names.index(name) for name in evaluator.table.wavenumbers)}
+        series = [n for n, x in evaluator.constants.items() if isinstance(x, acb_series)]
+        varying = {0, *map(evaluator.names.index, (*evaluator.table.wavenumbers, *series))}
         numbers: dict[tuple[tuple[str, int], ...], acb] = {}
         for monomial, (re, im) in parts(amplitude):
             number = (acb(0, 1) if im else acb(1)) * arb(re or im) * arb(2) ** -halvings
@@ -102,10 +103,10 @@ class ExponentialValues:
         return tuple((number, key) for key, number in numbers.items())
 
     @cached_property
-    def lengths(self) -> tuple[acb, ...]:
+    def lengths(self) -> tuple[Value, ...]:
         """Of the arguments [m], for delays [s]."""
-        values = {"s": acb(1), **{n: acb(c) for n, c in self.evaluator.constants.items()}}
-        return tuple(at_centre(self.evaluator.value(a.length, values)) for a in self.arguments)
+        values = {"s": acb(1), **{n: c + acb(0) for n, c in self.evaluator.constants.items()}}
+        return tuple(self.evaluator.value(a.length, values) for a in self.arguments)
 
     def at(self, s: Value, near: Place | None = None) -> Place:
         """Return what sums are made of at a point or on a ball, or as series about these.
@@ -155,13 +156,11 @@ class ExponentialValues:
     def largest(self, numbers: Iterable[int], place: Place) -> Exponent:
         """Return the exponent of the term of some sums that is the largest in the middle of a ball."""
         best, chosen = -inf, REAL
+        at = [complex(at_centre(argument).mid()) for argument in place.arguments]
         for i in numbers:
-            known = zip(
-                self.sums[i][0].terms, self.amplitudes(i, place), self.exponents(i, place), strict=True
-            )
-            for own, amplitude, exponent in known:
+            for own, amplitude in zip(self.sums[i][0].terms, self.amplitudes(i, place), strict=True):
                 size = abs(at_centre(amplitude).mid())
-                growth = 0.0 if exponent is None else float(at_centre(exponent).real.mid())
+                growth = sum(a * at[k].real - b * at[k].imag for k, a, b in own)
                 total = growth + float(size.log()) if size > 0 else -inf
                 if total > best:
                     best, chosen = total, own

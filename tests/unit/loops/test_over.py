@@ -7,9 +7,10 @@ from random import Random
 import numpy as np
 import pytest
 
-from symflex import Model
+from symflex import Model, load
 from symflex.errors import ModelError, UsageError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
+from tests.house.repository import ROOT
 
 LAG = Model(
     parameters={"a": 1, "T": 0.1},
@@ -252,6 +253,19 @@ def test_a_beam_with_a_filtered_controller_agrees_with_its_stable_gains() -> Non
     assert len(along) == len(halved) == 1
     assert abs(along[0].gain - halved[0].gain) < along[0].radius + halved[0].radius
     assert along[0].entering == halved[0].entering == 2
+
+
+@pytest.mark.slow
+def test_a_chart_over_the_length_of_a_beam_agrees_with_gains_at_fixed_lengths() -> None:
+    """Limits by :func:`find_stable_gains` along the axis, a length at a time."""
+    model = load(ROOT / "derivations/eppinger1988/loops/sliding_free_beam_force.toml")
+    chart = model.stability(over=("K", "l"), ranges={"K": (0, 6), "l": (0.8, 1.6)})
+    assert chart.certified
+    assert chart.decided > 0.98
+    for length in (0.83, 1.01, 1.19, 1.37, 1.55):
+        (limit,) = (float(b.gain) for b in model.stability("K", (0, 6), l=length).boundaries)
+        assert chart.at(0.95 * limit, length) == "stable"
+        assert chart.at(1.05 * limit, length) == "unstable by 2"
 
 
 def test_a_kernel_alone_is_a_factor_that_may_vanish() -> None:
