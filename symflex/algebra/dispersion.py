@@ -1,4 +1,4 @@
-"""Dispersion relations, wavenumbers and the kernels made of them: what a transfer function holds besides s.
+"""Dispersion relations, wavenumbers and the kernels made of them: what a transfer function has besides s.
 
 A distributed element's field equations ``z' = A(s) z`` have a characteristic polynomial in the spatial
 exponent lambda. Its roots are the wavenumbers; hyperbolic and circular functions of a wavenumber times a

@@ -418,7 +418,7 @@ class Arithmetic:
             if not exponent:
                 continue
             if name == HOLE or name.startswith(("exp(", "cos(", "sin(")):
-                raise UnreadError("the argument of a function holds another function of s")
+                raise UnreadError("the argument of a function contains another function of s")
             if name.startswith("root("):
                 whole, rest = divmod(exponent, g.order)
                 number *= Fraction(int(name[5:-1])) ** whole

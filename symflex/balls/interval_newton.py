@@ -1,4 +1,4 @@
-"""Interval Newton steps: the proof that a box holds exactly one root, and how it is narrowed.
+"""Interval Newton steps: the proof that a box contains exactly one root, and how it is narrowed.
 
 Where ``N(X) = m - f(m)/f'(X)`` lies inside a box X about m, f has exactly one root in X, a simple one, and
 N(X) holds it (Moore 1966; Krawczyk 1969 multiplies with an approximate inverse instead, which saves nothing
@@ -32,7 +32,7 @@ def stays_inside(step: arb | acb, reach: arb) -> bool:
 def narrowed(root: Ball, newton: Callable[[Ball], Ball], steps: int, share: float) -> Ball:
     """Return a smaller box about a root, by steps of an operator as long as they are worth it.
 
-    Where a box holds the root, so does Newton's operator of it. The last of at most so many steps is the
+    Where a box contains the root, so does Newton's operator of it. The last of at most so many steps is the
     first that leaves more than a share of the box.
 
     >>> root = narrowed(arb(1.4, 0.1), lambda x: x.mid() - (x.mid() ** 2 - 2) / (2 * x), 9, 0.5)

@@ -39,7 +39,7 @@ class LatexExporter:
 
     width_mm: float = TEXT_WIDTH_MM  # width of the column
     form: str | None = None  # of the transfer functions; the shortest symbolic one by default
-    has_figures: bool = True  # the files hold figures; a document in one file has none
+    has_figures: bool = True  # the files contain figures; a document in one file has none
 
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"

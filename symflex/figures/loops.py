@@ -97,10 +97,10 @@ POINTED: Final = 0.06  # length of a curve over the height shown from which on i
 def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     """Draw a root locus, of what lies up to the end of a band, or within limits.
 
-    Crosses are the poles at the first gain, squares those at the last, stars those at the gain's own
-    value, circles the zeros; all of them are proved. The lines between are traced numerically: solid from
+    Crosses are the poles at the first gain, squares those at the last, stars those at the nominal
+    gain, circles the zeros; all of them are certified. The lines between are traced numerically: solid from
     poles at the first gain, dashed from where none is marked, such as infinity. Arrows
-    point to growing gains, and where poles cross the imaginary axis the proved gain and frequency
+    point to growing gains, and where poles cross the imaginary axis the certified gain and frequency
     are noted. The curves that belong together are shown; the legend says how many of each lie
     outside, and arrows at the border where. Grey circles surround points at which poles accumulate. Right of
     the imaginary axis the ground is tinted. A verdict asked for says at each gain whether the loop is stable.
@@ -352,7 +352,7 @@ def _draw_about_one(
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
-    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half plane."""
+    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half-plane."""
     if verdict.right is not None:
         return f", $P = {verdict.right}$" if verdict.right else ""
     return rf", $P \geq {verdict.found}$" if verdict.found else ", $P$ not known"

@@ -64,10 +64,10 @@ Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
-    As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
-    plane. Rigid-body motions at 0 are left out. The part in phase with the largest displacement is drawn in
-    full, what moves in quadrature dashed. See :func:`symflex.figures.draw`. Raises ModelError: SF402 when
-    there is no mode other than at 0; UsageError: SF902 when the panels have no room in the width asked for.
+    As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right
+    half-plane. Rigid-body motions at 0 are left out. The part in phase with the largest displacement is drawn
+    in full, what moves in quadrature dashed. See :func:`symflex.figures.draw`. Raises ModelError: SF402 when
+    there is no mode other than at 0; UsageError: SF902 when the panels do not fit into the width.
     """
     model, band_hz = bounds[0].source.model, canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))

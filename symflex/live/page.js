@@ -236,7 +236,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     parameters.forEach((p, i) => {
         sliders[i].disabled = fields[i].disabled = !p.moves;
         rows[i].classList.toggle("fixed", !p.moves);
-        if (!p.moves) rows[i].title = "fixed: the functions hold its number";
+        if (!p.moves) rows[i].title = "fixed: the functions contain its number";
         sliders[i].addEventListener("input", () => put({ [p.id]: at(p, Number(sliders[i].value) / NOTCHES) * p.scale }));
         fields[i].addEventListener("input", () => {
             const x = fields[i].value === "" ? NaN : Number(fields[i].value);

@@ -266,7 +266,7 @@ function settled(f, roots, modes, nominal) {
     return { roots, listed, reach, isComplete: !why, why };
 }
 
-/** What proves the roots of a transfer function, from its tape; or why there is none: {refused}. */
+/** What certifies the roots of a transfer function, from its tape; or why there is none: {refused}. */
 function proverOf(tape) {
     if (tape.refused) return tape;
     const kinds = ["poles", "zeros"], { start, modes } = tape, isLumped = tape.poles.every((part) => part.degree);

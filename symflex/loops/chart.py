@@ -297,7 +297,7 @@ def find_chart(
 
 
 def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
-    """Return which cells of a box hold no parameters for which a root is on the axis."""
+    """Return which cells of a box contain no parameters for which a root is on the axis."""
     shape = (PARTS,) * len(box.box)
     if not box.is_bounded or (any(box.pieces) and not box.lines):
         return np.zeros(shape, dtype=bool)

@@ -58,7 +58,7 @@ NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 
 @dataclass
 class DistributedFactors(AxisSearch):
-    """The factors of a characteristic function that hold kernels, together.
+    """The factors of a characteristic function that contain kernels, together.
 
     ``reasons`` say why something is not certified.
     """

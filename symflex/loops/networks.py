@@ -44,7 +44,7 @@ from symflex.roots.networks.poles_zeros import locate_quotient
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.transfer.equations_at import EquationsAt, EssentialSingularityError, holds
 
-DEFAULT_MODES = 5  # which the disc holds where no frequency is given
+DEFAULT_MODES = 5  # which the disc contains where no frequency is given
 DIGITS = 15  # of poles that are marked in figures
 LOOP_GAIN_BITS = 64  # of values that are drawn
 WIDER = 1.05  # radius of the disc of series over the frequency up to which poles are searched

@@ -104,7 +104,7 @@ class StabilityMap(Printed):
     phase_margins: tuple[PhaseMargin, ...] = ()  # at every crossover, ascending in frequency
     radius: float | None = None  # poles were counted up to this abs(s) [rad/s]; ``None``: all of them
     is_complete: bool = True  # it is proved that no pole lies in the right half-plane beyond the radius
-    reasons: tuple[str, ...] = ()  # what is not proved
+    reasons: tuple[str, ...] = ()  # what is open, and why
     digits: int = 15  # asked for
     # Which the stable gains next to 0 allow; none where there are none, or the loop is closed several times.
     bandwidth: AllowedBandwidth | None = None

@@ -434,7 +434,7 @@ def _name_problems(
 def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnostic:
     described = readable.varying.get(node.name)
     if described is not None:
-        message = f"'{node.name}' is {described}; a printed formula holds s and constants only"
+        message = f"'{node.name}' is {described}; a printed formula contains only s and constants"
         hint = "define it in 'where' if the formula means something else"
         return Diagnostic("SF212", message, node.span, hint)
     close = nearest(node.name, {*known, *readable.constants})

@@ -96,7 +96,7 @@ def with_loss(
 
 
 def has_loss_factors(model: Model) -> bool:
-    """Tell whether j belongs to loss factors, so that a model holds on s = j*omega, omega > 0, alone.
+    """Tell whether j belongs to loss factors, so that a model is valid on s = j*omega, omega > 0, alone.
 
     It does in values of elements and in fields, but beside s, and in ``1 + j*eta``. Elsewhere coefficients
     are complex at every s, as of a motor's currents in axes that turn, or of a rotor's deflection x + j*y.
@@ -119,7 +119,7 @@ def check_causal(model: object, what: str) -> None:
     """Refuse what j or roots of s in a model do not allow; other subjects than models pass.
 
     Loss factors hold on s = j omega alone. Motion with a root of s decays along a branch cut, besides poles.
-    Raises ModelError: SF251 the model holds j; SF910 a root of s.
+    Raises ModelError: SF251 the model contains j; SF910 a root of s.
     """
     if getattr(model, "root", None) is not None and what not in WITH_ROOTS:
         message = f"{what} is not available yet for models with roots of s, such as sqrt(s)"

@@ -145,7 +145,7 @@ class ExpressionWriter:
     def piece(self, expression: Expression, style: Style = Style.DISPLAY) -> Written:
         """Return a subtree printed in a style.
 
-        Raises TypeError for an equation or a quantity of an element, which no transfer function holds.
+        Raises TypeError for an equation or a quantity of an element, which no transfer function contains.
         """
         done: list[Written] = []
         pending: list[tuple[Expression, Style, bool]] = [(expression, style, False)]

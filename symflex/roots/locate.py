@@ -560,7 +560,7 @@ def _energy(bound: BoundTransferFunction) -> EnergyProof:
 
 
 def _exclusion(hole: Cell) -> Exclusion:
-    """Return a disc that holds a neighbourhood, which is a rectangle of ln(s)."""
+    """Return a disc that contains a neighbourhood, which is a rectangle of ln(s)."""
     centre = cexp(hole.centre)
     corners = [complex(x, y) for x in (hole.low, hole.high) for y in (hole.right, hole.left)]
     radius = max(abs(cexp(corner) - centre) for corner in corners)

@@ -6,8 +6,8 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
     m s^2 + k (1 + j eta):  s^2 = -omega_r^2 (1 + j eta_r),  omega_r = sqrt(k/m),  eta_r = eta
 
 A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f
-vanishes; g and h being coprime, conj(f) does not. A function with kernels is searched in the upper half
-plane like any other, but for its mirror images: with j among its coefficients it has none.
+vanishes; g and h being coprime, conj(f) does not. A function with kernels is searched in the upper
+half-plane like any other, but for its mirror images: with j among its coefficients it has none.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def locate_lossy(
     digits: int,
     locate: Callable[..., PoleZeroMap],
 ) -> PoleZeroMap:
-    """Find poles and zeros of a function that holds j; see the module.
+    """Find poles and zeros of a function that contains j; see the module.
 
     ``locate`` finds those of functions with kernels.
 

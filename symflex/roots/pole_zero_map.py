@@ -40,10 +40,10 @@ class StabilityVerdict:
     """Whether a system is stable, in the words that all commands, reports and figures use.
 
     ``stable``: all controllable and observable poles lie in the open left half-plane, and no hidden one lies
-    in the right. ``marginal``: no pole lies in the right half-plane, and input and output see some on the
-    imaginary axis. ``unstable``: a pole lies in the right half-plane, seen or hidden. ``unknown``: none of
-    these is proved, or only that no pole lies in the right half-plane. Hidden poles on the axis leave the
-    word as it is and are named beside it.
+    in the right. ``marginal``: no pole lies in the right half-plane, and some controllable and observable are
+    on the imaginary axis. ``unstable``: a pole lies in the right half-plane, seen or hidden. ``unknown``:
+    none of these is proved, or only that no pole lies in the right half-plane. Hidden poles on the axis leave
+    the word as it is and are named beside it.
 
     Examples
     --------

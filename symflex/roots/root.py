@@ -55,7 +55,7 @@ class Root:
     re, im : arb
         Enclosures [rad/s]; exactly zero where that is proved.
     multiplicity : int
-        Exact when ``certified``; otherwise the number of roots the box holds, counted with multiplicity.
+        Exact when ``certified``; otherwise the number of roots the box contains, counted with multiplicity.
     on_imaginary_axis, is_real : bool
         Proved to have real (imaginary) part exactly zero; a root at 0 is both.
     certified : bool

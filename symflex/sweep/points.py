@@ -132,7 +132,7 @@ class FoundRoot:
     """One root in the closed upper half-plane, other than 0."""
 
     place: Doubles  # centre and radius [rad/s]
-    multiplicity: int  # exact where certified; else how many roots the disc holds
+    multiplicity: int  # exact where certified; else how many roots the disc contains
     status: RootStatus  # certified, or several that could not be separated
 
 

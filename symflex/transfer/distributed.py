@@ -86,7 +86,7 @@ class KernelReduction:
         self.normal = NormalForm(ring, table)
         self.coordinates = Exponentials(ring, table)
         self.solved = _solve_relations(ring, table, parameters)
-        # A later formula holds no parameter of an earlier one, so the last is evaluated first.
+        # A later formula contains no parameter of an earlier one, so the last is evaluated first.
         self._solutions = tuple(s[::-1] for s in _solve_in_many_ways(ring, table, parameters)) or ((),)
         relations = sum(len(_relations(ring, d)) for d in table.dispersions)
         self._is_solved = len(self.solved) == relations

@@ -401,7 +401,7 @@ def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb:
 
 
 def _boxed(polynomial: acb_poly, slope: acb_poly, middle: acb) -> acb | None:
-    """Return a box that holds one root of every polynomial in a ball, next to a root of the middle one."""
+    """Return a box that contains one root of every polynomial in a ball, next to a root of the middle one."""
     value = polynomial(middle)
     reach = ((value / slope(middle)).abs_upper() * ROOM).upper()
     for _ in range(WIDENINGS):

@@ -36,7 +36,7 @@ from symflex.transfer.transfer_function import TransferFunction
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
 EXPANDED_PRODUCTS = 500
-"""The same of a distributed model, where a term holds kernels of every member: four beams on springs have
+"""The same of a distributed model, where a term contains kernels of every member: four beams on springs have
 900, which print on 1,500 lines, three have 120."""
 READABLE_TERMS = 100
 """Terms of a formula of several members beyond which its steps say more: two columns of a page."""

@@ -189,7 +189,7 @@ class TransferFunction:
 
     @property
     def is_rational(self) -> bool:
-        """True when the function holds no kernels: a quotient of polynomials in s, or in a root of s."""
+        """True when the function contains no kernels: a quotient of polynomials in s, or in a root of s."""
         return not self.kernels
 
     @cached_property

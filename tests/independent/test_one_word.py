@@ -2,7 +2,7 @@
 
 Each loop is written twice: as a specification, and as the denominator and numerator of its transfer function
 before anything cancels. numpy's roots of both tell how many poles lie in the right half-plane, how many of
-those on it input and output see, and how many are hidden.
+those on it are controllable and observable, and how many are hidden.
 """
 
 from __future__ import annotations

@@ -122,7 +122,7 @@ def test_documents_of_models_of_every_kind_compile_without_a_warning(tmp_path):
 
 
 FITTING = {
-    88.0: ("sliding_free_beam", "clamped_clamped", "third order", "lossy rod", "timoshenko_cantilever"),
+    88.0: ("sliding_free_beam", "clamped_clamped", "third order", "damped rod", "timoshenko_cantilever"),
     120.0: ("sliding_free_beam", "rayleigh beam", "rigid_body", "six_mass"),
 }
 

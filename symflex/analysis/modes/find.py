@@ -194,7 +194,7 @@ class _ModeSearch:
             return root
         region: Region | None = None
         if self.bound.source.solves_network and self._maps:
-            region = next(iter(self._maps))[0]  # a disc holds all roots below: one search serves them all
+            region = next(iter(self._maps))[0]  # a disc contains all roots below: one search serves them all
         elif not self.bound.is_rational:
             frequency = Fraction(root.frequency_hz())
             region = Band(frequency * (1 - NEIGHBOURHOOD), frequency * (1 + NEIGHBOURHOOD))

@@ -9,7 +9,7 @@ from the pole's multiplicity, at s = 0 from series over a prime field, so a quot
 About p wavenumbers and kernels are series in e, where ``s = p + e^n``: with n = 4 every wavenumber is such a
 series also where it vanishes.
 
-Residues, how much of each mode a transfer function holds, are the first coefficients at simple poles.
+Residues, how much of each mode a transfer function contains, are the first coefficients at simple poles.
 """
 
 from __future__ import annotations

@@ -98,7 +98,7 @@ class Asked:
 
     @cached_property
     def has_delays(self) -> bool:
-        """Whether the function holds pure delays."""
+        """Whether the function contains pure delays."""
         return any(law.kind == "exponential" for law in self.bound.kernels.dispersions)
 
     @cached_property

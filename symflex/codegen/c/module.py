@@ -1,7 +1,7 @@
 """Transfer functions as a C99 source file and its header.
 
 Input: the contents of the files.
-Output: the texts of both files.
+Output: the text of both files.
 """
 
 from __future__ import annotations

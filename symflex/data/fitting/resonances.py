@@ -73,8 +73,8 @@ class Resonances:
     slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))
     # shape (0,) or (1,): Corner frequency of the real pole that all responses share [rad/s], if there is one.
     real_p: Real = field(default_factory=lambda: np.zeros(0))
-    # shape (m,): Corner frequency of the real zero of each response [rad/s], negative in the right half
-    # plane, infinite where it has none; by default infinite.
+    # shape (m,): Corner frequency of the real zero of each response [rad/s], negative in the right
+    # half-plane, infinite where it has none; by default infinite.
     real_z: Real = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:

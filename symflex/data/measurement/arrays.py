@@ -1,4 +1,4 @@
-"""Frequency responses as named arrays: what .npz, .npy and .mat files hold."""
+"""Frequency responses as named arrays: what .npz, .npy and .mat files contain."""
 
 from __future__ import annotations
 
@@ -363,7 +363,7 @@ def _responses(
 
 
 def matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
-    """Return the matrix that is all a file holds, its first column going up; rows are turned to columns."""
+    """Return the only matrix of a file, its first column going up; rows are turned to columns."""
     large = [(k, a) for k, a in arrays.items() if a.size > 2 and a.dtype.kind in "fciu"]  # noqa: PLR2004
     if len(large) != 1 or large[0][1].ndim != 2:  # noqa: PLR2004
         return None

@@ -1,6 +1,6 @@
 r"""Frequency responses as text in columns.
 
-What stands above the numbers names the columns, and comment lines may hold what the columns cannot:
+What stands above the numbers names the columns, and comment lines may contain what the columns cannot:
 ``# tf: A_tip/V_cmd``, ``# averages: 40``, ``# window: hann``, ``# unit: m/(V*s^2)``, ``# synthetic: yes``.
 """
 

@@ -143,7 +143,7 @@ def _contents(name: str) -> bytes:
 
 
 def record_in_time(path: str | Path, columns: str = "") -> TimeRecord | None:
-    """Return the record that a file holds, ``None`` if its columns do not say time."""
+    """Return the record that a file contains, ``None`` if its columns do not say time."""
     return read_record(os.fspath(path), _contents(os.fspath(path)), Path(path).stem, columns)
 
 

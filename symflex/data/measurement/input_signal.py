@@ -6,7 +6,7 @@
 
 A line above the numbers names the time, in the unit that its name or the line below says, and the value is
 the column beside it; without such a line, the first column is the time in seconds. Arrays are called t or
-time, and as they like. What else a file holds is not read, and said.
+time, and as they like. What else a file contains is not read, and said.
 """
 
 from __future__ import annotations

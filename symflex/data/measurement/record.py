@@ -108,7 +108,7 @@ class TimeRecord:
 
 
 def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecord | None:
-    """Return the record that a file holds, ``None`` if its columns do not say time.
+    """Return the record that a file contains, ``None`` if its columns do not say time.
 
     ``asked`` is what ``--columns`` says: ``t,u,y``, ``t_ms,-,u,y``, ``u,y,dt=0.01``, ``t=NAME,y=NAME``.
     SF602 to SF605: columns without a value, what is no number, times that do not increase, too few samples.
@@ -276,10 +276,10 @@ def _numbers(
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
         hint = "a record in time has a number in every column; --columns t,-,u,y leaves columns out"
-        raise DataError(Diagnostic("SF603", "a line holds something else than numbers", place, hint))
+        raise DataError(Diagnostic("SF603", "a line contains something else than numbers", place, hint))
     if left := [i for i in sparse if i not in unused]:
         many = ", ".join(str(i + 1) for i in left[:12])
-        guesses.append(f"columns in which most cells hold no number are left out: {many}")
+        guesses.append(f"columns in which most cells contain no number are left out: {many}")
     if sparse:
         read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
     if wrong.any():

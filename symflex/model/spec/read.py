@@ -16,7 +16,7 @@ DATA: Final = (
     ".csv", ".tsv", ".frd", ".zma", ".s1p", ".s2p", ".uff", ".unv", ".npz", ".npy", ".mat", ".h5", ".hdf5",
     ".tdms", ".xlsx", ".lvm",
 )  # fmt: skip
-"""Ends of the names of files that hold measured data and never a specification."""
+"""Ends of the names of files that contain measured data and never a specification."""
 NETLISTS: Final = (".cir", ".net", ".sp", ".ckt")
 """Ends of the names of SPICE netlists, which are read as specifications."""
 _NUMBERS = re.compile(rb"^[-+\d.][-+\d.e]*[\t ,;]+[-+\d.][-+\d.e \t,;]*\r?\n[-+\d.]", re.M | re.I)

@@ -94,9 +94,9 @@ def latex_files(
 ) -> dict[str, str]:
     r"""Return the same article as files to ``\input`` into a paper, and the document that inputs them all.
 
-    A file holds one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden roots
-    (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and names the
-    packages that it needs. See :func:`latex_document`.
+    A file contains one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden
+    roots (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and
+    names the packages that it needs. See :func:`latex_document`.
 
     The texts stand by the names of their files; :data:`DOCUMENT` is the one to compile.
     """

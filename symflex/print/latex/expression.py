@@ -49,7 +49,7 @@ def latex_expression(expression: Expression, labels: Mapping[str, str], style: S
     r"""Return an expression as LaTeX for math mode.
 
     Names without a declared label get :func:`~symflex.print.label.label_of`. Raises TypeError for an
-    equation or a quantity of an element, which no transfer function holds.
+    equation or a quantity of an element, which no transfer function contains.
 
     Examples
     --------

@@ -38,7 +38,7 @@ KEY: Final = re.compile(r"[a-z]+(-[a-z]+)*\Z")
 
 
 def is_claims(path: Path) -> bool:
-    """Tell whether a file holds claims: by its name, and by what it declares."""
+    """Tell whether a file contains claims: by its name, and by what it declares."""
     if path.name != CLAIMS or not path.is_file():
         return False
     try:

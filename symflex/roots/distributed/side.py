@@ -230,7 +230,7 @@ class Side:
         return None
 
     def _is_sparse(self, high: float) -> bool:
-        """Tell whether a whole disc holds so few roots that it is searched rather than a part of it.
+        """Tell whether a whole disc contains so few roots that it is searched rather than a part of it.
 
         Close to 0, where functions with kernels are differences of large terms, paths are hard to follow.
         """

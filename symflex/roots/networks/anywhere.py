@@ -44,7 +44,7 @@ class DiscRoots:
 def roots_in_disc(
     cramer: CramerEquations, region: Region, digits: int, *, symmetric: tuple[bool, bool]
 ) -> DiscRoots:
-    """Return all roots in a disc that holds what the region asks for.
+    """Return all roots in a disc that contains what the region asks for.
 
     UndecidedError where they are not all proved; EssentialSingularityError where roots accumulate.
     """

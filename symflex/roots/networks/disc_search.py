@@ -1,8 +1,8 @@
 """Poles and zeros of any network in a disc about 0: damped, with motors, loops, delays, outputs anywhere.
 
 Numerator and denominator are entire functions whose values elimination gives. How fast they grow tells how
-many roots a disc holds, about (Jensen); in one that holds enough they become series, whose roots are counted
-and proved.
+many roots a disc contains, about (Jensen); in one that holds enough they become series, whose roots are
+counted and proved.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class DiscSearch:
     _lost: int = 0  # bits that elimination lost where it lost most
 
     def radius_of(self, count: int) -> float:
-        """Return the radius [rad/s] of a disc that holds about so many roots of either function.
+        """Return the radius [rad/s] of a disc that contains about so many roots of either function.
 
         Less where roots accumulate before, and where one has many more than the other.
         """
@@ -167,7 +167,7 @@ class DiscSearch:
         return low
 
     def _holds(self, radius: float, count: int) -> bool:
-        """Tell whether a disc holds so many roots, by how fast the functions grow across its circle."""
+        """Tell whether a disc contains so many roots, by how fast the functions grow across its circle."""
         step = 0.12
         outer, inner = self._grown(radius * exp(step)), self._grown(radius * exp(-step))
         den, num = ((a - b) / (2 * step) for a, b in zip(outer, inner, strict=True))
@@ -301,7 +301,7 @@ class DiscSearch:
 def enclosed_roots(series: DiscSeries, at_zero: int, *, is_even: bool = False) -> list[tuple[acb, int]]:
     """Return boxes about the roots in the disc but for those at 0, and how many each holds: proved.
 
-    One of those that mirror each other. They may be fewer than the disc holds.
+    One of those that mirror each other. They may be fewer than the disc contains.
     """
     boxes: list[tuple[acb, int]] = []
     left: list[acb] = []

@@ -138,7 +138,7 @@ class DiscSeries:
     # -------------------------------------------------------------------------------------- counting
 
     def count(self) -> int:
-        """Return how many roots the disc holds: proved. RootNearCircleError with one close to its edge."""
+        """Return how many roots the disc contains: proved. RootNearCircleError with one close to its edge."""
         # From one real value to another: half of the circle turns by a multiple of pi.
         return self._turns(acb(0), 1.0, pi, arb.pi) if self.is_real else self.count_about(acb(0), 1.0)
 

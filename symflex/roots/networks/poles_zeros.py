@@ -88,7 +88,7 @@ def locate_in_network(
 
 
 def locate_quotient(cramer: CramerEquations, name: str, region: Region, digits: int) -> PoleZeroMap:
-    """Find poles and zeros of a quotient of determinants, in a disc that holds the region."""
+    """Find poles and zeros of a quotient of determinants, in a disc that contains the region."""
     return _Sought(name, region, digits).in_disc(cramer)
 
 
@@ -143,7 +143,7 @@ class _Sought:
         )
 
     def in_disc(self, cramer: CramerEquations) -> PoleZeroMap:
-        """Find all roots in a disc that holds the region."""
+        """Find all roots in a disc that contains the region."""
         region = self.region
         try:
             in_disc = roots_in_disc(cramer, region, self.digits, symmetric=mirrored(cramer))

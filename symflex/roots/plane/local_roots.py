@@ -7,7 +7,7 @@ holds a simple root, one about ``j pi/2`` a double root.
 
 Where a wavenumber vanishes or meets another, and where roots are closer to each other than the digits
 wanted, no box proves one. The function itself is as smooth there as elsewhere, and its power series says how
-many roots a disc holds.
+many roots a disc contains.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class _SlowError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box that holds exactly one root of one factor, and what is known of the others there."""
+    """A box that contains exactly one root of one factor, and what is known of the others there."""
 
     # re and im: enclosures of the root [rad/s], exactly zero where symmetry proves that.
     re: arb
@@ -209,7 +209,7 @@ CENTRINGS = 3  # least number of times that a disc is moved to the middle of its
 GUESSED_DIGITS = 14  # digits of the first centre; every Newton step doubles them
 GROWTH = 100  # factor on a disc without other roots next to it, and on one that was too small
 SHRINKINGS = 5  # shrinkings of a disc until no other root is next to it
-WIDER = 5  # radius of a disc that holds one moved to an axis, in radii of that
+WIDER = 5  # radius of a disc that contains one moved to an axis, in radii of that
 DIGITS_A_SHRINKING = 2  # the logarithm of GROWTH
 BRANCH_BITS = 128  # precision of the test whether wavenumbers have branches
 
@@ -224,7 +224,7 @@ def prove_together(
     even: bool,
     is_close: bool = False,
 ) -> Root | None:
-    """Return roots next to a point as one, in a disc that holds so many; ``None`` where none is proved.
+    """Return roots next to a point as one, in a disc that contains so many; ``None`` where none is proved.
 
     The point is exact. ``count`` is of the roots of ``function**function.power``, with multiplicity; the disc
     stays below the exact radius ``within`` [rad/s]. ``even`` roots mirror each other in the imaginary axis;
@@ -266,7 +266,7 @@ def prove_together(
 
 
 def is_branched(function: Entire, s: acb, within: arb) -> bool:
-    """Tell whether a disc may hold a point where wavenumbers have branches."""
+    """Tell whether a disc may contain a point where wavenumbers have branches."""
     with precision(BRANCH_BITS):
         disc = s + acb(arb(0, within), arb(0, within))
     return not all(value.is_finite() for value, _, _ in function.enclosed(disc, BRANCH_BITS))
@@ -279,7 +279,7 @@ def snapped(s: acb, close: arb, *, even: bool, real: bool = True) -> acb:
 
 
 def in_disc(centre: acb, size: arb, multiplicity: int, *, even: bool, real: bool = True) -> Root:
-    """Return all roots in a disc that holds so many as one."""
+    """Return all roots in a disc that contains so many as one."""
     # One root alone in a disc that mirrors itself is its own mirror image.
     on_axis, is_real = (multiplicity == 1 and bool(part == 0) for part in (centre.real, centre.imag))
     on_axis, is_real = on_axis and even, is_real and real

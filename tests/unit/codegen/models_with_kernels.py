@@ -57,7 +57,7 @@ slide = {{ type = "slider", at = "p" }}
 tip = {{ type = "mass", at = "r", m = "m" }}
 """,
     ),
-    "lossy beam on a foundation": spec(
+    "damped beam on a foundation": spec(
         "E I rho A l eta c_f k_f a q",
         f"""inputs.F = {{ force = "p" }}
 outputs.X = "r"
@@ -111,7 +111,7 @@ kappa = "kappa"
 G = "G"
 """,
     ),
-    "lossy rod": spec(
+    "damped rod": spec(
         "E A rho l eta c_f D k",
         """inputs.F = { force = "x" }
 outputs = { X = "x", Y = "y" }

@@ -1,4 +1,4 @@
-"""What distributed parts may hold, and what they may not."""
+"""What distributed parts may contain, and what they may not."""
 
 import pytest
 

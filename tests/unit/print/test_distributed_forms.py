@@ -30,7 +30,7 @@ NAMED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial
 # A model for every kind of kernel and of what becomes of names; those that are left out take the same ways.
 KINDS = (
     "clamped_clamped", "thermoelastic rod", "beam with definitions", "delay and rod", "third order",
-    "free_free", "lossy beam on a foundation", "propped beam of two fields", "shafts and a gear",
+    "free_free", "damped beam on a foundation", "propped beam of two fields", "shafts and a gear",
     "diffusion with drift", "string with a bead", "the paper's names taken", "rayleigh beam",
     "sliding_free_beam",
 )  # fmt: skip
@@ -98,7 +98,7 @@ def test_all_forms_agree_to_45_digits_at_complex_points():
     # By principal branches, which residues know nothing of.
     names = (
         "sliding_free_beam",
-        "lossy beam on a foundation",
+        "damped beam on a foundation",
         "rayleigh beam",
         "thermoelastic rod",
         "delay and rod",
@@ -185,8 +185,8 @@ LINES = {
         ("rod_tip_mass", "X_tip/F"),
         ["q = gamma*l", "gamma = s*sqrt(rho/E)"],
     ),
-    "losses stay under the root": (
-        ("lossy beam on a foundation", "X/F"),
+    "damping stays under the root": (
+        ("damped beam on a foundation", "X/F"),
         ["q_1 = mu*l", "mu = sqrt(sqrt((rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1)))/2)"],
     ),
     # The model's other output is at midspan.

@@ -1,4 +1,4 @@
-"""Responses of rational functions hold the true values, which other means compute."""
+"""Responses of rational functions contain the true values, which other means compute."""
 
 from fractions import Fraction
 

@@ -146,7 +146,7 @@ def test_a_power_series_tells_how_far_a_step_turns():
             assert turn.overlaps(exact_turn), radius
             assert float(turn.rad()) < 1e-5, radius
         else:
-            # The disc holds the root: the argument may wind.
+            # The disc contains the root: the argument may wind.
             assert bound > ROOM, radius
 
 
