@@ -241,6 +241,7 @@ class RootsOptions:
     letters: bool = option(
         False, "--letters", help="Say in letters what roots are, and when they are real or imaginary."
     )
+    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
     sensitivity: Sequence[str] = option(
         (),
         "--sensitivity",

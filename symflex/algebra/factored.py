@@ -188,6 +188,11 @@ class Factored:
         """Return the value with every factor replaced by its image in ``ring``."""
         return prod((image(f) ** e for f, e in self.factors), start=Factored.number(ring, self.unit))
 
+    def over(self, ring: Ring) -> Factored:
+        """Return the same function over another ring; names that it lacks are zero."""
+        names = self.ring.names
+        return self.map_factors(ring, lambda f: Factored.polynomial(ring, ring.taken_over(f, names)))
+
     def __str__(self) -> str:
         parts = [str(self.unit)] if self.unit != 1 or not self.factors else []
         for factor, exponent in self.factors:

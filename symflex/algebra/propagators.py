@@ -61,10 +61,7 @@ class Propagation:
 
     def embed(self, value: Factored) -> Factored:
         """Return a value of the base ring over ``ring``."""
-        if value.ring == self.ring:
-            return value
-        factors = tuple((self.ring.taken_over(f), e) for f, e in value.factors)
-        return Factored(self.ring, value.unit, factors)
+        return value if value.ring == self.ring else value.over(self.ring)
 
     @cached_property
     def _places(self) -> tuple[Mapping[int, int], ...]:

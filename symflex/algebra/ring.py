@@ -86,8 +86,11 @@ class Ring:
         """Return an integer as a polynomial."""
         return self.context.constant(value)
 
-    def taken_over(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
-        """Return a polynomial of a ring whose names are the first ones of this."""
+    def taken_over(self, polynomial: fmpz_mpoly, names: Sequence[str] | None = None) -> fmpz_mpoly:
+        """Return a polynomial of another ring, whose names are the first of this, or any; others are zero."""
+        if names is not None and self.names[: len(names)] != names:
+            images = [self.generator(n) if n in self.index else self.constant(0) for n in names]
+            return self.compose(polynomial, images)
         if (sparse := _sparse(polynomial)) is not None:
             context = cast("SparseContext", self.context)
             return cast("fmpz_mpoly", SparsePolynomial(context, sparse.parts))

@@ -27,6 +27,7 @@ from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
 from symflex.letters.frequency_equation import roots_in_letters
 from symflex.options import RootsOptions, band_ends, checked_digits, duration
+from symflex.print.sympy import symbols_of
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
@@ -240,7 +241,7 @@ class Analyses(Plotted):
 
     def _table(self, located: PoleZeroMap, listed: Sequence[roots_room.Root]) -> RootTable:
         letters = partial(roots_in_letters, self.bound.source, self.bound, located)
-        return RootTable(Root(root, letters) for root in listed)
+        return RootTable(Root(root, letters, symbols_of(self.bound.source.model)) for root in listed)
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -15,11 +15,12 @@ from symflex.roots import HiddenRoot, decimals, figure
 from symflex.roots import Root as CertifiedRoot
 
 if TYPE_CHECKING:
+    import sympy
     from flint import acb
 
     from symflex.analysis import rational as rational_room
     from symflex.analysis import sensitivity as sensitivity_room
-    from symflex.letters.roots import FactorInLetters
+    from symflex.letters.roots import FactorInLetters, RootFormula
     from symflex.roots.root import RootDecimals
 
 
@@ -55,13 +56,25 @@ class Root:
     _letters: Callable[[], tuple[FactorInLetters, ...]] | None = field(
         default=None, repr=False, compare=False
     )
+    _symbols: Mapping[str, sympy.Symbol] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def letters(self) -> tuple[str, ...]:
         """What the root is in letters, ``omega_p = sqrt(k/m)`` and the like, each proved; often nothing."""
+        return tuple(map(str, self._formulas))
+
+    @property
+    def expressions(self) -> dict[str, sympy.Expr]:
+        """The same as SymPy expressions by name, ``{"omega_p": sqrt(k/m)}``."""
+        from symflex.print.sympy import to_sympy  # most roots are numbers only
+
+        return {f.name: to_sympy(f.expression, self._symbols) for f in self._formulas}
+
+    @property
+    def _formulas(self) -> Iterator[RootFormula]:
         found = () if self._letters is None else self._letters()
         formulas = (f for each in found for f in each.formulas)
-        return tuple(str(f) for f in formulas if any(r is self.certified_root for r in f.roots))
+        return (f for f in formulas if any(r is self.certified_root for r in f.roots))
 
     @property
     def re(self) -> mpmath.mpf:

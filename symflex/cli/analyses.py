@@ -51,28 +51,29 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     from symflex.print.roots import SHORT_DIGITS, roots_text
     from symflex.roots.region import region_of
 
+    if given.format != "text" and not given.letters:
+        raise UsageError(Diagnostic("SF902", "--format is for --letters"))
     chosen = region_of(given, "--")
     # However short the time is, what is sought is told, and how many roots there are.
     with entered_budget().at_least(DERIVING).entered():
         model = spec.load()
         pair = first_pair(model, given.tf, "showing")
-        asked = given.digits or model.analysis.digits
-        shown = asked or DIGITS
+        shown = (asked := given.digits or model.analysis.digits) or DIGITS
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_named=is_explained)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
-    moved: tuple[RootDerivative, ...] = ()
-    clouds: tuple[RootCloud, ...] = ()
+    moved, clouds = tuple["RootDerivative"](), tuple["RootCloud"]()
     more: dict[str, tuple[object, str]] = {}  # by key of JSON, the data and the text
     width, is_over = terminal_width(), located.certificate.is_exceeded
     try:
         if given.letters:
             from symflex.letters.frequency_equation import roots_in_letters
-            from symflex.letters.roots import letters_text
+            from symflex.letters.roots import letters_latex, letters_text
 
             found = roots_in_letters(pipeline.derive_as(model, [pair])[0][0], bound, located)
-            more["letters"] = [each.to_json_dict(shown) for each in found], letters_text(found, width)
+            said = letters_latex(found, model) if given.format == "latex" else letters_text(found, width)
+            more["letters"] = [each.to_json_dict(shown) for each in found], said
         if given.sensitivity:
             from symflex.analysis.sensitivity.sensitivity import sensitivities
             from symflex.analysis.sensitivity.text import sensitivity_text
@@ -96,8 +97,8 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     if given.as_json:
         emit_json({**located.to_json_dict(), **{key: data for key, (data, _) in more.items()}})
     else:
-        for told in (roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())):
-            say(told)
+        every = [roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())]
+        say("\n".join(every[given.format == "latex" :]))
     if is_over:
         return 5
     if any(m.status == "undecided" for m in moved) or any(each.count is None for each in clouds):

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Dispersion, Factored, Radicals, Ring
-from symflex.expressions import Call, Expression, fold, format_expression
+from symflex.expressions import Call, format_expression
 from symflex.library.elements import EquationRow, LinearForm, Variable
 from symflex.model import Model, ModelParameter
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.model.linearity import integer_exponent
+from symflex.model.linearity import factored_of
 
 if TYPE_CHECKING:
     from symflex.algebra.propagators import Propagation
@@ -119,17 +119,9 @@ def radicals_of(
     def named(name: str) -> Factored:
         return Factored.generator(ring, name) if value is None or name == "pi" else value(name)
 
-    def raised(base: Factored, exponent: Expression) -> Factored:
-        return base ** (integer_exponent(exponent) or 0)
-
-    def called(call: Call, _: Factored) -> Factored:
-        return Factored.generator(ring, format_expression(call))
-
     radicands = dict.fromkeys(units, Factored.number(ring, -1))
     for c in roots:
         # What divides by zero, or holds s or a block, has no value, which is reported where one is asked for.
         with suppress(ZeroDivisionError, KeyError):
-            radicands[ring.index[format_expression(c)]] = fold(
-                c.argument, number=lambda n: Factored.number(ring, n), name=named, power=raised, call=called
-            )
+            radicands[ring.index[format_expression(c)]] = factored_of(c.argument, ring, named)
     return Radicals.of(ring, radicands, positive)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property
 from math import isqrt, prod
 
 from symflex.algebra import (
@@ -37,7 +37,6 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
-    fold,
     format_expression,
     names,
     names_among,
@@ -46,7 +45,7 @@ from symflex.expressions import (
 from symflex.library.blocks import StateSpaceBlock, TransferFunctionBlock
 from symflex.library.elements import LinearForm, Variable
 from symflex.model import ModelScope, PlacedBlock
-from symflex.model.linearity import integer_exponent
+from symflex.model.linearity import factored_of
 from symflex.model.model import RootOfS
 
 OPENED_PARTS = 1_000
@@ -70,14 +69,7 @@ def transfer_of(block: PlacedBlock, values: Mapping[str, Factored]) -> Factored:
     if block.formula is None:
         assert isinstance(block.block, StateSpaceBlock)
         return block.block.transfer(values)
-    found: Factored = fold(
-        block.formula,
-        number=partial(Factored.number, values[LAPLACE].ring),
-        name=values.__getitem__,
-        power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
-        call=lambda _, argument: argument,
-    )
-    return found
+    return factored_of(block.formula, values[LAPLACE].ring, values.__getitem__)
 
 
 @dataclass(frozen=True)

@@ -165,9 +165,9 @@ def _check(
             known |= {"pi": acb.pi(), LAPLACE: acb(0, ball(omega))}
             meanings = dict(lines)
             for name in lines_in_order(right, meanings)[0]:
-                known[name] = read(meanings[name], known)
-            gain = known[over[0]] = read(right[0], known)
-            more, *sine = (read(e, known).real for e in right[1:])
+                known[name] = read(meanings[name], known.__getitem__)
+            gain = known[over[0]] = read(right[0], known.__getitem__)
+            more, *sine = (read(e, known.__getitem__).real for e in right[1:])
             time = (arb.atan2(sine[0], more) + 2 * arb.pi()) / ball(omega) if sine else more
             fixed = ((over[0], partial(arb, gain.real)), (over[1], partial(arb, time)))
             kernels = BoundTransferFunction(

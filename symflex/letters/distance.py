@@ -91,9 +91,8 @@ def distance(
         end = next((b for a, b in pieces if a == low), None)
         facts[f"within_{100 * error:g}_percent_to_hz"] = end
         said += [f"error at most {percent(error)}: {low:.4g} to {end:.4g} Hz"] if end else []
-    kept = _proved(quotient, band, lambda q: abs(abs(q).log()), DECIBELS / 20 * log(10))
-    where = " and ".join(f"{a:.4g} to {b:.4g}" for a, b in kept[:SHOWN]) or "nowhere"
-    said.append(f"magnitude within {DECIBELS:g} dB: {where} Hz")
+    kept, where = alike(quotient, band)
+    said.append(f"magnitude {where}")
     ends, excepted = [low, *(end for piece in kept for end in piece), high], []
     for a, b in zip(ends[::2], ends[1::2], strict=True):
         if a < b:
@@ -173,11 +172,21 @@ def _moved(before: Sequence[Root], after: Sequence[Root], high_hz: float) -> tup
     return worst, len(pairs), len(one) - len(pairs)
 
 
+def alike(
+    quotient: Callable[[float, float], acb], band: tuple[float, float], narrowest: float = NARROWEST
+) -> tuple[tuple[tuple[float, float], ...], str]:
+    """Return the parts of a band [Hz] in which the magnitude of a quotient is near 1, and words for them."""
+    kept = _proved(quotient, band, lambda q: abs(abs(q).log()), DECIBELS / 20 * log(10), narrowest)
+    where = " and ".join(f"{a:.4g} to {b:.4g}" for a, b in kept[:SHOWN]) or "nowhere"
+    return kept, f"within {DECIBELS:g} dB: {where} Hz"
+
+
 def _proved(
     quotient: Callable[[float, float], acb],
     band: tuple[float, float],
     measure: Callable[[acb], arb],
     most: float,
+    narrowest: float = NARROWEST,
 ) -> tuple[tuple[float, float], ...]:
     """Return the parts of a band [Hz] in which a measure of the quotient is proved below a bound."""
 
@@ -187,11 +196,11 @@ def _proved(
     def decide(a: float, b: float) -> bool | None:
         with precision(BITS):
             found = measure(quotient(at(a), at(b)))
-            is_decided = found < most or found > most or b - a < 2 * NARROWEST
+            is_decided = found < most or found > most or b - a < 2 * narrowest
             return bool(found < most) if is_decided else None
 
     joined: list[tuple[float, float]] = []
-    for a, b in sorted((at(a), at(b)) for a, b, good in covered(decide, 16, NARROWEST / 4) if good):
+    for a, b in sorted((at(a), at(b)) for a, b, good in covered(decide, 16, narrowest / 4) if good):
         if joined and a <= joined[-1][1]:
             joined[-1] = joined[-1][0], b
         else:

@@ -154,33 +154,29 @@ class _Axis:
         used, own = self.ring.used_in([part]), self.reader.tf.ring
         kernels = {g: x for g, x in self.functions.items() if g in used}
         waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
-        if IMAGINARY in used or not waves <= self.laws.keys():
-            return FactorInLetters(kind, None, note=NO_EQUATION)
-        lengths = [x for _, _, x in kernels.values()]
+        lengths, silent = [x for _, _, x in kernels.values()], FactorInLetters(kind, None, note=NO_EQUATION)
         longest = [x for x in lengths if all((y / x).is_constant and y.unit <= x.unit for y in lengths)]
-        if len(waves) > 1 or not longest or len(part) > MOST_TERMS:
-            return FactorInLetters(kind, None, note=NO_EQUATION)
+        is_one = len(waves) == 1 and waves <= self.laws.keys() and longest and IMAGINARY not in used
+        if not is_one or len(part) > MOST_TERMS:
+            return silent
         (wave,), whole = waves, longest[0]
         # omega^2 = square*wavenumber^order
         law, beta, s = self.laws[wave], *(Factored.generator(self.ring, n) for n in (wave, LAPLACE))
         order = law.exponent_of(self.ring.generator(wave))
-        images = [own.generator(n) if n in own.index else own.constant(0) for n in self.ring.names]
-        square = (law * s**2 / beta**order).map_factors(
-            own, lambda f: Factored.polynomial(own, f.compose(*images, ctx=own.context))
-        )
+        square = (law * s**2 / beta**order).over(own)
         terms: dict[Key, Factored] = {}
         lowest = min(dict(m).get(0, 0) for m, _ in terms_of(part))
         for monomial, c in terms_of(part):
             powers = {self.ring.names[i]: e for i, e in monomial}
             times, odd = divmod(powers.pop(LAPLACE, 0) - lowest, 2)
             if odd or square.depends_on(LAPLACE):
-                return FactorInLetters(kind, None, note=NO_EQUATION)
+                return silent
             n, *shape = (powers.pop(g, 0) for g in (wave, *kernels))
             term = prod((Factored.generator(own, a) ** e for a, e in powers.items()), start=square**times * c)
             terms[n + order * times, *shape] = terms.get((n + order * times, *shape), term * 0) + term
         ratios, factor = self._equation(terms, whole, kernels)
         if len(ratios) > MOST_RATIOS:
-            return FactorInLetters(kind, None, note=NO_EQUATION)
+            return silent
         printer, value = self.reader.printer, self.reader.value
         scale = printer.square_root(square / whole**order)
         above, *below = scale.children if isinstance(scale, Quotient) else (scale,)

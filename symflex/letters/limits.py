@@ -7,8 +7,9 @@ Output: its leading term at both ends, in words and with its value, and the freq
 
 At s = 0 kernels are their Taylor series, exactly, in which powers of wavenumbers are powers of s. For large
 s > 0 one exponential outweighs all others in numerator and denominator, and a wavenumber is a root of what
-leads in its square or fourth power. Before a term is shown, its text is read again and divided into the
-function, in balls at points of the positive axis ever closer to that end: the quotient has to tend to 1.
+leads in its square or fourth power; of terms with that exponential the highest power of s leads. So terms are
+exact where they are not zero. Before one is shown, its text is read again and divided into the function, in
+balls at points of the positive axis ever closer to that end: the quotient has to tend to 1.
 """
 
 from __future__ import annotations
@@ -18,18 +19,19 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import factorial, inf, prod, tau
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from flint import acb, arb, fmpz
+from flint import acb, fmpz
 
 from symflex import expressions as e
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring
-from symflex.algebra.dispersion import Kernel
+from symflex.algebra.dispersion import Dispersion, Kernel
 from symflex.algebra.factored import composed
-from symflex.algebra.ring import coefficients_of
+from symflex.algebra.ring import by_powers, coefficients_of
 from symflex.balls import ball, precision
-from symflex.errors import SymflexError, Text
+from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.expressions import Expression, Number, format_expression, number, product_of
+from symflex.letters.routh import aligned, read
 from symflex.print.forms import print_form
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.printed import S, in_roots
@@ -38,7 +40,7 @@ from symflex.print.latex.equation import model_labels, ratio_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.text import WIDTH, broken, hanging
 from symflex.quantities import Dimension, unit_of
-from symflex.transfer.enclose import enclosure, principal_values
+from symflex.transfer.enclose import enclosure
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.probes import probes_of
 
@@ -50,17 +52,18 @@ if TYPE_CHECKING:
 
     from symflex.transfer import AnyTransferFunction
 
+    Key = tuple[int, ...]
     Powers = dict[Expression, Fraction]
     Lead = tuple[Factored, Fraction, Mapping[Any, int]]
     """A value, in which wavenumbers stand for themselves, a power of s, and exponentials and oscillations."""
 
 ENDS: Final = ("0", "infinity")
 MINUS: Final = Number(Fraction(-1))
-NO_WAVES: Final[dict[str, Fraction]] = {}
 ORDERS: Final = (8, 16, 32)
 """Powers of a wavenumber up to which kernels are expanded, one after the other."""
 STEPS: Final = (16, 32, 48)
 """Binary orders of magnitude by which the points of a check lie beyond the scale of its parameters."""
+FARTHER: Final = 8  # times as many without exponentials, whose values would have too many digits
 BITS: Final = 512
 CLOSE, WANING, NOTHING = 0.01, 0.75, 1e-30
 """Differences: the last one at most, the part left at the next point, and what need not become smaller."""
@@ -73,11 +76,11 @@ STATIC: Final = {0: "static gain", -1: "integrator", -2: "double integrator", 1:
 RIGHT: Final = "s -> infinity on the positive axis; on s = j*omega only with damping"
 
 
-Base = TypeVar("Base")
-
-
-class NotInLettersError(Exception):
+class NotInLettersError(UsageError):
     """A statement in letters is not had; the argument says why."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(Diagnostic("SF902", reason))
 
 
 class Row(NamedTuple):
@@ -142,8 +145,7 @@ class InLetters:
         """Return the lines as a display."""
         writer = Writer(model_labels(self.tf.model))
         rows = (f"  {row.left} {writer.piece(row.expression).markup}" for row in (*self.rows, *self.where))
-        lines = " \\\\\n".join(rows)
-        return f"\\begin{{align*}}\n{lines}\n\\end{{align*}}"
+        return "\n".join([*(f"% {note}" for note in self.notes), *aligned([*rows])])
 
     def to_json_dict(self) -> dict[str, object]:
         """Return one entry of the JSON document."""
@@ -180,8 +182,6 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
     for end in ENDS:
         try:
             found[end] = LimitFinder(tf, end).limit()
-        except NotInLettersError as error:
-            notes.append(f"s -> {end}: no term in letters, {error}")
         except SymflexError as error:
             notes.append(f"s -> {end}: no term in letters, {error.diagnostics[0].message}")
     rows = [row for row, _ in found.values()]
@@ -215,22 +215,30 @@ class LimitFinder:
     def laws(self) -> dict[str, tuple[Factored, int]]:
         """What powers of wavenumbers are, and which powers."""
         laws = self.tf.kernels.dispersions
-        if any(law.kind in ("pair", "general", "varying") for law in laws):
+        if any(law.kind in ("general", "varying") for law in laws) or (self.end != ENDS[0] and self._pairs):
             raise NotInLettersError("its waves are no roots of one term")
-        named = ((n, law.kind == "wave", law.characteristic[0]) for law in laws for n in law.wavenumbers)
-        return {name: (-c, 2) if is_wave else (c / 4, 4) for name, is_wave, c in named}
+        named = ((n, law.kind, law.characteristic[0]) for law in laws for n in law.wavenumbers)
+        own = {"wave": (-1, 2), "bending": (Fraction(1, 4), 4), "pair": (1, 4)}
+        return {name: (c * own[kind][0], own[kind][1]) for name, kind, c in named}
+
+    @cached_property
+    def _pairs(self) -> list[Dispersion]:
+        """The laws of two waves that come to rest together, as in Timoshenko beams."""
+        return [law for law in self.tf.kernels.dispersions if law.kind == "pair"]
 
     @cached_property
     def _waves(self) -> dict[str, Fraction]:
         """To which powers of s wavenumbers are proportional at this end."""
-        rates = {name: self._end(x)[1] / n for name, (x, n) in self.laws.items()}
-        delays = [self._end(k.dispersion.shift)[1] for k in self.tf.kernels.kernels if not k.wavenumber]
-        if any(rate <= 0 for rate in (*rates.values(), *delays)):
-            where = "vanish at s = 0, as on a foundation" if self.end == ENDS[0] else "grow with s"
+        rates = {name: self._end(x, {})[1] / n for name, (x, n) in self.laws.items()}
+        delays = [self._end(k.dispersion.shift, {})[1] for k in self.tf.kernels.kernels if not k.wavenumber]
+        sums = [self._end(x.characteristic[2], {})[1] - 2 * rates[x.wavenumbers[0]] for x in self._pairs]
+        if min((*rates.values(), *delays), default=1) <= 0 or min(sums, default=0) < 0:
+            at_rest = "vanish at s = 0, as under tension or on a foundation"
+            where = at_rest if self.end == ENDS[0] else "grow with s"
             raise NotInLettersError(f"it holds waves whose wavenumbers do not {where}")
         return rates
 
-    def _end(self, value: Factored, waves: Mapping[str, Fraction] = NO_WAVES) -> tuple[Factored, Fraction]:
+    def _end(self, value: Factored, waves: Mapping[str, Fraction]) -> tuple[Factored, Fraction]:
         """Return what leads in a value, without its power of s, and this, in which wavenumbers count."""
         ring = self._ring
         total, power = Factored.number(ring, value.unit), Fraction(0)
@@ -254,8 +262,15 @@ class LimitFinder:
             raise NotInLettersError("loss factors hold on s = j*omega alone")
         value, power = Factored.number(self._ring, tf.ratio.unit), Fraction(0)
         others: dict[Any, int] = {}
-        for factor, exponent in tf.ratio.factors:
-            lead = self._at_zero(factor) if self.end == ENDS[0] else self._far_out(factor)
+        factors = tf.ratio.factors
+        if self._pairs:
+            sides = tf.ratio.numerator(), tf.ratio.denominator()
+            factors = tuple(((side / side.unit).expand(), n) for side, n in zip(sides, (1, -1), strict=True))
+        for factor, exponent in factors:
+            is_static = self.end == ENDS[0]
+            lead = (
+                (*self._end(self.expanded(factor), self._waves), {}) if is_static else self._far_out(factor)
+            )
             value, power = value * lead[0] ** exponent, power + lead[1] * exponent
             others |= {key: others.get(key, 0) + n * exponent for key, n in lead[2].items()}
         growth = {key: n for key, n in others.items() if n and isinstance(key, Kernel)}
@@ -264,14 +279,15 @@ class LimitFinder:
         power /= 1 if root is None else root.order
         if root is not None and (growth or turns):
             raise NotInLettersError("waves of a root of s are left in it")
-        leading = written_powers(front | turns | {S: power})
-        if growth:
-            leading = product_of([leading, e.Call("exp", self._phase(growth))])
+        waves = {e.Call("exp", self._phase(growth)): Fraction(1)} if growth else {}
+        leading = written_powers(front | turns | waves | {S: power})
         if root is not None:
             leading = e.substitute(leading, {LAPLACE: e.sum_of([product_of([root.slope, S]), root.shift])})
         self._check(leading)
         name, mark = f"s -> {self.end}", "0" if self.end == ENDS[0] else r"\infty"
         amount = None if turns else value_of(tf, written_powers(front))
+        if amount == 0:
+            raise NotInLettersError(f"{format_expression(leading)} is zero for the declared values")
         unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit else ""
         own = None if growth or turns else power
         slope = f"{20 * float(power):+.4g} dB/decade" if own else ""
@@ -279,10 +295,6 @@ class LimitFinder:
         left = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
         relation = ":".ljust(len(ENDS[1]) - len(self.end) + 2)
         return Row(name, relation, left, leading, words, amount, unit, own), front
-
-    def _at_zero(self, factor: fmpz_mpoly) -> Lead:
-        """Return the first term of a factor's power series."""
-        return *self._end(self.expanded(factor), self._waves), {}
 
     def expanded(self, factor: fmpz_mpoly, count: int = 1) -> Factored:
         """Return a function with the same first terms of its power series in s, so many, as a factor."""
@@ -293,17 +305,59 @@ class LimitFinder:
             series = {k.generator: self._series(k, most) for k in kernels}
             whole, total = composed(Factored.polynomial(ring, factor), series), Factored.number(ring, 0)
             parts = coefficients_of(ring, whole.numerator().expand(), [ring.index[name] for name in laws])
-            for powers, part in parts.items():
-                if sum(n * waves[name] for n, name in zip(powers, laws, strict=True)) > slowest * most:
-                    continue  # further terms of the series would be added
-                term = Factored.polynomial(ring, part)
+            weights = {key: sum(n * waves[name] for n, name in zip(key, laws, strict=True)) for key in parts}
+            # Further terms of the series would be added to those that are left out.
+            terms = {
+                k: Factored.polynomial(ring, c) for k, c in parts.items() if weights[k] <= slowest * most
+            }
+            for law in self._pairs:
+                terms = self._symmetric(law, terms, slowest * most)
+            for powers, term in terms.items():
+                own = [term]
                 for n, (name, (square, order)) in zip(powers, laws.items(), strict=True):
-                    term = term * square ** (n // order) * Factored.generator(ring, name) ** (n % order)
-                total = total + term
+                    own += [square ** (n // order), Factored.generator(ring, name) ** (n % order)]
+                total = total + prod(own[1:], start=term)
             power = self._end(total, waves)[1]
             if not total.is_zero and power + count - 1 < slowest * (most + 1):
                 return total / whole.denominator()
         raise NotInLettersError("its power series at s = 0 is too long")
+
+    def _symmetric(
+        self, law: Dispersion, terms: Mapping[Key, Factored], most: Fraction | float
+    ) -> dict[Key, Factored]:
+        """Return a function of a pair of wavenumbers up to a power of s, without all that is even in them.
+
+        Their squares x and y have a sum and a product, by which ``x^n = u x + v``. A function that does not
+        change when they are exchanged has u = 0; one that changes its sign is ``u (x - y)/2``.
+        """
+        i, j = map([*self.laws].index, law.wavenumbers)
+        one, other = (Factored.generator(self._ring, name) for name in law.wavenumbers)
+        both, product, zero = -law.characteristic[2], law.characteristic[0], one * 0
+        s = self._ring.generator(LAPLACE)
+
+        def cut(value: Factored, power: Fraction | float) -> Factored:
+            parts = by_powers(self._ring, value.numerator().expand())
+            kept = sum((c * s**n for n, c in parts.items() if n <= power), self._ring.constant(0))
+            return Factored.polynomial(self._ring, kept) / value.denominator()
+
+        slopes, found = [zero, zero + 1], dict[Any, tuple[Factored, Factored]]()
+        for key, x in terms.items():
+            a, b = key[i] // 2, key[j] // 2
+            while len(slopes) <= (apart := abs(a - b)):
+                slopes.append(both * slopes[-1] - product * slopes[-2])
+            front = x * product ** min(a, b)
+            u, v = front * slopes[apart], front * (-product * slopes[apart - 1] if apart else 1)
+            rest = tuple(e % 2 if n in (i, j) else e for n, e in enumerate(key))
+            p, q = found.get(rest, (zero, zero))
+            found[rest] = (p + u, q + v) if a >= b else (p - u, q + v + u * both)
+        whole, rate = dict[Any, Factored](), self._waves[law.wavenumbers[0]]
+        for key, (u, v) in found.items():
+            room = most - rate * (key[i] + key[j])
+            p, q, r = cut(u, room - 2 * rate), cut(v, room), cut(u * both + v * 2, room)
+            if not (p.is_zero or r.is_zero):
+                raise NotInLettersError("its waves are no roots of one term")
+            whole[key] = q if p.is_zero else p * (one**2 - other**2) / 2
+        return whole
 
     def _series(self, kernel: Kernel, most: int) -> Factored:
         """Return the Taylor series of a kernel, up to a power of its argument."""
@@ -351,7 +405,7 @@ class LimitFinder:
         for name, (square, order) in self.laws.items():
             n = value.exponent_of(self._ring.generator(name))
             value = value / Factored.generator(self._ring, name) ** n
-            parts.append((self._powers(self._end(square)[0]), Fraction(n, order)))
+            parts.append((self._powers(self._end(square, {})[0]), Fraction(n, order)))
             if value.depends_on(name):
                 raise NotInLettersError("several terms lead together")
         value, _ = cancel(value.numerator(), value.denominator(), radicals=self.tf.radicals)
@@ -372,10 +426,9 @@ class LimitFinder:
     def _powers(self, value: Factored) -> Powers:
         """Return a function without kernels, as it prints shortest, as powers; its sign is one of -1."""
         kept = Ring(tuple(n for n in self._ring.names if n not in self.tf.kernels.generators))
-        images = [*kept.context.gens(), *[kept.constant(0)] * (len(self._ring.names) - len(kept.names))]
-        own = [(Factored.polynomial(kept, f.compose(*images, ctx=kept.context)), n) for f, n in value.factors]
-        reduced = prod((f**n for f, n in own), start=Factored.number(kept, value.unit))
-        plain = replace(self.tf, reduced=reduced, closed=None, hidden=(), kernels=NO_KERNELS, parts=None)
+        plain = replace(
+            self.tf, reduced=value.over(kept), closed=None, hidden=(), kernels=NO_KERNELS, parts=None
+        )
         form = print_form(plain)
         front, powers = powers_of(e.quotient(form.num, form.den))
         found = {base: Fraction(n) for base, n in powers.items()}
@@ -397,22 +450,20 @@ class LimitFinder:
 
     def _check(self, leading: Expression) -> None:
         """Compare the function with the term, read again, ever closer to the end."""
-        text, sign = format_expression(leading), -1 if self.end == ENDS[0] else 1
-        term = opened(self.tf, e.parse(Text.alone("<limit>", text)))
-        root = self.tf.model.root
+        sign, root = -1 if self.end == ENDS[0] else 1, self.tf.model.root
+        place, term = S if root is None else in_roots(S, root), opened(self.tf, leading)
         for setting, s in dict(probes_of(self.tf).points).items():
             with precision(BITS):
-                scale = abs(acb(*map(ball, s)))
-                points = [acb(scale * arb(2) ** (sign * step)) for step in STEPS]
-                known = {name: [acb(enclosure(v)())] * len(points) for name, v in setting.values.items()}
-                known |= {"pi": [acb(arb.pi())] * len(points), LAPLACE: points}
-                place = S if root is None else in_roots(S, root)
-                places, printed = (principal_values(x, len(points), known.__getitem__) for x in (place, term))
-                values = map(setting.evaluate(None, BITS), places)
-                errors = [float(abs(v / p - 1).upper()) for v, p in zip(values, printed, strict=True)]
+                known = {name: acb(enclosure(v)()) for name, v in setting.values.items()} | {"pi": acb.pi()}
+                errors = list[float]()
+                for step in STEPS:
+                    far = step if self.tf.kernels else FARTHER * step
+                    known[LAPLACE] = abs(acb(*map(ball, s))) * acb(2) ** (sign * far)
+                    at, printed = (read(x, known.__getitem__) for x in (place, term))
+                    errors.append(float(abs(setting.evaluate(None, BITS)(at) / printed - 1).upper()))
             is_waning = all(b < WANING * a or b < NOTHING for a, b in pairwise(errors))
             if not (is_waning and errors[-1] < CLOSE):
-                raise NotInLettersError(f"{text} seems to lead; that is not proved")
+                raise NotInLettersError(f"{format_expression(leading)} seems to lead; that is not proved")
 
 
 def definitions_of(tf: AnyTransferFunction) -> list[tuple[str, Expression]]:
@@ -432,17 +483,16 @@ def value_of(tf: AnyTransferFunction, expression: Expression) -> float | None:
     expression = opened(tf, expression)
     declared = {p.name: p.value for p in tf.model.parameters}
     with precision(BITS):
-        known = {n: [acb(enclosure(v)())] for n, v in declared.items() if v is not None}
-        known["pi"] = [acb(arb.pi())]
+        known = {n: acb(enclosure(v)()) for n, v in declared.items() if v is not None} | {"pi": acb.pi()}
         if any(n.name in declared and n.name not in known for n in e.names(expression)):
             return None
-        (value,) = principal_values(expression, 1, known.__getitem__)
-    return float(value.real.mid())
+        found = read(expression, known.__getitem__).real
+        return 0.0 if found.contains(0) else float(found.mid())
 
 
-def times(*parts: tuple[dict[Base, Fraction], Fraction]) -> dict[Base, Fraction]:
+def times(*parts: tuple[dict[Any, Fraction], Fraction]) -> dict[Any, Fraction]:
     """Return the product of powers of products."""
-    total: dict[Base, Fraction] = {}
+    total: dict[Any, Fraction] = {}
     for powers, exponent in parts:
         total |= {base: total.get(base, Fraction(0)) + n * exponent for base, n in powers.items()}
     return {base: n for base, n in total.items() if n}

@@ -33,8 +33,6 @@ from symflex.transfer.lowest_terms import cancel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from flint import fmpz_mpoly
-
 
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
     """Return a distributed function as a rational one, in letters, up to a power of s.
@@ -63,13 +61,7 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     is_stiffness = is_driven and _begins(num) <= _begins(den)
     sides = [num / num, den / num] if is_stiffness else [num, den]
     lowest = min(map(_begins, sides))
-    # Kernels come last among the generators.
-    images = (*plain.context.gens(), *[plain.constant(0)] * (len(num.ring.names) - len(plain.names)))
-
-    def moved(factor: fmpz_mpoly) -> Factored:
-        return Factored.polynomial(plain, factor.compose(*images, ctx=plain.context))
-
-    series = [[c.map_factors(plain, moved) for c in _series(side, order + 1)] for side in sides]
+    series = [[c.over(plain) for c in _series(side, order + 1)] for side in sides]
     terms = [
         [(first + k, c) for k, c in enumerate(own) if not c.is_zero and first + k <= max(order, first)]
         for own, first in zip(series, (_begins(side) - lowest for side in sides), strict=True)
@@ -105,7 +97,8 @@ def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:
                 raise NotInLettersError("it is no function of s alone")
             num = num * square ** ((above - below) // order)
     except NotInLettersError as error:
-        raise UsageError(Diagnostic("SF902", f"{tf.name} is not expanded in s: {error}")) from None
+        message = f"{tf.name} is not expanded in s: {error.diagnostics[0].message}"
+        raise UsageError(Diagnostic("SF902", message)) from None
     return num, den
 
 

@@ -15,33 +15,24 @@ Math. Monthly 29, 51). Of real roots, as many are positive as the signs of coeff
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
+from symflex import expressions as e
 from symflex.algebra import LAPLACE, Factored
-from symflex.errors import Text
-from symflex.expressions import (
-    PROGRAM_LIMITS,
-    Call,
-    Expression,
-    format_expression,
-    negative,
-    number,
-    parse,
-    power,
-    product_of,
-    quotient,
-    sum_of,
-)
-from symflex.letters.routh import Factor, Signs, relation_of
+from symflex.expressions import Call, Expression, Name, format_expression
+from symflex.letters.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of
 from symflex.print.forms.arrange import length, with_squares
 from symflex.print.forms.naming import Naming
+from symflex.print.latex import latex_expression
+from symflex.print.latex.equation import model_labels
 from symflex.print.roots import SHORT_DIGITS
 from symflex.print.text import INDENT, WIDTH, broken
 from symflex.roots import figure
 from symflex.roots.passivity import energy_proof
-from symflex.transfer.enclose import principal_values
+from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -49,9 +40,13 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Ring
+    from symflex.model import Model
     from symflex.print.forms.arrange import ProductPrinter
     from symflex.roots import Root
     from symflex.transfer import TransferFunction
+
+    Kind = tuple[str, bool | None, Sequence[SymbolicRelation]]
+    """What roots are if inequalities hold, whether these do at the model's values, None if undecided."""
 
 PAIR: Final = 2
 """Degree of a factor with a natural frequency and a damping ratio."""
@@ -83,8 +78,7 @@ class FactorInLetters:
     kind: str  # ``poles``, ``zeros`` or ``hidden``
     factor: Expression | None  # None of the reason why more is not said
     formulas: tuple[RootFormula, ...] = ()
-    # What roots are, if which inequalities hold; whether they do at the model's values, None if undecided.
-    kinds: tuple[tuple[str, bool | None], ...] = ()
+    kinds: tuple[Kind, ...] = ()
     solutions: tuple[tuple[arb, Root], ...] = ()  # q of a frequency equation, and the root it belongs to
     note: str = ""  # why there is no formula, or what all solutions are
 
@@ -99,7 +93,7 @@ class FactorInLetters:
         """Yield what is no formula."""
         if self.solutions:
             yield f"q = {', '.join(figure(q, 2 * SHORT_DIGITS) for q, _ in self.solutions)}, ..."
-        yield from (f"{text}{', as here' * bool(holds and IF in text)}" for text, holds in self.kinds)
+        yield from (f"{text}{', as here' * bool(holds and IF in text)}" for text, holds, _ in self.kinds)
         yield from [self.note] * bool(self.note)
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
@@ -110,7 +104,7 @@ class FactorInLetters:
             "formulas": {f.name: format_expression(f.expression) for f in self.formulas},
             "values": {f.name: figure(f.value, digits) for f in self.formulas if f.value is not None},
             "q": [figure(q, digits) for q, _ in self.solutions],
-            "kinds": [{"statement": text, "holds": holds} for text, holds in self.kinds],
+            "kinds": [{"statement": text, "holds": holds} for text, holds, _ in self.kinds],
             "note": self.note,
         }
 
@@ -125,6 +119,22 @@ def letters_text(found: Sequence[FactorInLetters], width: int = WIDTH) -> str:
     return "\n".join(part for line in lines for part in broken(line, width) or [""])
 
 
+def letters_latex(found: Sequence[FactorInLetters], model: Model) -> str:
+    """Return what is said of factors as displays, reasons as comments."""
+    labels, lines = model_labels(model), []
+    for each in found:
+        rows = [f"{latex_expression(each.factor, labels)} &= 0"] if each.factor else []
+        for f in each.formulas:
+            rows.append(f"{latex_expression(Name(f.name), {})} &= {latex_expression(f.expression, labels)}")
+        q = [figure(q, 2 * SHORT_DIGITS) for q, _ in each.solutions]
+        rows += [f"q &= {', '.join([*q, chr(92) + 'dots'])}"] if q else []
+        for text, _, shown in each.kinds:
+            words, conditions = text.partition(IF)[0], r" \text{ and } ".join(x.latex(labels) for x in shown)
+            rows.append(rf"&\text{{{words}{IF if shown else ''}}} {conditions}".rstrip())
+        lines += [f"% {each.kind} in letters", *([f"% {each.note}"] * bool(each.note)), *aligned(rows)]
+    return "\n".join(lines)
+
+
 @dataclass(frozen=True, eq=False)
 class LetterReader:
     """Says in letters what the factors of one function have for roots, and reads what it says."""
@@ -137,9 +147,8 @@ class LetterReader:
 
     def value(self, expression: Expression, **more: acb) -> acb:
         """Return a ball around what the text of an expression says."""
-        known = {"pi": acb(arb.pi()), **more}
-        read = parse(Text.alone("<letters>", format_expression(expression)), limits=PROGRAM_LIMITS)
-        return principal_values(read, 1, lambda n: [known[n] if n in known else acb(self.numbers[n]())])[0]
+        known = {"pi": acb.pi(), **more}
+        return read(expression, lambda n: known[n] if n in known else acb(self.numbers[n]()))
 
     def said_of(self, kind: str, factor: fmpz_mpoly, roots: Sequence[Root]) -> FactorInLetters | None:
         """Return what is said of a factor; None if it holds no letters, or none of its roots is listed."""
@@ -176,12 +185,19 @@ class LetterReader:
         elif degree == PAIR and c[1].is_zero():
             tried = [("sigma", self.root(-ratio), omega, "rad/s")]
         elif degree == 2 * PAIR and c[1].is_zero() and c[3].is_zero():
-            middle, product = self.printer.sum(c[2]), self.printer.sum(4 * c[0] * c[4])
-            spread = Call("sqrt", sum_of([power(middle, 2), negative(product)]))
-            below = product_of([number(2), self.printer.sum(c[4])])
+            ring, halves = self.tf.ring, not any(int(n) % 2 for n in c[2].coeffs())
+            middle, below = (c[2] / 2, c[4]) if halves else (c[2], 2 * c[4])
+            others = c[0] * below**2 / c[4]
+            terms = ((middle, below), (middle**2 - others, below**2))
+            sides = (map(partial(Factored.polynomial, ring), each) for each in terms)
+            mean, square = (cancel(above, below)[0] for above, below in sides)
+            over, mean_text = self.printer.sum(middle), self.printer.quotient(mean)
+            whole = Call("sqrt", e.sum_of([e.power(over, 2), e.negative(self.printer.sum(others))]))
             sizes = [r.size() for r in own if r.im > 0 and r.on_imaginary_axis]
-            for side in (negative(spread), spread):
-                root = Call("sqrt", quotient(sum_of([middle, side]), below))
+            for sign in (-1, 1):
+                one, other = (x if sign > 0 else e.negative(x) for x in (whole, self.root(square)))
+                two = e.quotient(e.sum_of([over, one]), self.printer.sum(below)), e.sum_of([mean_text, other])
+                root = min((Call("sqrt", x) for x in two), key=length)
                 tried += [("omega", root, x, "rad/s") for x in sizes]
         for name, expression, value, unit in tried:
             apart = self.value(expression) - value  # not finite where zeta is 0
@@ -203,10 +219,10 @@ class LetterReader:
         if self.signs.of_polynomial(c[1]) > 0:
             square = low * high / middle**2
             return self.root(1 / (square * 4)), self.root(square)
-        zeta = quotient(self.printer.quotient(middle), product_of([number(2), self.root(low * high)]))
-        return zeta, quotient(number(1), product_of([number(2), zeta]))
+        zeta = e.quotient(self.printer.quotient(middle), e.product_of([e.number(2), self.root(low * high)]))
+        return zeta, e.quotient(e.number(1), e.product_of([e.number(2), zeta]))
 
-    def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[tuple[str, bool | None]]:
+    def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[Kind]:
         """Yield what the roots may be, each with its conditions."""
         model, degree = self.tf.model, len(c) - 1
         is_even, free = not any(map(len, c[1::2])), [p.name for p in model.parameters if p.assume != "real"]
@@ -230,7 +246,8 @@ class LetterReader:
                 said = " and ".join(map(str, shown))
                 text = f"{words}{IF}{said}" if said else f"{words}: for all positive values"
                 is_met = all(x > 0 if sign == ">" else x != 0 for x, sign in over)
-                yield text, None if any(x.contains(0) and not x.is_zero() for x, _ in over) else is_met
+                is_open = any(x.contains(0) and not x.is_zero() for x, _ in over)
+                yield text, None if is_open else is_met, shown
 
 
 def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequence[Factor]]]:

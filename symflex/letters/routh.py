@@ -40,7 +40,7 @@ from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all, pick_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from flint import fmpz_mpoly
 
@@ -76,6 +76,12 @@ class SymbolicRelation:
             return f"a sum of {self.terms} terms, too long to be read, {self.sign} 0"
         return f" {self.sign} ".join(map(format_expression, self.sides))
 
+    def latex(self, labels: Mapping[str, str], mark: str = "") -> str:
+        """Return the relation as LaTeX; what has no readable sides as its words."""
+        sign = f" {mark}{self.sign} ".replace("!=", r"\neq")
+        sides = (latex_expression(side, labels) for side in self.sides or ())
+        return sign.join(sides) if self.sides else rf"\text{{{self}}}"
+
 
 Found = Sequence[tuple["fmpz_mpoly", SymbolicRelation]]
 
@@ -100,10 +106,7 @@ class Conditions:
         """Return the conditions as a display, the sentence above them as a comment."""
         labels = model_labels(self.model)
         comments = [f"% {x}" for x in (self.sentence, *(c for c in self.conditions if not c.sides))]
-        sides = [(c.sides, c.sign.replace("!=", r"\neq")) for c in self.conditions if c.sides]
-        rows = [f" &{sign} ".join(latex_expression(e, labels) for e in both) for both, sign in sides]
-        display = [r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}"] if rows else []
-        return "\n".join([*comments, *display])
+        return "\n".join([*comments, *aligned([c.latex(labels, "&") for c in self.conditions if c.sides])])
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the conditions in the schema ``symflex.stability/1``."""
@@ -161,6 +164,11 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     said = f"for no values {ALL_LEFT}, as then" if is_never else said + " exactly when" * bool(found)
     relations = tuple(relation for _, relation in found)
     return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
+
+
+def aligned(rows: Sequence[str]) -> list[str]:
+    """Return rows of LaTeX as a display, nothing without rows."""
+    return [r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}"] if rows else []
 
 
 def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign) -> SymbolicRelation:
@@ -309,10 +317,10 @@ def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: 
             known[n] = acb(size if n in signs.nonnegative else random.choice((1, -1)) * size)
         with precision(BITS):
             known["pi"] = acb.pi()
-            known |= {c.generator: read(c.expression, known) for c in tf.constants}
+            known |= {c.generator: read(c.expression, known.__getitem__) for c in tf.constants}
             holds, wrong = True, ""
             for polynomial, shown in found:
-                own, sides = value(polynomial), [read(side, known) for side in shown.sides or ()]
+                own, sides = value(polynomial), [read(side, known.__getitem__) for side in shown.sides or ()]
                 holds &= bool(own.real > 0 if shown.sign == ">" else own != 0)
                 wrong = str(shown) if sides and not own.overlaps(sides[0] - sides[1]) else wrong
             placed = [_is_placed([*map(value, ring.coefficients(f))][::step], step) for f, step in moving]
@@ -321,10 +329,10 @@ def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: 
             raise InternalError(Diagnostic("SF992", message, None, REPORT))
 
 
-def read(expression: Expression, known: Mapping[str, acb]) -> acb:
+def read(expression: Expression, known: Callable[[str], acb]) -> acb:
     """Return the value of what is printed, read as a user's text would be."""
     parsed = parse(Text.alone("<printed>", format_expression(expression)), limits=PROGRAM_LIMITS)
-    return principal_values(parsed, 1, lambda name: [known[name]])[0]
+    return principal_values(parsed, 1, lambda name: [known(name)])[0]
 
 
 def _is_placed(numbers: Sequence[acb], step: int) -> bool | None:

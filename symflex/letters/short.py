@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -24,17 +25,17 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.algebra.ring import irreducible_factors
 from symflex.algebra.vanishing import OriginSeries
-from symflex.balls import ball, precision
+from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError, counted
-from symflex.letters.distance import BITS, UNCHANGED, band_of, distance, percent, roots_of, upper
+from symflex.letters.distance import BITS, UNCHANGED, alike, band_of, distance, percent, roots_of, upper
 from symflex.letters.order import truncated
 from symflex.model import spread_box
 from symflex.model.model import IMAGINARY
 from symflex.options import share_of
 from symflex.print.forms import print_form
 from symflex.print.forms.printed import Approximation, terms_of
-from symflex.transfer import TransferFunction, bind
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.bind import values_for
 from symflex.transfer.enclose import enclose, enclosure
 
@@ -51,6 +52,9 @@ if TYPE_CHECKING:
     Key = tuple[int, ...]
     Term = tuple[tuple[int, ...], int]
     Share = tuple[arb, int]
+    Box = Mapping[str, tuple[Fraction, Fraction]]
+    Image = tuple[fmpz_mpoly, Factored, int]
+    """A factor, the shorter one in its place, and its exponent."""
 
 MOST_TERMS = 20_000
 """Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
@@ -58,6 +62,8 @@ FACTORED_TERMS = 120
 """Terms of a shortened polynomial up to which it is tried whether it has factors now."""
 BUDGETS = (1.0, 0.85, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05, 0.0)
 """Shares of the bound that are tried for each factor of a product."""
+COARSE = 0.002
+"""Shortest piece of a band, as a share of its logarithm, whose magnitude is examined over a box."""
 TINY = 2.0**-60
 """Relative radius up to which a value counts as one number."""
 
@@ -71,7 +77,7 @@ class _Letters:
     ends: Mapping[int, tuple[arb, arb]]  # logarithms of what they may be multiplied by
 
     @staticmethod
-    def of(tf: TransferFunction, box: Mapping[str, tuple[Fraction, Fraction]]) -> _Letters:
+    def of(tf: TransferFunction, box: Box) -> _Letters:
         """Return the letters of a function."""
         known = {"pi": arb.pi()} | {p.name: enclosure(p.value)() for p in tf.model.parameters if p.value}
         wide = {n: ball(box[n][0]).union(ball(box[n][1])) if n in box else v for n, v in known.items()}
@@ -180,11 +186,11 @@ def _without(each: _Pruned, gone: Mapping[Key, Sequence[tuple[Share, Term]]]) ->
 
 def _shorter(
     tf: TransferFunction, sums: Sequence[_Pruned], letters: _Letters, most: float
-) -> tuple[TransferFunction, tuple[float, float], list[tuple[float, _Pruned, Key]]]:
-    """Return a function without the terms that both sides allow, the changes, and what went where."""
+) -> tuple[TransferFunction, tuple[float, float], list[tuple[float, _Pruned, Key]], list[Image]]:
+    """Return a function without terms that both sides allow, the changes, what went where, new factors."""
     ring, one = tf.ratio.ring, tf.ratio.ring.constant(1)
     changes: list[tuple[float, float]] = []
-    images: list[tuple[fmpz_mpoly, Factored]] = []
+    images: list[Image] = []
     dropped: list[tuple[float, _Pruned, Key]] = []
     for sign in (1, -1):
         side = [each for each in sums if each.exponent * sign > 0]
@@ -205,16 +211,33 @@ def _shorter(
             if own and len(polynomial) <= FACTORED_TERMS and not tf.kernels:
                 number, factors = irreducible_factors(polynomial)
                 image = Factored(ring, Fraction(number), tuple(factors))
-            images.append((each.polynomial, image))
+            images.append((each.polynomial, image, each.exponent))
             dropped += [(upper(_most([x for x, _ in terms])), each, key) for key, terms in own.items()]
 
     def shorter(factor: fmpz_mpoly) -> Factored:
-        return next((new for old, new in images if old == factor), Factored.polynomial(ring, factor))
+        return next((new for old, new, _ in images if old == factor), Factored.polynomial(ring, factor))
 
     parts = (tf.num.map_factors(ring, shorter), tf.den.map_factors(ring, shorter)) if tf.parts else None
     ratio = tf.ratio.map_factors(ring, shorter)
     short = replace(tf, reduced=ratio, closed=None, hidden=(), parts=parts, solve=None)
-    return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped
+    return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped, images
+
+
+def _over_box(
+    tf: TransferFunction, box: Box, images: Sequence[Image], band: tuple[float, float]
+) -> tuple[tuple[tuple[float, float], ...], str]:
+    """Return where in a band the magnitude of a short function is near the other for all values of a box."""
+    fixed = tuple((name, partial(arb, ball(low).union(ball(high)))) for name, (low, high) in box.items())
+    others = tuple((p.name, p.value) for p in tf.model.parameters if p.value and p.name not in box)
+    kernels = BoundTransferFunction(tf, others, tf.ratio, (), tf.kernels, fixed=fixed).kernel_values()
+    lost = [((Factored.polynomial(tf.ratio.ring, old) - new) / new, n) for old, new, n in images]
+
+    def quotient(low: float, high: float) -> acb:
+        at = kernels.at(acb(0, 2 * arb.pi() * arb(low).union(arb(high))))
+        return prod((at_centre(1 + kernels.value(x, at)) ** -n for x, n in lost), start=acb(1))
+
+    with precision(BITS):
+        return alike(quotient, band, COARSE)
 
 
 def _counts(located: PoleZeroMap, end: float) -> list[int]:
@@ -270,7 +293,7 @@ def shortened(
     while True:
         kept += 1
         with precision(BITS):
-            short, changes, dropped = _shorter(tf, sums, letters, float(most))
+            short, changes, dropped, images = _shorter(tf, sums, letters, float(most))
         if not dropped or _at_rest(short) == at_rest:
             after = bind(short)
             _, second = roots_of(own, after, first)
@@ -293,7 +316,12 @@ def shortened(
     facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
     apart = distance(own, after, (first, second)) if dropped else Approximation((), {})
     facts |= {"static": static, "kept_whole": kept} | apart.facts
-    return short, replace(printed, approximation=Approximation((*said, *apart.said), facts, not dropped))
+    said += apart.said
+    if box and dropped:
+        kept_parts, where = _over_box(tf, box, images, band_of(own, first))
+        said.append(f"magnitude over the spread {where}")
+        facts["within_1_db_over_spread_hz"] = [[*part] for part in kept_parts]
+    return short, replace(printed, approximation=Approximation(tuple(said), facts, not dropped))
 
 
 def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:

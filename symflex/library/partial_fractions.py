@@ -63,14 +63,13 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
     ring = coefficients[0].ring
     wide = Ring((*ring.names, EXPONENT))
     last, position = wide.generator(EXPONENT), len(ring.names)
-    lifted = [_lifted(c, wide) for c in coefficients]
+    lifted = [c.over(wide) for c in coefficients]
     total = Factored.polynomial(wide, last) ** len(lifted)
     for k, c in enumerate(lifted):
         total = total + c * Factored.polynomial(wide, last) ** k
     polynomials = [f for f, e in total.factors if e > 0]
     if sum(map(len, polynomials)) > FACTORED_TERMS:
         return [(tuple(coefficients), 1)]
-    images = [*ring.context.gens(), ring.constant(0)]
     parts = []
     for polynomial, exponent in total.factors:
         if exponent < 0 or not degree_in(polynomial, position):
@@ -78,14 +77,10 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
         for part, times in irreducible_factors(polynomial)[1]:
             powers = by_powers(wide, part, position)
             if (degree := max(powers)) > 0:
-                plain = {k: c.compose(*images, ctx=ring.context) for k, c in powers.items()}
+                plain = {k: ring.taken_over(c, wide.names) for k, c in powers.items()}
                 own = (_quotient(ring, plain.get(k), plain[degree]) for k in range(degree))
                 parts.append((tuple(own), times * exponent))
     return parts
-
-
-def _lifted(value: Factored, ring: Ring) -> Factored:
-    return Factored(ring, value.unit, tuple((ring.taken_over(f), e) for f, e in value.factors))
 
 
 def _quotient(ring: Ring, above: fmpz_mpoly | None, below: fmpz_mpoly) -> Factored:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.algebra import NO_KERNELS, Factored, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import StabilityVerdict, count_right
 from symflex.roots.region import Modes
@@ -41,13 +41,12 @@ def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial])
 
     ``bound`` carries their ring. What divides the others has no poles of its own.
     """
-    ring = bound.ratio.ring
-    kernels = [ring.index[name] for name in bound.kernels.generators]
+    ring, moving = bound.ratio.ring, {LAPLACE, *bound.kernels.generators}
     parts = [
         (f, exponent * factor.multiplicity, factor.is_hidden)
         for factor in factors
         for f, exponent in factor.coefficients[0].factors
-        if not factor.degree and factor.multiplicity > 0 and any(degree_in(f, i) for i in (0, *kernels))
+        if not factor.degree and factor.multiplicity > 0 and ring.used_in([f]) & moving
     ]
     if not parts:
         return PolesApart()
@@ -56,7 +55,7 @@ def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial])
     for f, exponent, is_hidden in parts:
         den = den if is_hidden else den * Factored.polynomial(ring, f) ** exponent
     hidden = tuple(HiddenFactor(f, exponent) for f, exponent, is_hidden in parts if is_hidden)
-    is_plain = not any(degree_in(f, i) for f, _, _ in parts for i in kernels)
+    is_plain = ring.used_in(f for f, _, _ in parts).isdisjoint(bound.kernels.generators)
     apart = replace(
         bound,
         ratio=1 / den,

@@ -308,10 +308,7 @@ def _ratio_at_zero(bound: BoundTransferFunction, a: fmpz_mpoly, b: fmpz_mpoly) -
     ring, kernels = bound.ratio.ring, bound.kernels.kernels
     if any(k.function != "exp" or not k.dispersion.shift.exponent_of(ring.context.gen(0)) for k in kernels):
         return None
-    images = [ring.context.gen(i) for i in range(len(ring.names))]
-    images[0] = ring.constant(0)
-    for kernel in kernels:
-        images[ring.index[kernel.generator]] = ring.constant(1)
-    above, below = (Factored.polynomial(ring, ring.compose(f, images)) for f in (a, b))
+    images = {ring.names[0]: ring.constant(0)} | {k.generator: ring.constant(1) for k in kernels}
+    above, below = (Factored.polynomial(ring, ring.replaced(f, images)) for f in (a, b))
     ratio = None if above.is_zero or below.is_zero else above / below
     return ratio.unit if ratio is not None and ratio.is_constant else None

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
-from symflex.algebra import degree_in
 from symflex.balls import ball, precision
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -280,12 +279,11 @@ def _bounded(loop: AnyLoop, limits: Limits) -> tuple[Fraction, Fraction]:
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
     """Return the factors that are polynomials in s alone, and those with kernels."""
     bound = loop.bound
-    generators = [bound.ratio.ring.index[name] for name in bound.kernels.generators]
     plain: list[GainPolynomial] = []
     mixed: list[GainPolynomial] = []
     for factor in loop.factors:
         polynomials = [f for value in factor.coefficients for f, _ in value.factors]
-        has_kernels = any(degree_in(f, i) for f in polynomials for i in generators)
+        has_kernels = not bound.ratio.ring.used_in(polynomials).isdisjoint(bound.kernels.generators)
         has_root = factor.degree > 0 and bound.sheets > 1
         (mixed if has_root or has_kernels or factor.multiplicity < 0 else plain).append(factor)
     return tuple(plain), tuple(mixed) if bound.kernels or bound.sheets > 1 else ()

@@ -187,8 +187,7 @@ class LumpedFactor:
             with precision(max(gain.bits(), bits_for_digits(digits))):
                 known = [RealConstant(str(i), partial(arb, x)) for i, x in enumerate(self._numbers(gain))]
             ring = Ring(self.ring.names[1:])
-            images = [ring.constant(0), *ring.context.gens()]
-            parts = [ring.compose(c, images) for c in self.ring.coefficients(lowest, W)]
+            parts = [ring.taken_over(c, self.ring.names) for c in self.ring.coefficients(lowest, W)]
             problem = RootProblem(((PolynomialInS(tuple(parts), ring.context, tuple(known)), 1),))
             try:
                 squares = [r for r in find_polynomial_roots(problem, digits) if r.is_real and r.re > 0]

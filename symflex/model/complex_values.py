@@ -13,7 +13,7 @@ from functools import reduce
 from operator import add
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, by_powers, terms_of
+from symflex.algebra import LAPLACE, Ring, by_powers, terms_of
 from symflex.errors import BudgetError
 from symflex.expressions import (
     Attribute,
@@ -24,7 +24,6 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
-    fold,
     format_expression,
     names,
     negative,
@@ -38,7 +37,7 @@ from symflex.expressions import (
 )
 from symflex.expressions.nodes import nodes
 from symflex.library.blocks import BLOCKS
-from symflex.model.linearity import EXPONENT_LIMIT, integer_exponent
+from symflex.model.linearity import EXPONENT_LIMIT, factored_of
 from symflex.model.model import IMAGINARY
 
 if TYPE_CHECKING:
@@ -157,22 +156,7 @@ class _ComplexNames:
         leaves = {format_expression(n): n for n in nodes(opened) if isinstance(n, kinds)}
         ring = Ring(tuple(dict.fromkeys((LAPLACE, IMAGINARY, *leaves))))
 
-        def leaf(name: str) -> Factored:
-            return Factored.generator(ring, name)
-
-        def raised(base: Factored, exponent: Expression) -> Factored:
-            whole = integer_exponent(exponent)
-            if whole is None:
-                raise TypeError
-            return base**whole
-
-        value = fold(
-            opened,
-            number=lambda n: Factored.number(ring, n),
-            name=leaf,
-            power=raised,
-            call=lambda call, _: leaf(format_expression(call)),
-        )
+        value = factored_of(opened, ring)
         above, below = (_parts(ring, x.expand()) for x in (value.numerator(), value.denominator()))
         return above, below, _Leaves(ring, leaves)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
-from symflex.algebra import FUNCTIONS, LAPLACE
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import (
     Attribute,
@@ -21,6 +22,8 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    fold,
+    format_expression,
     is_number,
     names,
     names_among,
@@ -28,8 +31,9 @@ from symflex.expressions import (
 from symflex.model.scope import IN_TIME, outside, without_point
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
+    from symflex.algebra import Ring
     from symflex.errors import Span
     from symflex.model.scope import ModelScope
 
@@ -60,6 +64,27 @@ def integer_exponent(exponent: Expression) -> int | None:
     if isinstance(exponent, Number) and exponent.value.denominator == 1:
         return int(exponent.value)
     return None
+
+
+def factored_of(
+    expression: Expression, ring: Ring, name: Callable[[str], Factored] | None = None
+) -> Factored:
+    """Return an expression as a quotient of polynomials; functions, and names by default, are generators.
+
+    Raises TypeError for a power that is no integer, KeyError for what is no generator.
+    """
+
+    def generator(name: str) -> Factored:
+        return Factored.generator(ring, name)
+
+    def raised(base: Factored, exponent: Expression) -> Factored:
+        if (whole := integer_exponent(exponent)) is None:
+            raise TypeError
+        return base**whole
+
+    number = partial(Factored.number, ring)
+    named, text = name or generator, format_expression
+    return fold(expression, number=number, name=named, power=raised, call=lambda c, _: generator(text(c)))
 
 
 def check_expression(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:

@@ -20,7 +20,7 @@ from math import log, pi, prod
 
 from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import NO_KERNELS, Factored, degree_in, terms_of
+from symflex.algebra import NO_KERNELS, Factored, terms_of
 from symflex.balls import precision
 from symflex.errors import SymflexError
 from symflex.roots.counting.winding import RootOnPathError
@@ -111,8 +111,7 @@ def _is_whole(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
     """Tell whether a factor is a polynomial in s, and not a root of it."""
     ring = bound.ratio.ring
     powers = {dict(monomial).get(0, 0) for monomial, _ in terms_of(factor)}
-    kernels = (ring.index[name] for name in bound.kernels.generators)
-    is_plain = len(powers) > 1 and not any(degree_in(factor, i) for i in kernels)
+    is_plain = len(powers) > 1 and ring.used_in([factor]).isdisjoint(bound.kernels.generators)
     return is_plain and not any(power % bound.sheets for power in powers)
 
 

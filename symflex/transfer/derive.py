@@ -318,13 +318,8 @@ class _CramerQuotients:
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that hold no kernel or wavenumber, over the ring without them."""
         ring = self._opened.plain
-        gens = ring.context.gens()
-        zero = ring.constant(0)
-        images = [gens[i] if i < len(gens) else zero for i in range(len(self._opened.ring.names))]
-        plain = value.filter(lambda f: not any(int(d) for d in f.degrees()[len(gens) :])) * value.unit
-        return plain.map_factors(
-            ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context))
-        )
+        plain = value.filter(lambda f: not any(int(d) for d in f.degrees()[len(ring.names) :])) * value.unit
+        return plain.over(ring)
 
     def _hidden(self, value: Factored, table: KernelTable = NO_KERNELS) -> tuple[HiddenFactor, ...]:
         """Return the factors that depend on s, directly or through a kernel."""
@@ -358,12 +353,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio
     # What the outer ring lacks stands in a part of the inner model that its function does not use.
-    images = [ring.generator(name) if name in ring.index else ring.constant(0) for name in inner.ring.names]
     hidden = Factored.number(inner.ring, 1)
     for factor in (f for f in tf.hidden if len(inner.ring.coefficients(f.polynomial)[0])):
         hidden = hidden * Factored.polynomial(inner.ring, factor.polynomial) ** factor.multiplicity
-    ratio, cancelled = (
-        value.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
-        for value in (inner, hidden)
-    )
-    return ratio, cancelled
+    return inner.over(ring), hidden.over(ring)

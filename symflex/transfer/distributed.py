@@ -306,14 +306,11 @@ class KernelReduction:
 
     def _conjugates(self, factor: fmpz_mpoly, law: Dispersion) -> Factored:
         """Return the product of the other polynomials that signs and order of two wavenumbers make."""
-        gens = list(self.ring.context.gens())
-        first, second = (self.ring.index[w] for w in law.wavenumbers)
-        made = [factor]
+        first, second = law.wavenumbers
+        made, gen = [factor], self.ring.generator
         result = Factored.number(self.ring, 1)
         for (one, other), x, y in product(((first, second), (second, first)), (1, -1), (1, -1)):
-            images = [*gens]
-            images[first], images[second] = x * gens[one], y * gens[other]
-            conjugate = self.ring.compose(factor, images)
+            conjugate = self.ring.replaced(factor, {first: x * gen(one), second: y * gen(other)})
             if conjugate not in made and -conjugate not in made:
                 made.append(conjugate)
                 result = result * Factored.polynomial(self.ring, conjugate)
@@ -710,7 +707,7 @@ class _Restorer:
 
     def _double(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         ring = self.source.coordinates
-        images = dict(zip(ring.names, ring.context.gens(), strict=True))
+        images = dict[str, "fmpz_mpoly"]()
         for i in self.doubled:
             angle = self.source.angles[i]
             if angle.kind == "hyperbolic":
@@ -720,4 +717,4 @@ class _Restorer:
                 t, u = (ring.generator(c) for c in angle.coordinates)
                 images[angle.coordinates[0]] = 2 * t * u
                 images[angle.coordinates[1]] = u * u - t * t
-        return polynomial.compose(*images.values(), ctx=ring.context)
+        return ring.replaced(polynomial, images)

@@ -286,10 +286,9 @@ def opened(equations: Equations, value: Factored) -> Factored:
 
 def _composed(images: Sequence[Factored], value: Factored, names: Sequence[str]) -> Factored:
     ring = value.ring
-    places = [ring.index[name] for name in names]
 
     def image(factor: fmpz_mpoly) -> Factored:
-        if not any(degree_in(factor, i) for i in places):
+        if ring.used_in([factor]).isdisjoint(names):
             return Factored.polynomial(ring, factor)
         return compose_rational(ring, factor, images)
 
@@ -298,9 +297,8 @@ def _composed(images: Sequence[Factored], value: Factored, names: Sequence[str])
 
 def varying(equations: Equations, value: Factored) -> Factored:
     """Return the factors that depend on s; exponentials are left out, for they have no zeros."""
-    places = [equations.ring.index[name] for name in (LAPLACE, *waves_of(equations))]
-    decays = exponentials(equations)
-    return value.filter(lambda f: f not in decays and any(degree_in(f, i) for i in places))
+    moving, decays = {LAPLACE, *waves_of(equations)}, exponentials(equations)
+    return value.filter(lambda f: f not in decays and bool(value.ring.used_in([f]) & moving))
 
 
 def exponentials(equations: Equations) -> list[fmpz_mpoly]:

@@ -545,28 +545,25 @@ class Tangents:
         functions |= {f"x[{g}]": slope for g, slope in along.items() if slope is not None}
         ring = Ring((*source.names, *(f"d[{name}]" for name in moving[1:]), *(f"x[{g}]" for g in along)))
 
-        def taken_over(value: Factored) -> Factored:
-            return value.map_factors(ring, lambda f: Factored.polynomial(ring, ring.taken_over(f)))
-
         def slope_of(value: Factored) -> Factored:
             total = Factored.number(ring, 0)
             for name in moving:
-                rate = taken_over(value.slope(name))
+                rate = value.slope(name).over(ring)
                 total = total + (rate if name == parameter else rate * Factored.generator(ring, f"d[{name}]"))
             return total + (0 if origin.is_zero else origin * slope_along(value))
 
         def slope_along(value: Factored) -> Factored:
-            total = taken_over(value.slope(COORDINATE))
+            total = value.slope(COORDINATE).over(ring)
             for g in along:
-                total = total + taken_over(value.slope(g)) * Factored.generator(ring, f"x[{g}]")
+                total = total + value.slope(g).over(ring) * Factored.generator(ring, f"x[{g}]")
             return total
 
         def doubled(matrix: Sequence[Sequence[Factored]]) -> tuple[tuple[Factored, ...], ...]:
-            upper = [(*map(taken_over, row), *zero) for row in matrix]
-            return (*upper, *((*map(slope_of, row), *map(taken_over, row)) for row in matrix))
+            upper = [(*(x.over(ring) for x in row), *zero) for row in matrix]
+            return (*upper, *((*map(slope_of, row), *(x.over(ring) for x in row)) for row in matrix))
 
         zero = (Factored.number(ring, 0),) * law.order
-        start = tuple(map(taken_over, law.start))
+        start = tuple(x.over(ring) for x in law.start)
         origin, tip = zero[0], law.singular
         if tip is not None:
             origin = slope_of(law.start[0])

@@ -36,7 +36,6 @@ from symflex.expressions import (
     Name,
     Negative,
     Quotient,
-    fold,
     negative,
     number,
     power,
@@ -45,7 +44,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.model.linearity import integer_exponent
+from symflex.model.linearity import factored_of
 from symflex.print.forms.arrange import ProductPrinter, Sides, length_sides
 from symflex.print.forms.naming import Naming
 from symflex.transfer import TransferFunction
@@ -104,7 +103,10 @@ class _Taper:
                 continue
             if not isinstance(function, Call) or function.name != "exp":
                 raise _NoClosedFormError
-            exponent = _factored(function.argument, self.start)
+            try:
+                exponent = factored_of(function.argument, self.start.ring)
+            except (TypeError, KeyError):
+                raise _NoClosedFormError from None
             rates[name] = exponent.slope(COORDINATE)
             if rates[name].depends_on(COORDINATE) or not _put(exponent, self.start).is_zero:
                 raise _NoClosedFormError
@@ -488,24 +490,3 @@ def _number(value: Factored) -> Fraction:
 def _put(value: Factored, place: Factored) -> Factored:
     """Return a function of x at a place."""
     return composed(value, {COORDINATE: place})
-
-
-def _factored(expression: Expression, like: Factored) -> Factored:
-    """Return an expression over the ring of a value; it holds no functions."""
-    ring = like.ring
-
-    def named(name: str) -> Factored:
-        if name not in ring.index:
-            raise _NoClosedFormError
-        return Factored.generator(ring, name)
-
-    def raised(base: Factored, exponent: Expression) -> Factored:
-        whole = integer_exponent(exponent)
-        if whole is None:
-            raise _NoClosedFormError
-        return base**whole
-
-    def called(_: Call, argument: Factored) -> Factored:
-        raise _NoClosedFormError
-
-    return fold(expression, number=lambda n: Factored.number(ring, n), name=named, power=raised, call=called)

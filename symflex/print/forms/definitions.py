@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from functools import partial
 from math import gcd
 
-from flint import fmpz_mpoly
-
-from symflex.algebra import LAPLACE, Factored, Ring, degree_in
+from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.equations.elimination import Closure
-from symflex.expressions import Expression, Name, Product, Sum, fold, names, nodes, power, product_of, sum_of
+from symflex.expressions import Expression, Name, Product, Sum, names, nodes, power, product_of, sum_of
+from symflex.model.linearity import factored_of
 from symflex.print.forms.arrange import Arranger, length, power_of_s, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
@@ -101,13 +99,7 @@ def _collected(part: Expression, arranger: Arranger) -> Expression:
     if any(n.name not in arranger.ring.index for n in names(part)):
         return part
 
-    value = fold(
-        part,
-        number=partial(Factored.number, arranger.ring),
-        name=partial(Factored.generator, arranger.ring),
-        power=lambda base, exponent: base ** powers_of(exponent)[0].numerator,
-        call=lambda _, argument: argument,
-    )
+    value = factored_of(part, arranger.ring)
     return min(part, arranger.grouped_by_s(value.expand()), key=reading) if is_divisor(value) else part
 
 
@@ -192,14 +184,8 @@ def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]
 def _rewritten(tf: TransferFunction, arranger: Arranger) -> tuple[Expression, Expression]:
     """Return the expanded form, divided by every definition that makes it shorter."""
     ring = tf.base
-    above = _embed(tf.ratio.numerator(), ring)
-    below = _embed(tf.ratio.denominator(), ring)
+    above, below = (side.over(ring).expand() for side in (tf.ratio.numerator(), tf.ratio.denominator()))
     if max(len(above), len(below)) <= REWRITE_LIMIT:
         divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
         above, below = (in_definitions(p, divisors, ring) for p in (above, below))
     return arranger.grouped_by_s(above), arranger.grouped_by_s(below)
-
-
-def _embed(value: Factored, ring: Ring) -> fmpz_mpoly:
-    expanded = value.expand()
-    return expanded.compose(*(ring.generator(n) for n in value.ring.names), ctx=ring.context)

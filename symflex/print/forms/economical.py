@@ -200,17 +200,13 @@ def added(tf: TransferFunction) -> TransferFunction:
 
 def _over(ring: Ring, table: KernelTable) -> KernelTable:
     """Return a table over a larger ring."""
-
-    def image(value: Factored) -> Factored:
-        return Factored(ring, value.unit, tuple((ring.taken_over(f), e) for f, e in value.factors))
-
-    return table.embedded([(value, image(value)) for value in table.values])
+    return table.embedded([(value, value.over(ring)) for value in table.values])
 
 
 def _put(normal: NormalForm, one: _Sum, k: int, factor: fmpz_mpoly) -> Factored:
     """Return a factor without the k-th part of a sum, which is the sum less the others."""
     ring, part = normal.ring, one.parts[k]
-    images = {name: ring.generator(name) for name in ring.names}
+    images: dict[str, fmpz_mpoly] = {}
     for even, odd, sign in (("cosh", "sinh", 1), ("cos", "sin", -1)):
         if even in part:
             x, y = (ring.generator(one.kernels[f]) for f in (even, odd))
@@ -218,7 +214,7 @@ def _put(normal: NormalForm, one: _Sum, k: int, factor: fmpz_mpoly) -> Factored:
                 c, s = ring.generator(other[even]), ring.generator(other[odd])
                 x, y = x * c - sign * (y * s), y * c - x * s
             images |= {part[even]: x, part[odd]: y}
-    return normal.reduce(factor.compose(*images.values(), ctx=ring.context))
+    return normal.reduce(ring.replaced(factor, images))
 
 
 def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:

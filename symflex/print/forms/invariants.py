@@ -69,8 +69,7 @@ class Invariants:
 
     def embed(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return a polynomial over the source as one over the ring."""
-        images = [self.ring.generator(n) for n in self.source.names]
-        return polynomial.compose(*images, ctx=self.ring.context)
+        return self.ring.taken_over(polynomial)
 
     def convert(self, value: Factored) -> Factored | None:
         """Return a quotient in Krylov-Duncan functions, ``None`` when it needs arguments half as long.
@@ -199,10 +198,7 @@ class Invariants:
         for i, d in enumerate(self.table.dispersions):
             if d.kind == "pair":
                 for k in (0, 2):
-                    value = d.characteristic[k].map_factors(
-                        self.ring, lambda f: Factored.polynomial(self.ring, self.embed(f))
-                    )
-                    images[self.ring.index[coefficient_name(i, k)]] = value
+                    images[self.ring.index[coefficient_name(i, k)]] = d.characteristic[k].over(self.ring)
         return compose_rational(self.ring, work, images).is_zero
 
     def _bending(self, work: fmpz_mpoly, number: int, dispersion: Dispersion, groups: Groups) -> Step:

@@ -62,18 +62,13 @@ class KeptDefinitions:
     @cached_property
     def _divisors(self) -> tuple[tuple[str, fmpz_mpoly, bool], ...]:
         """Definitions over :attr:`ring`, and whether they bear s."""
-        zero, divisors = self.ring.constant(0), []
-        for name, value in self.values:
-            images = (self.ring.generator(n) if n in self.ring.index else zero for n in value.ring.names)
-            divisor = value.expand().compose(*images, ctx=self.ring.context)
-            divisors.append((name, divisor, value.depends_on(LAPLACE)))
-        return tuple(divisors)
+        values = ((name, value.over(self.ring).expand(), value) for name, value in self.values)
+        return tuple((name, divisor, value.depends_on(LAPLACE)) for name, divisor, value in values)
 
     def rewrite(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return a polynomial of the form's ring in the definitions free of s that shorten it."""
         ring = self.ring
-        images = [ring.generator(n) for n in self.source.names]
-        result = polynomial.compose(*images, ctx=ring.context)
+        result = ring.taken_over(polynomial, self.source.names)
         if len(result) > REWRITE_LIMIT:
             return result
         free = [(n, d) for n, d, has_s in self._divisors if not has_s]
@@ -81,8 +76,7 @@ class KeptDefinitions:
 
     def name_of(self, polynomial: fmpz_mpoly) -> Name | None:
         """Return the definition that a polynomial of the form's ring is."""
-        images = [self.ring.generator(n) for n in self.source.names]
-        wanted = polynomial.compose(*images, ctx=self.ring.context)
+        wanted = self.ring.taken_over(polynomial, self.source.names)
         return next((Name(name) for name, divisor, _ in self._divisors if divisor == wanted), None)
 
 

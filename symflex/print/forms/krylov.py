@@ -69,16 +69,9 @@ def _krylov(tf: TransferFunction, change: Invariants, value: Factored, arranged:
     printer = arranged.printer(
         Arranger.plain(ring, symbols, (*functions, *decays), KeptDefinitions.of(tf, ring))
     )
-    sides = shortest_sides(printer, value, embedded_laws(tf, change))
+    laws = {w: one.over(change.ring) for w, one in wavenumber_laws(tf).items()}
+    sides = shortest_sides(printer, value, laws)
     return PrintedForm("krylov", *sides, reachable(sides, lines))
-
-
-def embedded_laws(tf: TransferFunction, change: Invariants) -> dict[str, Factored]:
-    """Return :func:`wavenumber_laws` over the ring of the change."""
-    return {
-        w: one.map_factors(change.ring, lambda f: Factored.polynomial(change.ring, change.embed(f)))
-        for w, one in wavenumber_laws(tf).items()
-    }
 
 
 def _families(change: Invariants, used: frozenset[str], naming: Naming) -> list[tuple[str, ...]]:

@@ -464,11 +464,10 @@ def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Fa
         if any(c.depends_on(ring.names[0]) for c in law.coefficients)
         for name in (*law.wavenumbers, *(k.generator for k in table.kernels_of(law)))
     ]
-    generators = [ring.index[name] for name in table.generators]
     bare = {str(ring.generator(k.generator)) for k in table.kernels if k.function == "exp"}
     plain, mixed = [], []
     for factor, exponent in value.factors:
-        if not any(degree_in(factor, i) for i in generators):
+        if ring.used_in([factor]).isdisjoint(table.generators):
             plain.append((factor, exponent))
         elif str(factor) not in bare and any(degree_in(factor, i) for i in varying):
             mixed.append((factor, exponent))
@@ -477,8 +476,8 @@ def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Fa
 
 def has_kernels(value: Factored, table: KernelTable) -> bool:
     """Tell whether a product has a factor with a kernel, not only powers of wavenumbers."""
-    kernels = [value.ring.index[k.generator] for k in table.kernels]
-    return any(degree_in(f, i) for f, e in value.factors if e > 0 for i in kernels)
+    used = value.ring.used_in(f for f, e in value.factors if e > 0)
+    return any(k.generator in used for k in table.kernels)
 
 
 ROOM = 1.5

@@ -21,7 +21,6 @@ from symflex.algebra import (
     Factored,
     KernelTable,
     Ring,
-    degree_in,
     square_free_factors,
     terms_of,
 )
@@ -60,12 +59,10 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     if not gone:
         return _without_inertia(bound)
     ring = bound.ratio.ring
-    images = [ring.context.gen(i) for i in range(len(ring.names))]
-    for kernel in gone:
-        images[ring.index[kernel.generator]] = ring.constant(_value(kernel))
+    images = {kernel.generator: ring.constant(_value(kernel)) for kernel in gone}
 
     def evaluated(factor: fmpz_mpoly) -> Factored:
-        return Factored.polynomial(ring, ring.compose(factor, images))
+        return Factored.polynomial(ring, ring.replaced(factor, images))
 
     num, den = (part.map_factors(ring, evaluated) for part in (bound.num, bound.den))
     if den.is_zero:
@@ -76,20 +73,12 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
         for known in bound.hidden
         for f, e in evaluated(known.polynomial).factors
     ]
-    kernels = [ring.index[generator] for generator in bound.kernels.generators]
     factors = [f for f, _ in (*num.factors, *den.factors)] + [h.polynomial for h in hidden]
-    if any(degree_in(f, i) for f in factors for i in kernels):
+    if not ring.used_in(factors).isdisjoint(bound.kernels.generators):
         return replace(bound, ratio=num / den, parts=(num, den), hidden=tuple(hidden))
     small = Ring(tuple(name for name in ring.names if name not in bound.kernels.generators))
-    places = [ring.index[name] for name in small.names]
-
-    def moved(factor: fmpz_mpoly) -> fmpz_mpoly:
-        terms = {tuple(int(m[i]) for i in places): int(c) for m, c in factor.terms()}
-        return small.context.from_dict(terms)
-
-    ratio = (num / den).map_factors(small, lambda f: Factored.polynomial(small, moved(f)))
-    known = tuple(HiddenFactor(moved(h.polynomial), h.multiplicity) for h in hidden)
-    return replace(bound, ratio=ratio, hidden=known, kernels=NO_KERNELS, parts=None)
+    known = tuple(HiddenFactor(small.taken_over(h.polynomial, ring.names), h.multiplicity) for h in hidden)
+    return replace(bound, ratio=(num / den).over(small), hidden=known, kernels=NO_KERNELS, parts=None)
 
 
 def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
@@ -129,21 +118,17 @@ def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
     most = len(values) + sum(len(by_moving(f)) for v in values for f, _ in v.factors)
     plain = tuple(name for name in ring.names if name not in table.generators)
     small = Ring((*plain, *(f"c[{i}]" for i in range(most)), *waves))
-    moved = [small.generator(n) if n in small.index else small.constant(0) for n in ring.names]
     numbers: list[Factored] = []
 
     def number(value: Factored) -> Factored:
         numbers.append(value)
         return Factored.generator(small, f"c[{len(numbers) - 1}]")
 
-    def image_of(f: fmpz_mpoly) -> Factored:
-        return Factored.polynomial(small, f.compose(*moved, ctx=small.context))
-
     def lumped(value: Factored) -> Factored:
         front, image = Factored.number(ring, 1), Factored.number(small, value.unit)
         for f, e in value.factors:
             if ring.used_in([f]).isdisjoint(gone):
-                image = image * image_of(f) ** e
+                image = image * Factored.polynomial(ring, f).over(small) ** e
                 continue
             ((first, lead), *others) = by_moving(f).items()
             total = _monomial(small, ring, first)
@@ -165,7 +150,7 @@ def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
         hidden=tuple(
             HiddenFactor(f, e) for v in known for f, e in v.factors if small.used_in([f]) & {LAPLACE, *waves}
         ),
-        kernels=delayed.embedded((v, v.map_factors(small, image_of)) for v in delayed.values),
+        kernels=delayed.embedded((v, v.over(small)) for v in delayed.values),
         parts=None,
         fixed=tuple((f"c[{i}]", partial(evaluated, value)) for i, value in enumerate(numbers)),
     )

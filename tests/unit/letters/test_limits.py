@@ -105,6 +105,7 @@ CASES = {
         "c/(1 + c)",
         "c*exp(-s*T)/(tau*s)",
     ),
+    "far apart": (SIGNALS + 'y = "u*(s + 1e-12)/(s^2 + 1e6*s)"\n[outputs]\nout = "y"', "1/(10**18*s)", "1/s"),
     "half a power": (SIGNALS + 'y = "u/(c*s + sqrt(s))"\n[outputs]\nout = "y"', "1/sqrt(s)", "1/(c*s)"),
     "thermal bar": (
         SIGNALS + 'y = "u*tanh(sqrt(tau*s))/sqrt(tau*s)"\n[outputs]\nout = "y"',
@@ -192,7 +193,11 @@ y = "w(l)"
     ("text", "reason"),
     [
         (LOSS, "loss factors hold on s = j*omega alone"),
-        (TIMOSHENKO, "its waves are no roots of one term"),
+        (TIMOSHENKO, "s -> infinity: no term in letters, its waves are no roots of one term"),
+        (
+            SIGNALS + 'y = "u*((tau - 20*T)*s + 1)/(T*tau*s^2)"\n[outputs]\nout = "y"',
+            "(tau - 20*T)/(T*tau*s) is zero for the",
+        ),
     ],
 )
 def test_a_term_that_is_not_had_is_refused_with_its_reason(text: str, reason: str) -> None:

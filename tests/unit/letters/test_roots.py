@@ -4,6 +4,7 @@ import re
 from random import Random
 
 import numpy as np
+import pytest
 import sympy
 
 from symflex import pipeline
@@ -45,6 +46,17 @@ CART = (
 )
 NECK = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="rho*c^2*S^2/V") + PUSH
 TUBE = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="2*rho*g*S") + PUSH
+LEVER = part("a", "mass", "x", m="m") + part("c", "spring", "y ground", k="k") + PUSH
+LEVER += 'elements.d = { type = "transformer", from = "x", to = "y", ratio = "r" }\n'
+ABSORBER = (
+    part("a", "mass", "x", m="M") + part("b", "mass", "y", m="m") + part("c", "spring", "x ground", k="k")
+)
+ABSORBER += part("e", "mass", "z", m="M + m") + part("f", "spring", "z ground", k="k")
+ABSORBER += 'inputs.F = { force = ["x", "z"] }\noutputs.D = "x - z"\n'
+"""Free absorber and locked one: their sum is zero where the damper between makes no difference."""
+FREE = ABSORBER + part("d", "spring", "x y", k="k_a")
+TUNED = ABSORBER + part("d", "spring", "x y", k="k*M*m/(M + m)^2")
+MIDDLE, REST = "M*k_a + m*k + m*k_a", "2*m*k*k_a*(2*M + m)"
 SIGNAL = 'inputs.u = {{}}\noutputs.y = "{}"\n'
 BOOKS = (
     # parameters, model, name, and what books print
@@ -66,6 +78,12 @@ BOOKS = (
     ("M m l g", CART, "sigma_z", "sqrt(g/l)"),
     ("rho S L c V", NECK, "omega_p", "c*sqrt(S/(V*L))"),  # Helmholtz resonance
     ("rho S L g", TUBE, "omega_p", "sqrt(2*g/L)"),  # water in a U tube
+    ("m k r", LEVER, "omega_p", "sqrt(r**2*k/m)"),  # stiffness behind a lever
+    # Den Hartog 1934: fixed points, g^4 - 2 g^2 (1 + f^2 + mu f^2)/(2 + mu) + 2 f^2/(2 + mu) = 0
+    ("M m k k_a", FREE, "omega_z1", f"sqrt(({MIDDLE} - sqrt(({MIDDLE})**2 - {REST}))/(m*(2*M + m)))"),
+    ("M m k k_a", FREE, "omega_z2", f"sqrt(({MIDDLE} + sqrt(({MIDDLE})**2 - {REST}))/(m*(2*M + m)))"),
+    ("M m k", TUNED, "omega_z1", "sqrt(k/(M + m)*(1 - sqrt(m/(2*M + m))))"),
+    ("M m k", TUNED, "omega_z2", "sqrt(k/(M + m)*(1 + sqrt(m/(2*M + m))))"),
     ("a b T", SIGNAL.format("u*(a*s + b)/(s^2*T)"), "tau_z", "a/b"),
     ("a b", SIGNAL.format("u/(a*s - b)"), "s_p", "b/a"),
 )
@@ -88,7 +106,7 @@ def test_formulas_are_those_of_books() -> None:
         said = {f.name: format_expression(f.expression) for each in found for f in each.formulas}
         letters = {n: sympy.Symbol(n, positive=True) for n in parameters.split()}
         ours, theirs = (sympy.sympify(e.replace("^", "**"), letters) for e in (said.get(name, "0"), book))
-        if sympy.simplify(ours - theirs) != 0:
+        if sympy.simplify(ours**2 - theirs**2) != 0:  # each is positive
             wrong.append((name, book, said))
     assert not wrong
 
@@ -102,6 +120,31 @@ def kind_of(polynomial: np.ndarray) -> dict[str, int]:
         "real": int((is_real & (squares.real > 0)).sum()),
         "quartet": int((~is_real).sum()) // 2,
     }
+
+
+def test_fixed_points_of_a_tuned_absorber_have_one_height_whatever_its_damper() -> None:
+    """Den Hartog 1934: sqrt(1 + 2/mu)/k, for an absorber tuned to 1/(1 + mu)."""
+    found, v = said_of("M m k", TUNED)
+    frequencies = [float(f.value.mid()) for each in found if each.kind == "zeros" for f in each.formulas]
+    spring = v["k"] * v["M"] * v["m"] / (v["M"] + v["m"]) ** 2
+    heights = []
+    for w, c in ((w, c) for w in frequencies for c in (0.01, 0.4, 3, 50)):
+        link = spring + 1j * c * w
+        heights.append(abs(1 / (v["k"] - v["M"] * w**2 - link * v["m"] * w**2 / (link - v["m"] * w**2))))
+    assert len(frequencies) == 2
+    assert heights == pytest.approx([np.sqrt(1 + 2 * v["M"] / v["m"]) / v["k"]] * 8, rel=1e-9)
+
+
+def test_quartets_of_three_masses_are_where_a_discriminant_by_hand_is_negative() -> None:
+    """Rath and Awtar 2021: a rigid-body mode and two flexible ones with residues of both signs."""
+    output = SIGNAL.format("u*(a_0/s^2 - a_1/(s^2 + w_1^2) + a_2/(s^2 + w_2^2))")
+    found, _ = said_of("w_1 w_2 a_0 a_1 a_2", output)
+    kinds = {text.partition(" if ")[0]: shown for each in found for text, _, shown in each.kinds}
+    assert {"two imaginary pairs", "two real pairs", "a quartet", "an imaginary and a real pair"} <= {*kinds}
+    left, right = (sympy.sympify(x.replace("^", "**")) for x in str(*kinds["a quartet"]).split(" > "))
+    a_0, a_1, a_2, w_1, w_2 = sympy.symbols("a_0 a_1 a_2 w_1 w_2")
+    square = (a_0 * (w_2**2 - w_1**2) - a_1 * w_2**2 - a_2 * w_1**2) ** 2
+    assert sympy.expand(left - right + square - 4 * a_1 * a_2 * w_1**2 * w_2**2) == 0
 
 
 NUMBERS = {"a": 1, "an": 1, "two": 2, "three": 3, "four": 4}
@@ -128,7 +171,7 @@ def test_kinds_of_roots_of_even_polynomials_are_those_numpy_finds() -> None:
             text.partition(" if ")[0]
             for each in found
             if each.kind == "zeros"
-            for text, holds in each.kinds
+            for text, holds, _ in each.kinds
             if holds
         ]
         held += bool(true)
@@ -150,7 +193,7 @@ def test_the_tip_of_the_bending_beam_has_real_zeros_for_a_long_overhang() -> Non
     bound = pipeline.bind(tf)
     found = roots_in_letters(tf, bound, pipeline.roots(bound))
     (real,) = (
-        text for each in found for text, holds in each.kinds if holds and text.startswith("a real pair")
+        text for each in found for text, holds, _ in each.kinds if holds and text.startswith("a real pair")
     )
     names = sympy.symbols("J c h l m_2", positive=True)
     sides = real.removeprefix("a real pair if ").replace("^", "**").split(" > ")

@@ -108,12 +108,17 @@ def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
     short, printed = shortened(tf, Fraction(3, 100))
     before, after, facts = Form(tf, print_form(tf)), Form(short, printed), printed.approximation.facts
     assert facts["terms"][0] < facts["terms"][1]
-    worst = 0.0
+    worst, decibels = 0.0, 0.0
     for _ in range(200):
         point = {name: value * (1 + spread * random.choice((-1, 1))) for name, value in VALUES.items()}
         pairs = [(before.num, after.num), (before.den, after.den)]
         shares = [coefficients(y, point) / coefficients(x, point) for x, y in pairs]
         worst = max(worst, *(float(abs(each - 1).max()) for each in shares))
+        for low, high in facts["within_1_db_over_spread_hz"]:
+            s = 2j * np.pi * np.geomspace(low, high, 50)
+            num, num_s, den, den_s = (np.polyval(coefficients(x, point), s) for each in pairs for x in each)
+            decibels = max(decibels, *np.abs(20 * np.log10(np.abs(num_s * den / (num * den_s)))))
+    assert 0 < decibels <= 1
     assert worst <= facts["coefficients"]["spread"] <= 1.5 * worst
     num, den, num_s, den_s = (coefficients(x, VALUES) for x in (before.num, before.den, after.num, after.den))
     for kind, one, other in (("poles", den, den_s), ("zeros", num, num_s)):
