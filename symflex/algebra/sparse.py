@@ -81,16 +81,14 @@ class SparsePolynomial:
     def __truediv__(self, divisor: SparsePolynomial) -> SparsePolynomial:
         """Return the exact quotient by a divisor of one term."""
         if len(divisor.parts) != 1:
-            message = "a sparse polynomial is divided by single terms only"
-            raise ValueError(message)
+            raise ValueError("a sparse polynomial is divided by single terms only")
         ((below, number),) = divisor.parts.items()
         parts: dict[Monomial, int] = {}
         for monomial, coefficient in self.parts.items():
             quotient, remainder = divmod(coefficient, number)
             reduced = _merged(monomial, below, -1)
             if remainder or any(e < 0 for _, e in reduced):
-                message = "the quotient is not a polynomial"
-                raise ValueError(message)
+                raise ValueError("the quotient is not a polynomial")
             parts[reduced] = quotient
         return SparsePolynomial(self.context, parts)
 

@@ -356,8 +356,7 @@ class Workbench:
             return quotient if a == b else self.negate(quotient)
         if b == _NUMBER:
             if y == ZERO:
-                message = "division by zero"
-                raise ZeroDivisionError(message)
+                raise ZeroDivisionError("division by zero")
             return self.multiply(self.number(1 / self.fraction(y)), x)
         key = (x << 32 | y) << 3 | _DIVIDE
         known = self._known.get(key)

@@ -338,8 +338,7 @@ def respond(
     """
     grid = real_numbers(omega, "omega")
     if grid.ndim != 1 or not np.isfinite(grid).all():
-        message = "omega must be a one-dimensional array of finite numbers"
-        raise UsageError(Diagnostic("SF902", message))
+        raise UsageError(Diagnostic("SF902", "omega must be a one-dimensional array of finite numbers"))
     settled = without_lengths_of_zero(bound) if bound.is_reduced else bound
     if settled is not bound:
         bound, roots = settled, None
@@ -540,8 +539,7 @@ def grid_about(
     """Return the grid of :func:`adaptive_grid` from roots that are known, and a function of frequencies."""
     check_band(low_hz, high_hz)
     if points < 2:  # noqa: PLR2004 (the two ends)
-        message = f"a grid has at least 2 points, not {points}"
-        raise ValueError(message)
+        raise ValueError(f"a grid has at least 2 points, not {points}")
     low, high = 2 * pi * low_hz, 2 * pi * high_hz
     step = log(high / low) / (points - 1)
     parts = [np.geomspace(low, high, points)]

@@ -252,8 +252,7 @@ class _Assembly:
     def _at_point(self, call: Call) -> LinearForm:
         """Return the value at a point along x that a call names."""
         if self.distributed is None:
-            message = "without kernels nothing has a value at a point"
-            raise TypeError(message)
+            raise TypeError("without kernels nothing has a value at a point")
         if not self.is_cut:
             return self.distributed.value(call, self.states)
         place = self.distributed.place(call)

@@ -448,8 +448,7 @@ def _line(
 ) -> tuple[Medium, Factored]:
     element = use.element
     if not isinstance(element, LineElement):
-        message = f"'{use.name}' is not a line element"
-        raise TypeError(message)
+        raise TypeError(f"'{use.name}' is not a line element")
     evaluator = evaluator.along_x()
     values = {name: evaluator.constant(e) for name, e in use.all_values}
     zero = s * 0

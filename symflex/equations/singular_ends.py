@@ -101,12 +101,10 @@ def _powers(orders: dict[tuple[int, int], int], size: int) -> tuple[int, ...]:
         before = list(powers)
         for (i, j), order in orders.items():
             if i == j and order < -1:
-                message = "this is an irregular singular point"
-                raise UnsolvedEndError(message)
+                raise UnsolvedEndError("this is an irregular singular point")
             powers[j] = max(powers[j], powers[i] - 1 - order)
         if max(powers) > POWER_LIMIT:
-            message = "this is an irregular singular point"
-            raise UnsolvedEndError(message)
+            raise UnsolvedEndError("this is an irregular singular point")
         if powers == before:
             return tuple(powers)
 
@@ -120,8 +118,7 @@ def _values(first: Sequence[Sequence[Factored]], powers: Sequence[int]) -> Matri
         exponent = first[i][i]
         if not exponent.is_constant or exponent.unit > 0:
             shown = "depends on parameters or s" if not exponent.is_constant else f"is {exponent.unit}"
-            message = f"an exponent of its solutions there {shown}"
-            raise UnsolvedEndError(message)
+            raise UnsolvedEndError(f"an exponent of its solutions there {shown}")
         form: dict[int, Factored] = {}
         for k in (k for k in size if k != i and not first[i][k].is_zero):
             for free, c in forms[k].items():

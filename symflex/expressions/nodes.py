@@ -407,8 +407,7 @@ def fold(
                 return power(value(base), exponent)
             case Call(_, argument):
                 return call(node, value(argument))
-        message = f"unexpected expression {type(node).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"unexpected expression {type(node).__name__}")
 
     return value(expression)
 

@@ -44,5 +44,4 @@ def __getattr__(name: str) -> object:
     for module, names in _HOME.items():
         if name in names.split():
             return getattr(import_module(f"symflex.figures.{module}"), name)
-    message = f"module 'symflex.figures' has no attribute '{name}'"
-    raise AttributeError(message)
+    raise AttributeError(f"module 'symflex.figures' has no attribute '{name}'")

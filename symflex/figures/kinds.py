@@ -93,8 +93,7 @@ def draw(
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
     if not bounds:
-        message = "a figure needs a transfer function"
-        raise ValueError(message)
+        raise ValueError("a figure needs a transfer function")
     for bound in bounds:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))

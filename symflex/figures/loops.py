@@ -321,11 +321,7 @@ def verdict_of_closed(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
 
 
 def _draw_about_one(
-    axes: Axes,
-    curves: list[npt.NDArray[np.complex128]],
-    labels: list[str],
-    canvas: Canvas,
-    is_loop: bool,
+    axes: Axes, curves: list[npt.NDArray[np.complex128]], labels: list[str], canvas: Canvas, is_loop: bool
 ) -> None:
     """Draw curves in the plane of their values, with the point -1 and the unit circle."""
     draw_zero_lines(axes)

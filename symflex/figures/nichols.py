@@ -37,11 +37,7 @@ def draw_loop_phase(loop: AnyLoop, canvas: Canvas) -> Figure:
 
 
 def _draw_chart(
-    axes: Axes,
-    curves: list[npt.NDArray[np.complex128]],
-    labels: list[str],
-    canvas: Canvas,
-    is_loop: bool,
+    axes: Axes, curves: list[npt.NDArray[np.complex128]], labels: list[str], canvas: Canvas, is_loop: bool
 ) -> None:
     charts = [_phases_and_levels(curve) for curve in curves]
     shown = np.concatenate(charts)

@@ -147,10 +147,7 @@ def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
 
 
 def _view(
-    marks: Sequence[RootMark],
-    high_hz: float | None,
-    ratios: tuple[float, float],
-    clouds: Sequence[RootCloud],
+    marks: Sequence[RootMark], high_hz: float | None, ratios: tuple[float, float], clouds: Sequence[RootCloud]
 ) -> View:
     """Return the part to show, wide enough for the rectangles about the roots that it shows."""
     view, corners = choose_view(marks, high_hz, ratios), set[complex]()

@@ -76,8 +76,7 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """
     for name in files:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
-            message = f"{name!r} is not the name of a file"
-            raise ValueError(message)
+            raise ValueError(f"{name!r} is not the name of a file")
     with _refusals(os.fspath(folder)):
         Path(folder).mkdir(exist_ok=True)
     for name, text in files.items():
@@ -94,8 +93,7 @@ def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
     for name in files:
         path = PurePosixPath(name)
         if path.is_absolute() or not path.parts or "\\" in name or "\0" in name or ".." in path.parts:
-            message = f"{name!r} leads out of the folder"
-            raise ValueError(message)
+            raise ValueError(f"{name!r} leads out of the folder")
     made: set[Path] = set()
     for name, content in files.items():
         target = Path(folder, *PurePosixPath(name).parts)

@@ -203,8 +203,7 @@ class _Tape:
                 return reduce(partial(self._joined, "*"), [self.register(base)] * exponent)
             case tree.Apply(function, argument):
                 return self._applied(function.removeprefix("complex_"), self.register(argument))
-        message = f"{type(node).__name__} has no enclosure in doubles"
-        raise UncertifiedError(Diagnostic("SF404", message))
+        raise UncertifiedError(Diagnostic("SF404", f"{type(node).__name__} has no enclosure in doubles"))
 
     def _applied(self, function: str, x: int) -> int:
         match function:

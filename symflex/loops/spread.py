@@ -176,11 +176,7 @@ def find_spread(function: CharacteristicFunction, box: Box, units: tuple[str, ..
 
 
 def _pushed(
-    function: CharacteristicFunction,
-    s: complex,
-    part: Box,
-    result: SpreadStability,
-    tried: set[Point],
+    function: CharacteristicFunction, s: complex, part: Box, result: SpreadStability, tried: set[Point]
 ) -> SpreadStability | None:
     """Return what is proved for the corner to which a root near s moves to the right, if it is unstable."""
     rates = reach(function, s, part)[1]

@@ -104,8 +104,7 @@ def _root(part: Fraction) -> Expression:
     """Return the cosine of a part of half a turn whose square is rational."""
     square = _square(part)
     if square is None:
-        message = f"the cosine of {part}*pi is no square root"
-        raise ValueError(message)
+        raise ValueError(f"the cosine of {part}*pi is no square root")
     is_negative = HALF < part % 2 < 3 * HALF
     # Twice the cosine is a root of 0, 1, 2, 3 or 4.
     twice = {0: number(0), 1: number(1), 4: number(2)}.get(int(4 * square), Call("sqrt", number(4 * square)))

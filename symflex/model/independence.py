@@ -112,8 +112,7 @@ class RandomPoint:
                 return {None: _random(f"{name}({at})")}
             case Derivative(name, order):
                 return {(name, 0, order): 1}
-        message = f"unexpected expression {type(expression).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"unexpected expression {type(expression).__name__}")
 
     def condition(self, equation: Equation) -> Form:
         """Return left minus right."""
@@ -181,8 +180,7 @@ def _scaled(form: Mapping[Key, int], factor: int) -> dict[Key, int]:
 
 def _inverse(value: int) -> int:
     if value % PRIME == 0:
-        message = "division by zero"
-        raise ZeroDivisionError(message)
+        raise ZeroDivisionError("division by zero")
     return pow(value, -1, PRIME)
 
 

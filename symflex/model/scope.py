@@ -207,8 +207,7 @@ def _is_load(meaning: Meaning) -> bool:
 def _ambiguous(name: str, readable: Sequence[Meaning], span: Span | None) -> Diagnostic:
     """Return the diagnostic of a name that can be read in more than one way."""
     readings = " or ".join(m.described for m in readable)
-    message = f"'{name}' can be read two ways: {readings}"
-    return Diagnostic("SF211", message, span, "rename one of them")
+    return Diagnostic("SF211", f"'{name}' can be read two ways: {readings}", span, "rename one of them")
 
 
 def _varying(written: str, meaning: Meaning, span: Span | None) -> Diagnostic:

@@ -134,8 +134,7 @@ class _Reader:
             if not pending:
                 break
         if is_derived and not is_printed:
-            message = "it has no value where the function has one"
-            raise _DiffersError(message)
+            raise _DiffersError("it has no value where the function has one")
         return agreed
 
     def _pairs(self, bits: int, chosen: Sequence[int]) -> list[tuple[acb, acb]]:
@@ -180,8 +179,7 @@ class _Reader:
         roots += [e for _, e in form.closed]
         order, circle = lines_in_order(roots, joined)
         if circle:
-            message = f"names are defined in a circle: {' -> '.join(circle)}"
-            raise _DiffersError(message)
+            raise _DiffersError(f"names are defined in a circle: {' -> '.join(circle)}")
         return {name: lines[name] for name in order}
 
     @staticmethod
@@ -248,8 +246,7 @@ class _Points:
 
         def named(name: str) -> list[acb]:
             if name not in values:
-                message = f"nothing says what {name} is"
-                raise _DiffersError(message)
+                raise _DiffersError(f"nothing says what {name} is")
             return values[name]
 
         return principal_values(expression, len(self._chosen), named, self._call, self._number)
@@ -271,8 +268,7 @@ class _Points:
             return [at_centre(solutions[call.order]) for solutions in self._functions[key]]
         if call.name in self._reader.entries:
             return self._entry(call.name, argument)
-        message = f"nothing says what {call.name} is a function of"
-        raise _DiffersError(message)
+        raise _DiffersError(f"nothing says what {call.name} is a function of")
 
     def _solutions(self, name: str, argument: list[acb]) -> list[tuple[Value, ...]]:
         """Return a function of x and its derivatives, as its differential equation says."""
@@ -300,8 +296,7 @@ class _Points:
             if all(x.overlaps(y) for x, y in zip(place, right, strict=True)):
                 own = Factored.generator(tf.ratio.ring, kernel.generator)
                 return probes.values_of(own, self._bits, self._chosen)
-        message = f"{name} is taken where nothing ends"
-        raise _DiffersError(message)
+        raise _DiffersError(f"{name} is taken where nothing ends")
 
     def check_laws(self) -> None:
         """Compare the lines of laws that vary along x with these, and what is said of their solutions."""
@@ -351,8 +346,7 @@ def _as_read(form: PrintedForm) -> PrintedForm:
         except SpecError as error:
             if error.diagnostics[0].code == "SF103":
                 return expression
-            message = f"its text cannot be read, {error.diagnostics[0].message}"
-            raise _DiffersError(message) from None
+            raise _DiffersError(f"its text cannot be read, {error.diagnostics[0].message}") from None
 
     return replace(
         form,

@@ -327,8 +327,7 @@ class _Evaluator:
 
     def raise_number(self, base: Constant, exponent: Constant) -> Constant:
         if exponent.pi_power or exponent.magnitude.denominator != 1:
-            message = "the exponent is not an integer"
-            raise RejectedError("SF202", message, exponent.start, exponent.end)
+            raise RejectedError("SF202", "the exponent is not an integer", exponent.start, exponent.end)
         power = exponent.magnitude.numerator
         if abs(power) > MAXIMUM_NUMBER_POWER:
             message = f"an exponent beyond {MAXIMUM_NUMBER_POWER}"

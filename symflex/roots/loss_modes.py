@@ -44,10 +44,7 @@ UNJUDGED: Final = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0
 
 
 def locate_lossy(
-    bound: BoundTransferFunction,
-    region: Region,
-    digits: int,
-    locate: Callable[..., PoleZeroMap],
+    bound: BoundTransferFunction, region: Region, digits: int, locate: Callable[..., PoleZeroMap]
 ) -> PoleZeroMap:
     """Find poles and zeros of a function that contains j; see the module.
 

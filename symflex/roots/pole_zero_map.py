@@ -68,8 +68,7 @@ class StabilityVerdict:
 
     def __post_init__(self) -> None:
         if not self.reason and (not self.certified or self.right is None):
-            message = "what is not proved needs a reason"
-            raise ValueError(message)
+            raise ValueError("what is not proved needs a reason")
 
     @property
     def sentence(self) -> str:

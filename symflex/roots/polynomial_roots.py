@@ -39,8 +39,7 @@ def find_polynomial_roots(
     [('-3.0000', '4.0000'), ('-3.0000', '-4.0000')]
     """
     if digits < 1:
-        message = f"digits must be at least 1, not {digits}"
-        raise ValueError(message)
+        raise ValueError(f"digits must be at least 1, not {digits}")
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
     return _PolynomialSearch(problem, digits, proposers).run()

@@ -53,8 +53,7 @@ class PolynomialInS:
 
     def __post_init__(self) -> None:
         if len(self.constants) != self.context.nvars():
-            message = f"{self.context.nvars()} generators but {len(self.constants)} constants"
-            raise ValueError(message)
+            raise ValueError(f"{self.context.nvars()} generators but {len(self.constants)} constants")
         length = max((i for i, c in enumerate(self.coefficients, 1) if not c.is_zero()), default=0)
         if length == 0:
             raise ModelError(Diagnostic("SF403", "the polynomial is zero: every s is a root of it"))
@@ -85,8 +84,7 @@ class PolynomialInS:
     def integers(self) -> tuple[int, ...]:
         """Return the ascending coefficients of a polynomial without constants."""
         if self.constants:
-            message = "the coefficients contain constants"
-            raise ValueError(message)
+            raise ValueError("the coefficients contain constants")
         return tuple(int(c.to_dict().get((), 0)) for c in self.coefficients)
 
     def enclosure(self) -> arb_poly:
@@ -123,8 +121,7 @@ class RootProblem:
 
     def __post_init__(self) -> None:
         if any(exponent < 1 for _, exponent in self.factors):
-            message = "exponents of factors are positive"
-            raise ValueError(message)
+            raise ValueError("exponents of factors are positive")
 
     @classmethod
     def from_rationals(cls, coefficients: Sequence[Fraction | int]) -> RootProblem:

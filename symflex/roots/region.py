@@ -86,8 +86,7 @@ class Rectangle:
 
     def __post_init__(self) -> None:
         if self.re_low > self.re_high or self.im_low > self.im_high:
-            message = "a rectangle needs RE0 <= RE1, IM0 <= IM1"
-            raise ValueError(message)
+            raise ValueError("a rectangle needs RE0 <= RE1, IM0 <= IM1")
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root."""
@@ -125,8 +124,7 @@ class Modes:
 
     def __post_init__(self) -> None:
         if self.count < 0:
-            message = f"the number of modes cannot be {self.count}"
-            raise ValueError(message)
+            raise ValueError(f"the number of modes cannot be {self.count}")
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root; the roots are in order of natural frequency."""
@@ -145,8 +143,7 @@ class Mode:
 
     def __post_init__(self) -> None:
         if self.number < 1:
-            message = f"modes are numbered from 1, not {self.number}"
-            raise ValueError(message)
+            raise ValueError(f"modes are numbered from 1, not {self.number}")
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root; the roots are in order of natural frequency."""

@@ -248,8 +248,7 @@ class Rounding:
                     low, high = float(quotient.lower()), float(quotient.upper())
                     if low == high:
                         return low
-        message = f"it could not be decided whether {what} is zero"
-        raise UncertifiedError(Diagnostic("SF401", message))
+        raise UncertifiedError(Diagnostic("SF401", f"it could not be decided whether {what} is zero"))
 
     def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:
         balls = self._balls.setdefault(bits, {})

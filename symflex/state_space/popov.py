@@ -198,8 +198,7 @@ class FieldElement:
     def of(num: fmpz_mpoly, den: fmpz_mpoly, radicals: Radicals | None = None) -> FieldElement:
         """Return a quotient in lowest terms; ZeroDivisionError when the denominator is zero."""
         if den.is_zero():
-            message = "division by zero"
-            raise ZeroDivisionError(message)
+            raise ZeroDivisionError("division by zero")
         if radicals:
             num, den = radicals.fraction(num, den)
         common = num.gcd(den)

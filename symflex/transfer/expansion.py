@@ -81,8 +81,7 @@ class Expansion:
         used = [images[i] for i, d in enumerate(degrees) if int(d)]
         known = [image for image in used if image is not None]
         if len(known) != len(used):
-            message = "a definition uses one that is not resolved yet"
-            raise ModelError(Diagnostic("SF215", message))
+            raise ModelError(Diagnostic("SF215", "a definition uses one that is not resolved yet"))
         if len(factor) == 1:
             return known[0]
         return compose_rational(self.ring, factor, images, self.most)

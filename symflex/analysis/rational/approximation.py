@@ -508,8 +508,7 @@ def _validity(approximation: RationalApproximation) -> list[str]:
 def _decimal(number: mpmath.mpf, digits: int = DIGITS) -> str:
     if number == 0:
         return "0"
-    text = str(mpmath.nstr(number, digits, min_fixed=-4, max_fixed=digits))
-    return text.removesuffix(".0")
+    return str(mpmath.nstr(number, digits, min_fixed=-4, max_fixed=digits)).removesuffix(".0")
 
 
 def _counted(title: str, roots: Sequence[mpmath.mpc]) -> str:

@@ -55,8 +55,7 @@ class NetworkSides:
             yield
         except (EssentialSingularityError, UndecidedError) as error:
             message = f"the determinants of {self.bound.name} are not known as far out as its poles"
-            hint = "ask for fewer modes"
-            raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
+            raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes")) from error
 
     def taylor(self, digits: int) -> tuple[Taylor, Taylor]:
         """Return the Taylor coefficients of numerator and denominator at points of the disc.

@@ -105,8 +105,7 @@ class EnclosedQuotient:
         """Return a function without kernels, with balls of so many bits."""
         enclosed = bound.enclosed(bits)
         if not isinstance(enclosed, EnclosedTransferFunction):
-            message = f"{bound.name} is not rational"
-            raise TypeError(message)
+            raise TypeError(f"{bound.name} is not rational")
         above = tuple((f, e) for f, e in enclosed.factors if e > 0)
         return cls(above, tuple((f, -e) for f, e in enclosed.factors if e < 0), enclosed.unit)
 

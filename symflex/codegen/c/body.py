@@ -184,8 +184,7 @@ def _power(base: Term, exponent: int) -> Term:
             result = product(result, base)
         return result
     if exponent <= FEW and base.binding == _LEAF and not base.depth:
-        text = " * ".join([base.text] * exponent)
-        return Term(text, Kind.REAL, base.varies, _PRODUCT)
+        return Term(" * ".join([base.text] * exponent), Kind.REAL, base.varies, _PRODUCT)
     return _call("pow", Kind.REAL, base, Term(f"{exponent}.0", Kind.REAL))
 
 

@@ -42,8 +42,7 @@ def c_files(contents: Contents) -> Export:
     name = None if contents.is_alone else contents.stem
     if name is not None and not _FILE_NAME.fullmatch(name):
         message = f"'{inert(name)[:64]}' cannot be the name of a C header"
-        hint = "use only ASCII letters, digits and _ . + -"
-        raise UsageError(Diagnostic("SF902", message, None, hint))
+        raise UsageError(Diagnostic("SF902", message, None, "use only ASCII letters, digits and _ . + -"))
     return _Files(contents, name).made()
 
 

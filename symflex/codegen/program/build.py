@@ -84,8 +84,7 @@ def forge_of(model: Model) -> Forge:
         return Forge()
     if root.order & (root.order - 1):
         message = f"code for powers of s with the denominator {root.order} is not available yet"
-        hint = "that for halves, quarters and eighths is"
-        raise ModelError(Diagnostic("SF910", message, None, hint))
+        raise ModelError(Diagnostic("SF910", message, None, "that for halves, quarters and eighths is"))
 
     def made(forge: Forge, s: int) -> int:
         slope, shift = (constant_of(forge, model, x) for x in (root.slope, root.shift))

@@ -313,10 +313,7 @@ def _program(tf: TransferFunction, form: str) -> Piecewise | None:
 
 
 def sample_frequencies(
-    bound: AnyBoundFunction,
-    band_hz: tuple[Fraction, Fraction],
-    samples: int,
-    pieces: Pieces | None = None,
+    bound: AnyBoundFunction, band_hz: tuple[Fraction, Fraction], samples: int, pieces: Pieces | None = None
 ) -> NDArray[np.float64]:
     """Return frequencies [Hz] over a band, denser around those of poles and zeros.
 

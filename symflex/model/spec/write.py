@@ -100,8 +100,7 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
         return _value(value.tolist(), path, depth)
     if not isinstance(value, Mapping | list | tuple):
         message = f"a value of type '{type(value).__name__}' cannot be written into a specification"
-        hint = "use text, numbers, booleans, lists and mappings"
-        raise _refused("SF104", path, message, hint)
+        raise _refused("SF104", path, message, "use text, numbers, booleans, lists and mappings")
     if depth >= MAX_NESTING:
         raise _refused("SF103", path[:3], f"brackets nested deeper than {MAX_NESTING}", FLATTER)
     if isinstance(value, Mapping):

@@ -98,14 +98,7 @@ def local_series(function: Entire, centre: acb, reach: arb, bits: int, points: i
 
 
 def sampled_series(
-    function: Entire,
-    centre: acb,
-    reach: arb,
-    bound: arb,
-    bits: int,
-    points: int,
-    terms: int,
-    shrunk: float,
+    function: Entire, centre: acb, reach: arb, bound: arb, bits: int, points: int, terms: int, shrunk: float
 ) -> LocalSeries | None:
     """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
 

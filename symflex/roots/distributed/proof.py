@@ -255,8 +255,7 @@ def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float
             if is_even or not nearest:
                 return inner, outer, 0.0, pi
             return inner, outer, min(map(phase, corners)), max(map(phase, corners))
-    message = f"no search for {type(region).__name__}"
-    raise TypeError(message)
+    raise TypeError(f"no search for {type(region).__name__}")
 
 
 def _log(size: float) -> float:

@@ -96,8 +96,7 @@ class Side:
             self._attempts = ((e, search) for e in self._engines for search in SEARCHES[e](self._sought))
             self._next_search()
             if self.is_finite:
-                message = f"not for the engine {', '.join(self._engines)}"
-                raise TypeError(message)
+                raise TypeError(f"not for the engine {', '.join(self._engines)}")
         self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
         self._most: tuple[str, RootSearch | LosslessSearch | None, list[Root]]

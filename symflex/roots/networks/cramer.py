@@ -197,8 +197,7 @@ def is_zero(equations: Equations, output: str, source: str) -> bool:
 def _denominator(form: LinearForm) -> Factored:
     """Return the least common denominator in s of a form's coefficients."""
     if not form.terms:
-        message = "an empty form"
-        raise ValueError(message)
+        raise ValueError("an empty form")
     one = form.coefficients[0] ** 0
     s = one.ring.index[LAPLACE]
     parts = (

@@ -51,13 +51,7 @@ class DiscSeries:
 
     @staticmethod
     def of(
-        values: Sequence[acb],
-        radius: arb,
-        log_bound: float,
-        ratio: float,
-        bits: int,
-        *,
-        is_real: bool = True,
+        values: Sequence[acb], radius: arb, log_bound: float, ratio: float, bits: int, *, is_real: bool = True
     ) -> DiscSeries:
         """Return the series from values at ``radius*exp(2 pi j k/n)``.
 

@@ -207,8 +207,7 @@ class _NetworkSearch:
                 ends = abs(float(im_low)), abs(float(im_high))
                 nearest = 0.0 if im_low <= 0 <= im_high else min(ends)
                 return nearest * (1 - WIDER), max(ends) * (1 + WIDER)
-        message = f"no limits of {type(self.region).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"no limits of {type(self.region).__name__}")
 
     def _find(self, first: int, last: int | None, limits: tuple[float, float] | None) -> None:
         entered_budget().progress.report(0.0, "counting poles")

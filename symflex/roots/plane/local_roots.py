@@ -215,14 +215,7 @@ BRANCH_BITS = 128  # precision of the test whether wavenumbers have branches
 
 
 def prove_together(
-    function: Entire,
-    s: acb,
-    within: arb,
-    digits: int,
-    count: int,
-    *,
-    even: bool,
-    is_close: bool = False,
+    function: Entire, s: acb, within: arb, digits: int, count: int, *, even: bool, is_close: bool = False
 ) -> Root | None:
     """Return roots next to a point as one, in a disc that contains so many; ``None`` where none is proved.
 
