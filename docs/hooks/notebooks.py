@@ -13,7 +13,7 @@ import re
 import sys
 from base64 import b64encode
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from mkdocs.structure.files import File, Files
 
@@ -42,7 +42,7 @@ def on_page_content(content: str, **_: object) -> str:
     return PLACE.sub(lambda match: OUTPUTS[match[1]], content)
 
 
-def page_of(stem: str, cells: list[dict[str, list[str]]]) -> str:
+def page_of(stem: str, cells: list[dict[str, Any]]) -> str:
     """Return a notebook in Markdown, with a place for every output."""
     values: dict[str, object] = {"__name__": "__main__"}
     parts = []

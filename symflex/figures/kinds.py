@@ -70,19 +70,17 @@ def draw(
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
-    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions with numbers. Without ``band_hz`` [Hz]
-    a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a pole-zero plot
-    focuses on the resonances that belong together and marks the rest at its border, and with it shows those
-    up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of limits that
-    suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is 3.5 inches
-    wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the same
-    ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style, with
-    as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. With ``spread`` a
-    pole-zero plot shades where roots may lie, of functions that were derived with numbers as the ``model``
-    says. Raises UsageError:
-    SF208 an unknown kind; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and
-    1000 mm or too small for what is drawn, ``ax`` are too many or too few, or limits are of axes that the
-    figure has not; ModelError: SF402 a transfer function is identically zero.
+    ``kind`` is a key of :data:`FIGURES`. Without ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or
+    else one that shows all poles and zeros; a pole-zero plot shows resonances up to a hundred times the
+    lowest, and with it those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes
+    the place of limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The
+    figure is 3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be
+    told the same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the
+    user's style, with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes.
+    With ``spread`` a pole-zero plot shades where roots may lie, of functions that were derived with numbers
+    as the ``model`` says. Raises UsageError: SF208 an unknown kind or font; SF227 an empty band; SF902 the
+    width is not between 80 and 1000 mm or too small, ``ax`` are too many or too few, or limits are of axes
+    that the figure has not; ModelError: SF402 a transfer function is identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import cycle, pairwise
 from math import pi
@@ -113,14 +113,14 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     stages = _stages(locus)
     name = label_of_name(locus.gain)
     # What each gain makes of stability, then what no gain moves and nothing sees.
-    verdicts = [stage.found.verdict for stage in stages]
+    verdicts = [located.verdict for *_, located, _ in stages]
     heads = [replace(verdict, hidden="").headline for verdict in verdicts]
-    said = [f"${name} = {stage.gain}$, {head}" for stage, head in zip(stages, heads, strict=True)]
+    said = [f"${name} = {gain}$, {head}" for (_, gain, *_), head in zip(stages, heads, strict=True)]
     said += dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden)
     said = said if canvas.frame.has_verdict else []
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + 1))
     marks = [
-        *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
+        *(RootMark(kind, s) for kind, _, _, points in stages for s in points),
         *(RootMark("zero", point_of(root)) for root in locus.start.zeros),
     ]
     crossings = {
@@ -135,7 +135,7 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     seen = float(np.max(np.abs([view.re, view.im])))
     axes.axvspan(0, max(view.re[1], 0.0), color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
     draw_zero_lines(axes)
-    labels: dict[Kind, str] = {stage.kind: f"poles, ${name} = {stage.gain}$" for stage in stages}
+    labels: dict[Kind, str] = {kind: f"poles, ${name} = {gain}$" for kind, gain, *_ in stages}
     for kind, label in {**labels, ZERO: "zeros"}.items():
         points = [mark.s for mark in marks if mark.kind == kind]
         inside = [s for s in points if _is_seen(axes, s)]
@@ -179,14 +179,7 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     return figure
 
 
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """The poles at one value of the gain."""
-
-    kind: Kind
-    gain: str  # in matplotlib's mathematics
-    found: PoleZeroMap
-    points: tuple[complex, ...]  # [rad/s]
+Stage = tuple[Kind, str, "PoleZeroMap", list[complex]]  # a value of the gain, in mathematics, and its poles
 
 
 def _stages(locus: RootLocus) -> list[Stage]:
@@ -196,7 +189,7 @@ def _stages(locus: RootLocus) -> list[Stage]:
     proved += [("nominal", *locus.nominal)] if locus.nominal else []
     stages = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
     stages.append(("last", high, locus.end, list(locus.ends)))
-    return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in stages]
+    return [(kind, number_label(float(gain)), located, points) for kind, gain, located, points in stages]
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas, crossing: float) -> View:
@@ -251,7 +244,8 @@ Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
 """Values along the imaginary axis, and what is known of the poles."""
 WIDENED: Final = 10.0  # how far beyond the band of poles and zeros the curve is drawn, to both sides
 REACHES: Final = (1.5, 2.5)  # half the side of the square shown of a loop gain, about -1
-AT_REST: Final = 1e-3  # share of its lowest frequency at which a curve from 0 is taken to begin
+AT_REST: Final = 1e-3  # share of its lowest frequency at which a curve is as good as at 0
+PEAKED: Final = 3.0  # a curve is shown up to so many times the value that a tenth of it exceeds
 OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale each
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
@@ -361,19 +355,6 @@ def _columns(labels: Sequence[str], width: float) -> int:
     return max(1, min(len(labels), 3, fitting))
 
 
-def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]:
-    """Return values of a rational function beyond a frequency [Hz], until they have almost reached their end.
-
-    There it falls, or rises, as a power of s: that is drawn until it has fallen to a hundredth.
-    """
-    last = abs(bound(2j * pi * high))
-    frequency = high
-    while frequency < 1e4 * high and abs(bound(2j * pi * frequency)) > 0.01 * last:
-        frequency *= 10.0
-    steps = np.geomspace(high, frequency, 60)[1:] if frequency > high else np.array([])  # nearly straight
-    return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
-
-
 def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
     band, judged = canvas.band_of(bound.source.model), None
@@ -385,10 +366,9 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     located = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)
     if canvas.band_hz is None and not any(root.is_zero for root in located.poles):
         low *= AT_REST
+    high /= AT_REST if canvas.band_hz is None and bound.is_rational else 1.0
     response = respond(bound, adaptive_grid(bound, low, high, roots=located), located)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
-    if canvas.band_hz is None and bound.is_rational:
-        values = np.concatenate((values, _onwards(bound, high)))
     return values[np.isfinite(values)], located.verdict
 
 
@@ -406,11 +386,11 @@ def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
-    """Return half the side of a square that shows -1, and 90 % of a curve that is not a loop gain."""
+    """Return half the side of a square that shows -1, or a curve but for what most of it is far below."""
     largest = float(np.max(np.abs(values))) if values.size else 1.0
     if is_loop:
         return min(max(1.1 * largest, REACHES[0]), REACHES[1])
-    return 1.1 * float(np.quantile(np.abs(values), 0.9)) or 1.0
+    return 1.1 * min(largest, PEAKED * float(np.quantile(np.abs(values), 0.9))) or 1.0
 
 
 def point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str, least: float = 0.0) -> None:

@@ -12,24 +12,9 @@ from matplotlib.figure import Figure
 
 from symflex.analysis.response import default_band, grid_about
 from symflex.errors import UncertifiedError
-from symflex.figures.axes import (
-    Canvas,
-    add_legend_above,
-    root_figure,
-    set_frequency_axis,
-    set_magnitude_ticks,
-    write_title,
-)
+from symflex.figures.axes import Canvas, add_legend_above, root_figure, set_frequency_axis, write_title
 from symflex.figures.loops import verdict_of_closed
-from symflex.figures.style import (
-    COLOURS,
-    COLUMN_INCHES,
-    DASHES,
-    LINE_INCHES,
-    QUIET,
-    number_label,
-    title_lines,
-)
+from symflex.figures.style import COLOURS, COLUMN_INCHES, LINE_INCHES, QUIET, number_label, title_lines
 from symflex.loops import AnyLoop, Loop, NetworkLoop, closed_loop_roots, loop_gain, nominal_gain
 from symflex.loops.locus import is_straight
 from symflex.loops.peak import loop_peaks
@@ -69,10 +54,9 @@ def draw_sensitivity(loop: AnyLoop, canvas: Canvas) -> Figure:
             label += f", $M_{name} = {number_label(size)}$"
             axes.plot(peaks[i].frequency_hz, 20 * log10(size), "o", color=COLOURS[i], markersize=3, zorder=3)
         levels = 20 * np.log10(np.maximum(np.abs(curve), 1e-30))
-        axes.plot(frequency, levels, color=COLOURS[i], linestyle=DASHES[i], label=label, zorder=2)
+        axes.plot(frequency, levels, color=COLOURS[i], linestyle=("-", "--")[i], label=label, zorder=2)
     low, high = axes.get_ylim()
     axes.set_ylim(*(canvas.frame.y or (max(low, -LOWEST_DB), high)))
-    set_magnitude_ticks(axes)
     set_frequency_axis(axes, *(canvas.frame.x or (float(frequency[0]), float(frequency[-1]))))
     axes.grid(visible=True)
     axes.set_ylabel("Magnitude [dB]")
