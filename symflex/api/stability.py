@@ -120,18 +120,18 @@ class Stability(Printed):
 
     @property
     def bandwidth_hz(self) -> float:
-        """The bandwidth with a gain margin of 6 dB: where the loop gain first falls below one.
+        """The gain crossover with a gain margin of 6 dB: where the loop gain first falls below one.
 
         It is infinite if every gain is stable. It is ``nan`` if no gain next to 0 is stable, if the loop
         gain is below one at the lowest frequencies or never, or if the loop is closed in several places. If
-        the stable gains end with the range examined, it is the bandwidth at half of the largest one.
+        the stable gains end with the range examined, it is the crossover at half of the largest one.
         """
-        bandwidth = self.proved.bandwidth
-        if bandwidth is not None and bandwidth.gain is None:
+        crossover = self.proved.crossover
+        if crossover is not None and crossover.gain is None:
             return float("inf")
-        if bandwidth is None or bandwidth.frequency is None:
+        if crossover is None or crossover.frequency is None:
             return float("nan")
-        return float(hertz(bandwidth.frequency).mid())
+        return float(hertz(crossover.frequency).mid())
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.stability/1``."""

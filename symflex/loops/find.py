@@ -1,9 +1,9 @@
-"""The stable gains of a loop: crossings from all factors, counts between them, margins, and the bandwidth.
+"""The stable gains of a loop: crossings from all factors, counts between them, margins, and the crossover.
 
-Definition of the bandwidth that a loop allows: the gain is raised from 0 up to half of the one at which the
-loop first becomes unstable, so that a gain margin of 6 dB is left (Franklin, Powell & Emami-Naeini, Feedback
-Control of Dynamic Systems, 2010, section 6.4). It is the frequency at which the loop gain then first falls
-below one.
+Definition of the gain crossover that a loop allows: the gain is raised from 0 up to half of the one at which
+the loop first becomes unstable, so that a gain margin of 6 dB is left (Franklin, Powell & Emami-Naeini,
+Feedback Control of Dynamic Systems, 2010, section 6.4). It is the frequency at which the loop gain then first
+falls below one.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from symflex.loops.loop_function import LoopFunction
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
-    AllowedBandwidth,
+    AllowedCrossover,
     Boundary,
     Crossing,
     GainInterval,
@@ -137,7 +137,7 @@ def find_stable_gains(
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
     loop_gain = None if root else _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
-    bandwidth = beyond = None
+    crossover = beyond = None
     if loop_gain is not None:
         interval = stability.nominal_interval
         if nominal and interval is not None and interval.poles.is_stable:
@@ -145,16 +145,16 @@ def find_stable_gains(
         if end is not None:
             phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
         if loop_gain.value is None:
-            bandwidth = allowed_bandwidth(intervals, high, loop_gain)
+            crossover = allowed_crossover(intervals, high, loop_gain)
         if is_complete and along is not None and along.is_endless and along.energy.is_passive:
             beyond = along.energy.least_phase_margin(along.radius[0])
-            if not _holds_smallest(phase_margins, bandwidth, beyond):
+            if not _holds_smallest(phase_margins, crossover, beyond):
                 reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
     return replace(
         stability,
         gain_margins=gain_margins(stability),
         phase_margins=phase_margins,
-        bandwidth=bandwidth,
+        crossover=crossover,
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*open_ends, *reasons))),
     )
@@ -217,11 +217,11 @@ def _verdict_at(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
 
 
 def _holds_smallest(
-    phase_margins: Sequence[PhaseMargin], bandwidth: AllowedBandwidth | None, beyond: float
+    phase_margins: Sequence[PhaseMargin], crossover: AllowedCrossover | None, beyond: float
 ) -> bool:
     """Tell whether the smallest phase margins were found, as others are not below an angle [rad]."""
     known = [[abs(margin.angle) for margin in phase_margins]] if phase_margins else []
-    known += [] if bandwidth is None or bandwidth.phase_margin is None else [[abs(bandwidth.phase_margin)]]
+    known += [] if crossover is None or crossover.phase_margin is None else [[abs(crossover.phase_margin)]]
     # A damper on an undamped structure has 90 degrees at every crossover.
     return all(any(float(angle.lower()) <= beyond for angle in angles) for angles in known)
 
@@ -544,10 +544,10 @@ MARGIN: Final = 2
 """Of the gain: 6 dB."""
 
 
-def allowed_bandwidth(
+def allowed_crossover(
     intervals: Sequence[GainInterval], limit: Fraction | None, loop_gain: LoopGain
-) -> AllowedBandwidth | None:
-    """Return the bandwidth that the stable gains next to 0 allow, ``None`` when there are none.
+) -> AllowedCrossover | None:
+    """Return the crossover that the stable gains next to 0 allow, ``None`` when there are none.
 
     Intervals ascend, and negative gains may be among them; gains were examined up to ``limit``, None for all.
     ``loop_gain`` is that of a loop closed once.
@@ -557,7 +557,7 @@ def allowed_bandwidth(
     if begin is None or not begin.poles.is_stable:
         return None
     if begin.high is None:
-        return AllowedBandwidth(None, None, None, is_limited=False)
+        return AllowedCrossover(None, None, None, is_limited=False)
     is_limited = begin is not intervals[-1]
     end = Fraction(float(begin.high.mid())) if is_limited or limit is None else limit
     gain = end / MARGIN
@@ -565,8 +565,8 @@ def allowed_bandwidth(
     with precision(BITS):
         before = _ratio(loop_gain.function, margins[0].frequency.mid() / 2 if margins else arb(1), BITS)
         if not abs(before) * abs(ball(gain)) > 1:
-            return AllowedBandwidth(gain, None, None, is_limited)
+            return AllowedCrossover(gain, None, None, is_limited)
     if not margins:
         return None  # it never falls below one
     worst = min(margins, key=lambda margin: abs(float(margin.angle.mid())))
-    return AllowedBandwidth(gain, margins[0].frequency, worst.angle, is_limited)
+    return AllowedCrossover(gain, margins[0].frequency, worst.angle, is_limited)

@@ -21,7 +21,7 @@ from symflex.algebra import NO_KERNELS, Factored, degree_in
 from symflex.balls import UndecidedError, ball, bits_for_digits, precision, settled
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
-from symflex.loops.axis import FIRST_RATIO, joined, pieces
+from symflex.loops.axis import FIRST_RATIO, find_on_axis, joined, pieces
 from symflex.loops.loop_function import LoopFunction
 from symflex.options import band_ends
 from symflex.print.notebook import Printed
@@ -52,6 +52,9 @@ SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
 """Relative widths at which a pole is looked for, and a search given up, as with so many pieces."""
 BELOW, SAME, FURTHER = 1e9, 1e-7, 60
 """The highest frequency over the first if 0 stays open; distance of places shown as one; steps far out."""
+
+STEP, BAND_DIGITS = 2.0625, 12
+"""Ratio of the ends of a search for a bandwidth, which fall on no round number; digits of it."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,7 @@ class LoopPeaks:
     sensitivity: Peak
     complementary_sensitivity: Peak
     balanced: Peak
+    bandwidth: arb | None  # where abs(T) is first 3 dB below its value at 0 [rad/s]; None if not proved
 
     @property
     def disk(self) -> dict[str, arb]:
@@ -140,7 +144,11 @@ class LoopPeaks:
     def to_json_dict(self) -> dict[str, object]:
         """Return the peaks as a part of ``symflex.stability/1``."""
         margin = {name: real_json(value, self.balanced.digits) for name, value in self.disk.items()}
-        return {f.name: getattr(self, f.name).to_json_dict() for f in fields(self)} | {"disk_margin": margin}
+        peaks = (f.name for f in fields(self) if f.name != "bandwidth")
+        omega = self.bandwidth
+        width = omega and {"omega": real_json(omega, 12), "frequency_hz": float(hertz(omega).mid())}
+        found: dict[str, object] = {name: getattr(self, name).to_json_dict() for name in peaks}
+        return found | {"disk_margin": margin, "bandwidth": width}
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
@@ -149,17 +157,45 @@ class LoopPeaks:
         peaks = (self.sensitivity, self.complementary_sensitivity)
         rows = [(f"largest |{x.tf}|", figure(x.magnitude, 6), x.place) for x in peaks]
         rows.append(("disk margin", alpha, self.balanced.place))
-        return [*rows, ("  allows", f"x {least} to {most}", f"or {phase} deg")]
+        rows.append(("  allows", f"x {least} to {most}", f"or {phase} deg"))
+        if self.bandwidth is not None:
+            rows.append(("-3 dB of |T|", f"{short_hertz(self.bandwidth)} Hz", "the bandwidth"))
+        return rows
 
 
 def loop_peaks(loop: Loop, gain: Fraction) -> LoopPeaks:
     """Return the peaks of a loop that is closed once, and stable for a gain."""
-    (a, b), peaks = loop.with_gain[0].coefficients, []
+    (a, b), peaks = loop.with_gain[0].coefficients, list[Peak]()
     b = b * gain
     for name, num in (("S", a), ("T", b), ("S - T", a - b)):
         whole = replace(loop.bound, ratio=num / (a + b), parts=(num, a + b), is_of_model=False)
         peaks.append(replace(find_peak(whole), tf=name, unit=""))
-    return LoopPeaks(*peaks)
+    with precision(BITS):
+        width = _bandwidth(loop.bound, LoopFunction.of(loop.bound, a + b, b))
+    return LoopPeaks(peaks[0], peaks[1], peaks[2], width)
+
+
+def _bandwidth(bound: BoundTransferFunction, inverse: LoopFunction) -> arb | None:
+    """Return the first frequency [rad/s] at which ``abs(A/B) = 1/abs(T)`` is sqrt(2) times its value at 0."""
+    origin = inverse.at_origin()
+    if origin is None or origin.orders[0] != origin.orders[1]:
+        return None
+    above, below = origin.sizes(arb(0))
+    level, low = abs(above / below) * arb(2).sqrt(), float((origin.series[0].reach / 4).lower())
+    while origin.side(level, arb(low)) >= 0:
+        low /= STEP
+        if low == 0:
+            return None
+    waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, inverse.b))
+    end = min(low * STEP**FURTHER, waves.frequency_of(WAVES) * FURTHER)
+    while low < end:
+        found = find_on_axis(
+            inverse.on, lambda value: value.excess(level), lambda _: False, (low, low * STEP), BAND_DIGITS
+        )
+        if found.undecided or found.roots:
+            return None if found.undecided else bound.frequency(found.roots[0])
+        low *= STEP
+    return None
 
 
 def find_peak(bound: AnyBoundFunction, digits: int = 12, band: Ends | None = None) -> Peak:

@@ -79,8 +79,8 @@ class PhaseMargin:
 
 
 @dataclass(frozen=True, slots=True)
-class AllowedBandwidth:
-    """Up to which frequency a loop can follow, with a gain margin of 6 dB."""
+class AllowedCrossover:
+    """The frequency at which the loop gain falls below one, with a gain margin of 6 dB."""
 
     gain: Fraction | None  # the largest gain with that margin; ``None`` when every gain is stable
     # At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
@@ -107,7 +107,7 @@ class StabilityMap(Printed):
     reasons: tuple[str, ...] = ()  # what is open, and why
     digits: int = 15  # asked for
     # Which the stable gains next to 0 allow; none where there are none, or the loop is closed several times.
-    bandwidth: AllowedBandwidth | None = None
+    crossover: AllowedCrossover | None = None
     # Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
     margin_beyond: float | None = None
     # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``; ``boxes``
@@ -277,15 +277,15 @@ class StabilityMap(Printed):
                 "degrees": self.least_degrees_beyond,
             },
             "bandwidth": None
-            if (bandwidth := self.bandwidth) is None
+            if (crossover := self.crossover) is None
             else {
-                "gain": None if bandwidth.gain is None else float(bandwidth.gain),
-                "omega": real_json(omega := bandwidth.frequency, self.digits),
+                "gain": None if crossover.gain is None else float(crossover.gain),
+                "omega": real_json(omega := crossover.frequency, self.digits),
                 "frequency_hz": None if omega is None else float(hertz(omega).mid()),
                 "phase_margin_degrees": None
-                if (angle := bandwidth.phase_margin) is None
+                if (angle := crossover.phase_margin) is None
                 else float(degrees(angle).mid()),
-                "limited": bandwidth.is_limited,
+                "limited": crossover.is_limited,
             },
         }
 
@@ -394,9 +394,9 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
         yield Passage(
             [f"{INDENT}beyond {_hertz(stability.data_end)} nothing was measured", *_beyond(stability)]
         )
-    if stability.bandwidth is not None:
-        said = 2 * INDENT + bandwidth_text(stability.gain, stability.bandwidth)
-        yield Passage([f"{INDENT}bandwidth with a gain margin of 6 dB", said])
+    if stability.crossover is not None:
+        said = 2 * INDENT + crossover_text(stability.gain, stability.crossover)
+        yield Passage([f"{INDENT}gain crossover with a gain margin of 6 dB", said])
     if stability.boundaries:
         value = "gain" if stability.is_gain else "value"
         yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
@@ -507,18 +507,23 @@ def _margins(stability: StabilityMap) -> Passage:
     return Passage(lines, rows, has_head=False)
 
 
-def bandwidth_text(gain: str, bandwidth: AllowedBandwidth) -> str:
-    """Return the bandwidth that a loop allows, in one line."""
-    if bandwidth.gain is None:
+LEAST_DEGREES = 30
+"""Phase margin below which a loop rings too long for use (Franklin et al. 2010, section 6.4)."""
+
+
+def crossover_text(gain: str, crossover: AllowedCrossover) -> str:
+    """Return the gain crossover that a gain margin of 6 dB allows, in one line."""
+    if crossover.gain is None:
         return f"without limit: every {gain} > 0 is stable"
-    at = f"{gain} = {_number(bandwidth.gain)}"
-    if bandwidth.frequency is None or bandwidth.phase_margin is None:
+    at = f"{gain} = {_number(crossover.gain)}"
+    if crossover.frequency is None or crossover.phase_margin is None:
         return f"none: at {at} the loop gain is below one at the lowest frequencies"
-    place = f"{short_hertz(bandwidth.frequency)} Hz at {at}"
-    angle = degrees(bandwidth.phase_margin)
+    place = f"{short_hertz(crossover.frequency)} Hz at {at}"
+    angle = degrees(crossover.phase_margin)
     size = figure(abs(angle), 3, trimmed=True)
     shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
-    return shown if bandwidth.is_limited else f"at least {shown}"
+    shown += ": not usable" if abs(angle) < LEAST_DEGREES else ""
+    return shown if crossover.is_limited else f"at least {shown}"
 
 
 def _number(value: Fraction | None) -> str:

@@ -114,7 +114,7 @@ def _short(value: float) -> str:
 
 
 def bandwidth_cell(facts: ModelFacts) -> Iterator[Run]:
-    """Return the bandwidth a loop allows with a gain margin of 6 dB."""
+    """Return the gain crossover a loop allows with a gain margin of 6 dB."""
     for loop in facts.loops:
         if loop.bandwidth_hz == inf:
             yield from ("no limit", "\n")
@@ -143,7 +143,7 @@ LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": (model_cell, "plain"),
     "Outputs together up to": (together_cell, "text"),
     "Loop stable for": (loop_cell, "text"),
-    "Bandwidth allowed": (bandwidth_cell, "text"),
+    "Crossover allowed": (bandwidth_cell, "text"),
 }
 """Columns of what matters to control: models with loops, or with outputs here and elsewhere."""
 
@@ -178,7 +178,7 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "Two outputs move together if one differs from the collocated output by at "
             "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
             "left half-plane; the model's chapter says how far the stable gains are proved. The "
-            "bandwidth allowed is the frequency at which the loop gain first falls below one, with half "
+            "crossover allowed is the frequency at which the loop gain first falls below one, with half "
             "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
         )
         explained = (*explained, text(words))

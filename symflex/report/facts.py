@@ -350,7 +350,7 @@ def _of_roots(model: Model, tf: AnyTransferFunction, located: PoleZeroMap, reaso
 
 def _loop(stability: StabilityMap) -> LoopFacts:
     intervals = stability.intervals
-    band = stability.bandwidth
+    band = stability.crossover
     last = None if band is None else _number(band.frequency, tau)
     return LoopFacts(
         gain=stability.gain,

@@ -11,7 +11,7 @@ from flint import arb
 from symflex.analysis.explanation import ZeroExplanation, explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import DynamicColocation, StabilityMap
-from symflex.loops.stability_map import bandwidth_text
+from symflex.loops.stability_map import crossover_text
 from symflex.model.loss_factors import has_loss_factors
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
@@ -202,9 +202,9 @@ def _gains(loop: StabilityMap) -> tuple[Block, ...]:
         margins.append(f"phase margin {decimal(degrees(loop.phase_margin.angle))} degrees")
     if margins and loop.nominal is not None:
         blocks.append(text(f"With {loop.gain} = {float(loop.nominal):g}: {', '.join(margins)}."))
-    if loop.bandwidth is not None:
-        shown = bandwidth_text(loop.gain, loop.bandwidth)
-        blocks.append(text(f"Bandwidth with a gain margin of 6 dB: {shown}."))
+    if loop.crossover is not None:
+        shown = crossover_text(loop.gain, loop.crossover)
+        blocks.append(text(f"Gain crossover with a gain margin of 6 dB: {shown}."))
     return tuple(blocks)
 
 

@@ -225,6 +225,23 @@ def test_the_disk_margin_of_the_tutorial():
     assert found.to_json_dict()["peaks"]["disk_margin"]["alpha"]["value"].startswith("0.45809")
 
 
+@pytest.mark.parametrize(
+    ("text", "omega"),
+    [
+        ("K/s", 2),
+        ("K/(s + 1)", 3),
+        # omega_n^2 = 2, zeta^2 = 1/8: omega_n sqrt(1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2)), Franklin et al.
+        ("K/(s*(s + 1))", 2),
+        ("K*s/(s + 1)^2", None),  # nothing passes at rest
+        ("K*(s + 2)/(s + 1)", None),  # 4/5 at rest, 2/3 far up
+    ],
+)
+def test_the_bandwidth_is_where_the_closed_loop_falls_by_3_decibels(text, omega):
+    peaks = loop(text, K=2).stability("K").proved.peaks
+    assert peaks.bandwidth is None if omega is None else holds(peaks.bandwidth, omega)
+    assert ("-3 dB of |T|" in str(peaks.rows)) is (omega is not None)
+
+
 @pytest.mark.slow
 def test_loops_have_peaks_where_they_are_stable_and_asked_for_them():
     delayed = loop("K/s*exp(-s*T)", K=1, T=0.5)
@@ -235,6 +252,7 @@ def test_loops_have_peaks_where_they_are_stable_and_asked_for_them():
     assert float(peaks.sensitivity.magnitude.mid()) == pytest.approx(np.abs(1 / (1 + gain)).max(), rel=1e-7)
     assert float(peaks.complementary_sensitivity.magnitude.mid()) == pytest.approx(1, rel=1e-12)
     assert all(x.certified for x in (peaks.sensitivity, peaks.complementary_sensitivity, peaks.balanced))
+    assert holds(peaks.bandwidth, float(mp.findroot(lambda w: w**2 - 2 * w * mp.sin(w / 2) - 1, 1.9)))
     assert loop("K/(s*(s + 1)*(s + 2))", K=7).stability("K").proved.peaks is None
     alike = loop("K", K={"value": 1, "assume": "real"}).stability("K").proved
     assert alike.peaks.rows[-1] == ("  allows", "x any to any", "or any deg")
