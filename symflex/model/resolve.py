@@ -10,8 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, SpecError, UsageError
-from symflex.expressions import Equation, Expression, substitute
+from symflex.expressions import Attribute, Equation, Expression, Name, names, substitute
 from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
     check_printed,
@@ -97,6 +98,8 @@ if TYPE_CHECKING:
 
 Kind = Literal["constant", "real", "varying", "signal"]
 """What an expression may be: constant, that and real, varying along x, or varying in time."""
+RATES = {"1": "rad", "1/s": "rad/s", "1/s^2": "rad/s^2"}
+"""Units of angles and their rates, by their dimensions."""
 MAX_PAIRS = 10_000
 """Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
 round number, not a measured one."""
@@ -192,6 +195,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     later, hints = Reader(), Reader()
     model = replace(
         model,
+        outputs=_in_radians(model, () if point is None else point.coordinates),
         title=reader.plain(spec.root, "title", "the specification"),
         source=reader.plain(spec.root, "source", "the specification"),
         operating_point=point,
@@ -420,6 +424,27 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         warnings=(*doubtful_units(draft.declared), *system.readings()),
     )
     return model, turned
+
+
+def _in_radians(model: Model, coordinates: Iterable[str]) -> tuple[Output, ...]:
+    """Return the outputs, those in rad that are sums of angles: of nodes, or coordinates of an energy."""
+    angles = {n.name for n in model.nodes if n.domain == "rotation"} | set(coordinates)
+    still = {LAPLACE, "pi", *(p.name for p in model.parameters), *(d.name for d in model.definitions)}
+
+    def turns(expression: Expression) -> bool:
+        moving = [n for n in names(expression) if not (isinstance(n, Name) and n.name in still)]
+        return bool(moving) and all(
+            n.name in angles if isinstance(n, Name) else isinstance(n, Attribute) and n.name == "theta"
+            for n in moving
+        )
+
+    signals = {x.name: x.expression for x in model.signals if not isinstance(x.expression, Equation)}
+    while more := {name for name in signals.keys() - angles if turns(signals[name])}:
+        angles |= more
+    return tuple(
+        replace(o, unit=RATES[o.unit]) if o.unit in RATES and turns(o.expression) else o
+        for o in model.outputs
+    )
 
 
 def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedElement:

@@ -282,7 +282,12 @@ def degree(value: Factored) -> int:
 
 
 _MOTIONS = {"m": "receptance", "m/s": "mobility", "m/s^2": "accelerance"}
-_MOTIONS |= {"rad": "receptance", "rad/s": "mobility", "rad/s^2": "accelerance"}
+_TURNS = {
+    "rad": ("angle", "angular compliance"),
+    "rad/s": ("angular velocity", "angular mobility"),
+    "rad/s^2": ("angular acceleration", "angular accelerance"),
+}
+"""What turns, and its quotient by a torque."""
 _EFFORTS = tuple(unit_of(unit).dimension for unit in ("N", "N*m"))
 """What a free signal may be that loads a field: a force or a torque."""
 _FLEXIBILITIES = (("m/N", "receptance"), ("m/(N*s)", "mobility"), ("m/(N*s^2)", "accelerance"))
@@ -310,13 +315,15 @@ def name_quantity(output: Output, source: Input, known: Dimension | None = None)
     """Return the field's name for output over input, ``transfer function`` when there is none.
 
     Receptance, mobility and accelerance are displacement, velocity and acceleration per force or torque
-    (Ewins 2000, table 1.1), and their inverses are of an
-    effort per imposed motion. ``known`` is the quotient's dimension: a field's equations are homogeneous, and
-    tell no more.
+    (Ewins 2000, table 1.1), their inverses are of an effort per imposed motion. ``known`` is the quotient's
+    dimension: a field's equations are homogeneous, and tell no more.
     """
     if output.dimension is None or source.dimension is None:
         return next((name for unit, name in _FLEXIBILITIES if known == unit_of(unit).dimension), NAMELESS)
     if source.kind in ("force", "torque") or source.dimension in _EFFORTS:
+        if output.unit in _TURNS:
+            motion, per_torque = _TURNS[output.unit]
+            return per_torque if source.dimension == unit_of("N*m").dimension else f"{motion} per force"
         for unit, name in _MOTIONS.items():
             if output.dimension == unit_of(unit).dimension:
                 return name
@@ -339,10 +346,14 @@ def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> 
     """
     if output.dimension is None or source.dimension is None:
         return "" if known is None else str(known)
-    above, below = str(output.dimension), str(source.dimension)
+    if output.dimension == source.dimension:
+        return "1"
+    above, below = output.unit or str(output.dimension), str(source.dimension)
+    if "rad" in above and source.unit.startswith("rad"):
+        below = source.unit
     is_written = source.kind == "signal" and quotient_of_units(source.unit, "1") == source.unit
     # What turns above is not known: 1/s over rad/s is 1, and not 1/rad.
-    if is_written and output.dimension != source.dimension and not above.startswith("1"):
+    if is_written and not above.startswith("1"):
         if "kg" in above:
             return str(output.dimension / source.dimension)
         return quotient_of_units(above, source.unit)

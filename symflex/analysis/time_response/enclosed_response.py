@@ -214,7 +214,7 @@ def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     lines += [""] if response.impulses or response.jumps or notes else []
     count = len(response.enclosures)
     step = max(1, -(-(count - 1) // (ROWS - 1)))
-    rows = [("t [s]", "value", "radius")]
+    rows = [("t [s]", "value", "radius" if response.certified else "est. error")]
     for i in range(0, count, step):
         rows.append((f"{response.times[i]:.12g}", *_columns(response.enclosures[i], response.digits)))
     lines += aligned(rows, "  ")

@@ -6,10 +6,14 @@ import csv
 import io
 import math
 import runpy
+from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
+
+import symflex
+from symflex.analysis.time_response import response_text
 
 OSCILLATOR = """
 symflex = 1
@@ -401,3 +405,10 @@ def test_a_record_drives_the_model_and_its_output_is_compared(oscillator, tmp_pa
     assert oscillator("plot", "osc.toml", "bode", *drawn[2:]).code == 2
     assert oscillator(*asked, "--to", "ramp").code == 2
     assert oscillator("respond", "osc.toml", "--tf", "X/F", "--record", "osc.toml").code == 2
+
+
+def test_what_is_not_certified_has_an_estimated_error_and_no_radius():
+    response = symflex.loads(OSCILLATOR).transfer_function("X", "F").bind().step_response([0, 0.1])
+    estimated = replace(response, certified=False, reason="so")
+    heads = [text.splitlines()[2].split()[3:] for text in map(response_text, (response, estimated))]
+    assert heads == [["radius"], ["est.", "error"]]

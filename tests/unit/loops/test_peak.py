@@ -230,7 +230,7 @@ def test_the_disk_margin_of_the_tutorial():
     [
         ("K/s", 2),
         ("K/(s + 1)", 3),
-        # omega_n^2 = 2, zeta^2 = 1/8: omega_n sqrt(1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2)), Franklin et al.
+        # omega_n^2 = 2, zeta^2 = 1/8: omega_n sqrt(1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2))
         ("K/(s*(s + 1))", 2),
         ("K*s/(s + 1)^2", None),  # nothing passes at rest
         ("K*(s + 2)/(s + 1)", None),  # 4/5 at rest, 2/3 far up

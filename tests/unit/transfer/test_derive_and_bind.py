@@ -316,3 +316,28 @@ Z = "c - b - a"
     assert tf.ratio.is_zero
     for each in (tf, pipeline.bind(tf)):
         assert sorted((str(h.polynomial), h.multiplicity) for h in each.hidden) == [("2*s + 3", 1), ("s", 1)]
+
+
+@pytest.mark.parametrize(
+    ("output", "per_torque", "per_force"),
+    [
+        ("phi", ("angular compliance", "rad/(N*m)"), ("angle per force", "rad/N")),
+        ("s*(lead - phi)", ("angular mobility", "rad/(N*m*s)"), ("angular velocity per force", "rad/(N*s)")),
+        ("phi*l", ("receptance", "1/N"), ("receptance", "m/N")),
+        # A share of a length is no angle, alone or beside one.
+        ("x/l", ("transfer function", "1/(N*m)"), ("transfer function", "1/N")),
+        ("phi + x/l", ("transfer function", "1/(N*m)"), ("transfer function", "1/N")),
+    ],
+)
+def test_an_angle_per_force_is_in_rad_and_no_receptance(output, per_torque, per_force):
+    model = pipeline.loads(f"""symflex = 1
+parameters = {{ J = "2 kg*m^2", k = "8 N*m/rad", l = "3 m", n = "5" }}
+inputs = {{ tau = {{ torque = "phi" }}, F = {{ force = "x" }} }}
+outputs.Y = "{output}"
+signals.lead = "n*phi"
+[elements]
+disc = {{ type = "inertia", at = "phi", J = "J" }}
+shaft = {{ type = "torsion_spring", between = ["phi", "ground"], k = "k" }}
+wheel = {{ type = "transformer", from = "x", to = "phi", ratio = "1/l" }}
+""")
+    assert [(tf.quantity, tf.unit) for tf in pipeline.derive_all(model)] == [per_torque, per_force]
