@@ -36,6 +36,7 @@ from symflex.report.claims.claim import (
     claims_json,
     judge_all,
     publication_of,
+    verdict_counts,
 )
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
@@ -353,10 +354,7 @@ def _overview(
 ) -> Section:
     blocks: list[Block] = []
     if publication:
-        held = sum(f.verdict.startswith("holds") for f in findings)
-        failed = sum(f.verdict == "does not hold" for f in findings)
-        counts = f"{held} hold, {failed} do not, and {len(findings) - held - failed} are not examined here"
-        lead = f"The publication makes {counted(len(findings), 'claim')}: {counts}. See "
+        lead = f"The publication makes {counted(len(findings), 'claim')}: {verdict_counts(findings)}. See "
         blocks.append(text(lead, PageLink("the claims", "#claims"), "."))
     rows: list[tuple[Cell, ...]] = []
     for c in chapters:

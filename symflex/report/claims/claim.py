@@ -128,18 +128,28 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
     return tuple(claim.judge(named) for claim in publication.claims)
 
 
+def verdict_counts(findings: Sequence[Finding]) -> str:
+    """Say how many claims have each verdict.
+
+    Examples
+    --------
+    >>> verdict_counts([judged(True), judged(True, condition=True), judged(True)])
+    '2 hold, 1 hold with a condition'
+    """
+    counts: Counter[str] = Counter(finding.verdict for finding in findings)
+    return ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
+
+
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:
     """Return the claims with their verdicts and the evidence."""
-    counts: Counter[str] = Counter(finding.verdict for finding in findings)
-    summary = ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
     rows: list[tuple[Cell, ...]] = []
     for claim, finding in zip(publication.claims, findings, strict=True):
         quote = f"“{claim.quote}”" if claim.is_quotation else claim.quote
         mark = Badge(finding.verdict, VERDICTS[finding.verdict][0])
         rows.append(((quote, "\n", Aside(claim.place)), (mark,), finding.evidence))
     lead = text(
-        f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which {summary}. "
-        "Each verdict is computed from the models below, with their values of the parameters. If a claim "
+        f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which "
+        f"{verdict_counts(findings)}. Each verdict is computed from the models below, with their values of the parameters. If a claim "
         "depends on a condition, the verdict names it."
     )
     table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), tuple(rows))
