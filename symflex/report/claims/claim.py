@@ -149,8 +149,8 @@ def claim_section(publication: Publication, findings: Sequence[Finding]) -> Sect
         rows.append(((quote, "\n", Aside(claim.place)), (mark,), finding.evidence))
     lead = text(
         f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which "
-        f"{verdict_counts(findings)}. Each verdict is computed from the models below, with their values of the parameters. If a claim "
-        "depends on a condition, the verdict names it."
+        f"{verdict_counts(findings)}. Each verdict is computed from the models below, with their values of "
+        "the parameters. If a claim depends on a condition, the verdict names it."
     )
     table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), tuple(rows))
     return Section("Claims of the publication", (lead, table), ANCHOR)
