@@ -257,10 +257,12 @@ def formula_html(tf: AnyTransferFunction, longest: float = inf) -> str:
     if not 0 < len(markup) <= longest or (longest < inf and LONG_NUMBER.search(markup)):
         return f"<p>The formula of {html.escape(tf.name)} takes a page: symflex derive prints it.</p>"
     lines = ['<div class="formula">']
+    first = next((row for row in rows if row.is_where), None)
     for row in rows:
+        word = "where " * (row is first)
         left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
         right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
-        lines.append(f'<div class="row{" where" if row.is_where else ""}">{left} {right}</div>')
+        lines.append(f'<div class="row{" where" if row.is_where else ""}">{word}{left} {right}</div>')
     return "\n".join((*lines, "</div>"))
 
 

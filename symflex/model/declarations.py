@@ -321,7 +321,8 @@ def _spread(
         at_end = Quantity(most - size, 0, 0, DIMENSIONLESS, 0, "")
         problem = without_sign(name, at_end, assume, span)
         if problem is not None:
-            problem = replace(problem, message=problem.message.replace(" is", " less its spread is", 1))
+            message = problem.message.replace(" is", " less its spread is", 1)
+            problem = replace(problem, message=message, hint=(problem.hint or "").removeprefix(DROP))
     reader.take((problem,) if problem else ())
     return None if problem else spread
 
@@ -396,6 +397,9 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
     return "positive"
 
 
+DROP = "remove the minus, or "
+
+
 def without_sign(
     name: str, quantity: Quantity | None, assume: Assumption, span: Span | None
 ) -> Diagnostic | None:
@@ -407,7 +411,8 @@ def without_sign(
         return None
     shown = "0" if magnitude == 0 else "negative"
     message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
-    return Diagnostic("SF209", message, span, assuming(name, "nonnegative" if magnitude == 0 else "real"))
+    other = assuming(name, "nonnegative" if magnitude == 0 else "real")
+    return Diagnostic("SF209", message, span, DROP + other if magnitude else other)
 
 
 def assuming(name: str, assume: Assumption) -> str:

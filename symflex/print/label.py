@@ -13,7 +13,7 @@ import functools
 import html
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import starmap
 from string import ascii_lowercase
 from typing import Final, NamedTuple
@@ -137,6 +137,8 @@ def _made(name: str) -> Label:
         return _verbatim(name)
     subscripts = ",".join(map(_subscript, [*filter(None, (match[2],)), *parts]))
     label = read_label(_stem(match[1]) + (f"_{{{subscripts}}}" if subscripts else ""))
+    if label is not None and match[1].islower():  # a word, and no product of letters
+        label = replace(label, mathml=label.mathml.replace(' class="it"', ""))
     return label if label is not None and label.width <= WIDEST_LABEL else _verbatim(name)
 
 
@@ -299,6 +301,27 @@ class _Found:
 
 def _scripted(base: str, below: str, above: str) -> str:
     above = operator(above) if above.startswith("′") else above
+    return with_scripts(base, below, above)
+
+
+DEEP: Final = frozenset("fgjpqyQβγζημξρϱςϕφχψ")
+TALL: Final = frozenset("bdfhijklABCDEFGHIJKLMNOPQRSTUVWXYZβδζθϑλξϕψΓΔΘΛΞΠΣΥΦΨΩ")
+"""Letters whose depth or height in the font of pages moves their scripts by more than 0.015 em."""
+
+
+def with_scripts(base: str, below: str, above: str) -> str:
+    """Return an element with scripts, those of all single letters at the same depth and height, as in TeX.
+
+    Examples
+    --------
+    >>> with_scripts("<mi>ζ</mi>", "<mi>z</mi>", ""), with_scripts("<mi>s</mi>", "", "<mn>2</mn>")
+    ('<msub><mpadded depth="0"><mi>ζ</mi></mpadded><mi>z</mi></msub>', '<msup><mi>s</mi><mn>2</mn></msup>')
+    """
+    letter = base.removeprefix("<mi>").removesuffix("</mi>")
+    gone = ' depth="0"' * bool(below and letter in DEEP) + ' height="0"' * bool(above and letter in TALL)
+    base = f"<mpadded{gone}>{base}</mpadded>" if gone else base
+    # Letters that are slanted and not italic lean into what stands above their end.
+    base = row(base, '<mspace width="0.12em"></mspace>') if above and 'class="it"' in base else base
     if below and above:
         return f"<msubsup>{base}{below}{above}</msubsup>"
     return f"<msub>{base}{below}</msub>" if below else f"<msup>{base}{above}</msup>" if above else base

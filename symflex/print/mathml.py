@@ -13,6 +13,7 @@ is rows: the quotient, what its names stand for, and its ``where`` lines.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -31,7 +32,7 @@ from symflex.expressions import (
 )
 from symflex.model import Input, Output
 from symflex.print.forms import PrintedForm
-from symflex.print.label import LABEL_SIGNS, identifier, numeral, operator, row, symbol, words
+from symflex.print.label import LABEL_SIGNS, identifier, numeral, operator, row, symbol, with_scripts, words
 from symflex.print.latex.equation import form_labels, free_names, laws_and_starts, split_sign, varying_names
 from symflex.print.latex.expression import Writer
 from symflex.print.width import NOTHING, Width
@@ -49,6 +50,8 @@ from symflex.transfer import AnyTransferFunction
 
 INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
 SPACED_TIMES: Final = '<mo lspace="0.17em" rspace="0">&#x2062;</mo>'
+DOT: Final = '<mo lspace="0" rspace="0.25em">⋅</mo>'
+"""Between factors on two lines, or after the blank at which a line may end."""
 APPLY_FUNCTION: Final = "<mo>&#x2061;</mo>"
 EQUALS: Final = "<mo>=</mo>"
 
@@ -111,6 +114,7 @@ def page_signs() -> str:
 
 PIECE_EM: Final = 17.0
 """Width up to which a piece is not broken [em]: that of a narrow telephone's screen."""
+_INDEXED: Final = re.compile(r"<msub>(?:<mpadded[^>]*>)?(<mi[^<]*</mi>)(?:</mpadded>)?(.*)</msub>")
 _MINUS: Final = operator("-", "prefix")
 
 
@@ -172,7 +176,7 @@ class MathmlWriter(ExpressionWriter):
         for i, (sign, part) in enumerate(parts_of(node)):
             spelt = operator(sign, "" if sign == "/" else "infix" if i else "prefix") if sign else ""
             looser = (Product, Quotient) if sign == "/" else ()
-            spelt = INVISIBLE_TIMES if sign == "*" else spelt
+            spelt = DOT if sign == "*" else spelt
             fences = ("", "")
             if isinstance(part, (Sum, Negative, *looser)):
                 fences = fence_signs(self.piece(part).nesting)
@@ -197,17 +201,24 @@ def _joined(
     return joined if len(joined) > 1 or joined[0][2] else None
 
 
+def _power(base: str, exponent: str) -> str:
+    """Return a power; the exponent of what has an index stands above the index."""
+    if indexed := _INDEXED.fullmatch(base):
+        return with_scripts(indexed[1], indexed[2], exponent)
+    return with_scripts(base, "", exponent)
+
+
 def _primed(name: str, order: int) -> str:
     if order <= MOST_PRIMES:
         return row(name, operator("′″‴"[order - 1]))  # high enough in fonts: not raised
-    return MATHML.power.format(name, row(operator("("), numeral(str(order)), operator(")")))
+    return _power(name, row(operator("("), numeral(str(order)), operator(")")))
 
 
 def _scientific(mantissa: str, exponent: str) -> str:
     minus = [_MINUS] if exponent.startswith("-") else []
     power = row(*minus, numeral(exponent.removeprefix("-")))
     front = [numeral(mantissa), operator("⋅")] if mantissa else []
-    return row(*front, MATHML.power.format(numeral("10"), power))
+    return row(*front, _power(numeral("10"), power))
 
 
 def _sum(terms: Sequence[tuple[str, bool]]) -> str:
@@ -222,17 +233,16 @@ def _sum(terms: Sequence[tuple[str, bool]]) -> str:
 
 def _between(left: Written, right: Written) -> tuple[str, Width]:
     # Two numbers would read as one, a name and a function's name too. The width is not asked for.
-    if right.markup.startswith("<mn>"):
+    if right.markup.removeprefix("<msup>").startswith("<mn>"):
         return operator("⋅"), NOTHING
-    wordy = (p.is_wordy and p.shape is not Shape.POWER for p in (left, right))
-    is_worded = Shape.CALL in (left.shape, right.shape) or any(wordy)
+    is_worded = Shape.CALL in (left.shape, right.shape) or left.is_wordy or right.is_wordy
     return SPACED_TIMES if is_worded else INVISIBLE_TIMES, NOTHING
 
 
 MATHML: Final = Spelling(
     fraction="<mfrac>{}{}</mfrac>",
     slash=row("{}", operator("/"), "{}"),
-    power="<msup>{}{}</msup>",
+    power=_power,
     applied=row("{}", APPLY_FUNCTION, "{}"),
     digits=numeral("{}"),
     negative=row(_MINUS, "{}"),

@@ -97,11 +97,11 @@ class Written(NamedTuple):
 class Spelling:
     """How pieces are spelt."""
 
-    # fraction, slash, power and applied: templates of two pieces: above and below, base and exponent,
-    # function and its argument in a fence.
+    # fraction, slash and applied: templates of two pieces: above and below, function and its argument in a
+    # fence. power: from base and exponent.
     fraction: str
     slash: str
-    power: str
+    power: Callable[[str, str], str]
     applied: str
     # digits, negative, root and exponential: templates of one piece: a number, minus it, a square root, a
     # power of e.
@@ -351,7 +351,7 @@ class ExpressionWriter:
             markup = self._spelling.function_power(function, below.markup, above.markup)
             return Written(markup, below.size + size, Shape.CALL, below.is_tall, below.nesting)
         root = self.as_base(below)
-        markup = self._spelling.power.format(root.markup, above.markup)
+        markup = self._spelling.power(root.markup, above.markup)
         size = root.size + size.beyond(root.subscript)
         return Written(markup, size, Shape.POWER, root.is_tall, root.nesting, root.is_wordy)
 

@@ -94,7 +94,7 @@ def _between(left: Written, right: Written) -> tuple[str, Width]:
 LATEX: Final = Spelling(
     fraction=r"\frac{{{}}}{{{}}}",
     slash="{}/{}",
-    power="{}^{{{}}}",
+    power=lambda base, exponent: f"{base}^{{{exponent}}}",
     applied="{}{}",
     digits="{}",
     negative="-{}",

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex import pipeline
+from symflex.errors import Text
 from symflex.expressions import (
     Call,
     Name,
@@ -18,6 +19,7 @@ from symflex.expressions import (
     Sum,
     format_expression,
     number,
+    parse,
     power,
     product_of,
     quotient,
@@ -37,7 +39,7 @@ from tests.independent.spec_expressions import evaluate
 
 ROOT = Path(__file__).parents[3]
 CORE = frozenset(
-    "math mrow mi mn mo mtext mspace mfrac msqrt msub msup msubsup mover munder".split()
+    "math mrow mpadded mi mn mo mtext mspace mfrac msqrt msub msup msubsup mover munder".split()
 )  # elements of MathML Core that the printer uses
 VALUES = {"s": mpmath.mpf("1.3"), "a": mpmath.mpf("0.7"), "b": mpmath.mpf("2.1"), "c": mpmath.mpf("0.4")}
 SIGNS = (
@@ -51,7 +53,7 @@ def read(element):
     """Return an element of MathML as text of the specification's grammar."""
     children = list(element)
     match element.tag:
-        case "math" | "mrow":
+        case "math" | "mrow" | "mpadded":
             return read_row(children)
         case "mi" | "mn":
             return element.text
@@ -182,3 +184,24 @@ def test_quotients_inside_exponents_have_slashes():
 
 def test_a_script_without_braces_is_one_digit_as_in_latex():
     assert label_mathml("a", {"a": "a_12"}) == "<mrow><msub><mi>a</mi><mn>1</mn></msub><mn>2</mn></mrow>"
+
+
+def test_scripts_stand_where_tex_sets_them():
+    found = {
+        text: mathml_expression(parse(Text.alone("<f>", text)), {})
+        for text in ("omega_z^2", "zeta_p*s", "l^2", "2*10^5", "tip", "EI^2", "r_trans^2*m_2")
+    }
+    assert found["omega_z^2"] == "<msubsup><mi>ω</mi><mi>z</mi><mn>2</mn></msubsup>"
+    assert found["zeta_p*s"].startswith(
+        '<mrow><msub><mpadded depth="0"><mi>ζ</mi></mpadded><mi>p</mi></msub>'
+    )
+    assert found["l^2"] == '<msup><mpadded height="0"><mi>l</mi></mpadded><mn>2</mn></msup>'
+    assert "<mo>⋅</mo><msup><mn>10</mn>" in found["2*10^5"]  # not 210^5
+    assert (found["tip"], ">EI</mi><mspace" in found["EI^2"]) == ("<mi>tip</mi>", True)
+    assert '</msubsup><mo lspace="0.17em"' in found["r_trans^2*m_2"]
+
+
+def test_a_product_that_may_be_parted_has_its_sign_there():
+    long = product_of([sum_of([Name(f"x_{i}"), Name(f"y_{i}")]) for i in range(3)])
+    first, *others = MathmlWriter({}).pieces(long, 5.0)
+    assert [">⋅</mo>" in piece for piece in (first, *others)] == [False, True, True]
