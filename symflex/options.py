@@ -229,11 +229,7 @@ class RootsOptions:
         None, "--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s]."
     )
     digits: int | None = option(
-        None,
-        "--digits",
-        least=1,
-        most=MOST_DIGITS,
-        help="Correct significant digits.  [default: 6; 15 in JSON]",
+        None, "--digits", least=1, most=MOST_DIGITS, help="Correct digits.  [default: 6; 15 in JSON]"
     )
     explain: bool = option(
         False, "--explain", help="Say which constrained system has the zeros as its poles."
@@ -465,9 +461,7 @@ class ColocationOptions:
     tf: str = option("", "--tf", required=True, metavar="OUT/IN", help="Output away from the actuator.")
     reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="Colocated output.")
     phase: Stated = option("10 deg", "--phase", **SHOWN, metavar="ANGLE", help="Largest phase difference.")
-    magnitude: Stated = option(
-        "1 dB", "--magnitude", **SHOWN, metavar="GAIN", help="Largest magnitude difference."
-    )
+    magnitude: Stated = option("1 dB", "--magnitude", **SHOWN, metavar="DB", help="Largest difference.")
     band: Ends | None = option(
         None, "--band", **TWO, help="Frequencies to examine.  [default: band of [analysis]]"
     )

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 
 _NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
-DIGITS = 15
-"""Digits of roots in JSON, of which a double has as many."""
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
 
@@ -58,7 +56,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     with entered_budget().at_least(DERIVING).entered():
         model = spec.load()
         pair = first_pair(model, given.tf, "showing")
-        shown = (asked := given.digits or model.analysis.digits) or DIGITS
+        shown = (asked := given.digits or model.analysis.digits) or 15
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_named=is_explained)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():

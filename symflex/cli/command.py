@@ -28,13 +28,6 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class _WhatIsRead:
-    """What every command that reads a specification is asked."""
-
-    spec: str = option("", is_path=True)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class _Setting:
     """The values that stand in place of declared ones, and where else files are read; last in the help."""
 
@@ -77,9 +70,9 @@ class Command(click.Command):
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options of this command, then the common ones."""
         for title, is_common in (("Options", False), ("Common options", True)):
-            chosen = (p for p in self.get_params(ctx) if is_common is not COMMON.isdisjoint(p.opts))
-            options = (p for p in chosen if isinstance(p, click.Option))
-            if rows := [row for p in options if (row := p.get_help_record(ctx))]:
+            options = (p for p in self.get_params(ctx) if isinstance(p, click.Option))
+            chosen = (p for p in options if is_common is not COMMON.isdisjoint(p.opts))
+            if rows := [row for p in chosen if (row := p.get_help_record(ctx))]:
                 with formatter.section(title):
                     formatter.write_dl(rows)
 
@@ -100,7 +93,8 @@ def command_of(
 
         called.__doc__ = run.__doc__
         faced = budgeted(with_parameters(_Setting, reporting(called)))
-        return click.command(name, cls=cls)(with_parameters(_WhatIsRead, with_parameters(options, faced)))
+        asked = click.argument("spec", type=click.Path())(with_parameters(options, faced))
+        return click.command(name, cls=cls)(asked)
 
     return made
 

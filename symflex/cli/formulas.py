@@ -193,7 +193,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     else:
         from symflex.print.text import derive_text
 
-        say(derive_text(entries, terminal_width(), is_form_named=given.form is not None))
+        say(derive_text(entries, terminal_width(), is_named=given.form is not None))
     return 0
 
 

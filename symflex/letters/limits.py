@@ -67,10 +67,7 @@ FARTHER: Final = 8  # times as many without exponentials, whose values would hav
 BITS: Final = 512
 CLOSE, WANING, NOTHING = 0.01, 0.75, 1e-30
 """Differences: the last one at most, the part left at the next point, and what need not become smaller."""
-MOTIONS: Final = {
-    **{"receptance": 0, "mobility": 1, "accelerance": 2},
-    **{"angular compliance": 0, "angular mobility": 1, "angular accelerance": 2},
-}
+MOTIONS: Final = {"receptance": 0, "compliance": 0, "mobility": 1, "accelerance": 2}
 """Powers of s in a quantity beside those of the displacement for a force."""
 EFFORTS: Final = {"dynamic stiffness": 0, "mechanical impedance": -1, "apparent mass": -2}
 """The same beside those of the force for a displacement."""
@@ -442,7 +439,7 @@ class LimitFinder:
 
     def _words(self, power: Fraction) -> str:
         """Return what a person calls a power of s in the quantity."""
-        quantity, is_static, n = self.tf.quantity, self.end == ENDS[0], int(power)
+        quantity, is_static, n = self.tf.quantity.removeprefix("angular "), self.end == ENDS[0], int(power)
         if n != power:
             return ""
         if quantity in MOTIONS or quantity in EFFORTS:

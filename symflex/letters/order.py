@@ -57,9 +57,8 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     num, den = _expanded(tf, order + 1)
     plain = Ring(tuple(n for n in num.ring.names if n not in tf.kernels.generators))
     places = [n.node if not n.component else f"{n.node}.{n.component}" for n in tf.input.nodes]
-    is_driven = tf.quantity in ("receptance", "angular compliance") and [tf.output.expression] == [
-        Name(p) for p in places
-    ]
+    is_flexible = tf.quantity in ("receptance", "angular compliance")
+    is_driven = is_flexible and [tf.output.expression] == [Name(p) for p in places]
     is_stiffness = is_driven and _begins(num) <= _begins(den)
     sides = [num / num, den / num] if is_stiffness else [num, den]
     lowest = min(map(_begins, sides))

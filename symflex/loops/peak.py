@@ -144,10 +144,8 @@ class LoopPeaks:
     def to_json_dict(self) -> dict[str, object]:
         """Return the peaks as a part of ``symflex.stability/1``."""
         margin = {name: real_json(value, self.balanced.digits) for name, value in self.disk.items()}
-        peaks = (f.name for f in fields(self) if f.name != "bandwidth")
-        omega = self.bandwidth
-        width = omega and {"omega": real_json(omega, 12), "frequency_hz": float(hertz(omega).mid())}
-        found: dict[str, object] = {name: getattr(self, name).to_json_dict() for name in peaks}
+        found = {f.name: getattr(self, f.name).to_json_dict() for f in fields(self)[:3]}
+        width = (w := self.bandwidth) and {"omega": real_json(w, 12), "frequency_hz": float(hertz(w).mid())}
         return found | {"disk_margin": margin, "bandwidth": width}
 
     @property
@@ -158,9 +156,8 @@ class LoopPeaks:
         rows = [(f"largest |{x.tf}|", figure(x.magnitude, 6), x.place) for x in peaks]
         rows.append(("disk margin", alpha, self.balanced.place))
         rows.append(("  allows", f"x {least} to {most}", f"or {phase} deg"))
-        if self.bandwidth is not None:
-            rows.append(("-3 dB of |T|", f"{short_hertz(self.bandwidth)} Hz", "the bandwidth"))
-        return rows
+        width = () if (w := self.bandwidth) is None else (("-3 dB of |T|", f"{short_hertz(w)} Hz", ""),)
+        return [*rows, *width]
 
 
 def loop_peaks(loop: Loop, gain: Fraction) -> LoopPeaks:
@@ -184,8 +181,6 @@ def _bandwidth(bound: BoundTransferFunction, inverse: LoopFunction) -> arb | Non
     level, low = abs(above / below) * arb(2).sqrt(), float((origin.series[0].reach / 4).lower())
     while origin.side(level, arb(low)) >= 0:
         low /= STEP
-        if low == 0:
-            return None
     waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, inverse.b))
     end = min(low * STEP**FURTHER, waves.frequency_of(WAVES) * FURTHER)
     while low < end:

@@ -322,7 +322,9 @@ def _spread(
         problem = without_sign(name, at_end, assume, span)
         if problem is not None:
             message = problem.message.replace(" is", " less its spread is", 1)
-            problem = replace(problem, message=message, hint=(problem.hint or "").removeprefix(DROP))
+            problem = replace(
+                problem, message=message, hint=str(problem.hint).removeprefix("remove the minus, or ")
+            )
     reader.take((problem,) if problem else ())
     return None if problem else spread
 
@@ -397,9 +399,6 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
     return "positive"
 
 
-DROP = "remove the minus, or "
-
-
 def without_sign(
     name: str, quantity: Quantity | None, assume: Assumption, span: Span | None
 ) -> Diagnostic | None:
@@ -412,7 +411,7 @@ def without_sign(
     shown = "0" if magnitude == 0 else "negative"
     message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
     other = assuming(name, "nonnegative" if magnitude == 0 else "real")
-    return Diagnostic("SF209", message, span, DROP + other if magnitude else other)
+    return Diagnostic("SF209", message, span, f"remove the minus, or {other}" if magnitude else other)
 
 
 def assuming(name: str, assume: Assumption) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, SpecError, UsageError
-from symflex.expressions import Attribute, Equation, Expression, Name, names, substitute
+from symflex.expressions import Attribute, Equation, Expression, names, substitute
 from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
     check_printed,
@@ -98,8 +98,6 @@ if TYPE_CHECKING:
 
 Kind = Literal["constant", "real", "varying", "signal"]
 """What an expression may be: constant, that and real, varying along x, or varying in time."""
-RATES = {"1": "rad", "1/s": "rad/s", "1/s^2": "rad/s^2"}
-"""Units of angles and their rates, by their dimensions."""
 MAX_PAIRS = 10_000
 """Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
 round number, not a measured one."""
@@ -428,21 +426,21 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
 
 def _in_radians(model: Model, coordinates: Iterable[str]) -> tuple[Output, ...]:
     """Return the outputs, those in rad that are sums of angles: of nodes, or coordinates of an energy."""
-    angles = {n.name for n in model.nodes if n.domain == "rotation"} | set(coordinates)
+    angles = {".theta", *(n.name for n in model.nodes if n.domain == "rotation")}
+    angles |= {v.owner for v, d in model.signal_units if v.owner in coordinates and str(d) == "1"}
     still = {LAPLACE, "pi", *(p.name for p in model.parameters), *(d.name for d in model.definitions)}
 
     def turns(expression: Expression) -> bool:
-        moving = [n for n in names(expression) if not (isinstance(n, Name) and n.name in still)]
-        return bool(moving) and all(
-            n.name in angles if isinstance(n, Name) else isinstance(n, Attribute) and n.name == "theta"
-            for n in moving
-        )
+        found = {f".{n.name}" if isinstance(n, Attribute) else n.name for n in names(expression)}
+        moving = found - still
+        return bool(moving) and moving <= angles
 
     signals = {x.name: x.expression for x in model.signals if not isinstance(x.expression, Equation)}
     while more := {name for name in signals.keys() - angles if turns(signals[name])}:
         angles |= more
+    units = ("1", "1/s", "1/s^2")
     return tuple(
-        replace(o, unit=RATES[o.unit]) if o.unit in RATES and turns(o.expression) else o
+        replace(o, unit=o.unit.replace("1", "rad", 1)) if o.unit in units and turns(o.expression) else o
         for o in model.outputs
     )
 

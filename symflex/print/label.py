@@ -310,13 +310,7 @@ TALL: Final = frozenset("bdfhijklABCDEFGHIJKLMNOPQRSTUVWXYZβδζθϑλξϕψΓ�
 
 
 def with_scripts(base: str, below: str, above: str) -> str:
-    """Return an element with scripts, those of all single letters at the same depth and height, as in TeX.
-
-    Examples
-    --------
-    >>> with_scripts("<mi>ζ</mi>", "<mi>z</mi>", ""), with_scripts("<mi>s</mi>", "", "<mn>2</mn>")
-    ('<msub><mpadded depth="0"><mi>ζ</mi></mpadded><mi>z</mi></msub>', '<msup><mi>s</mi><mn>2</mn></msup>')
-    """
+    """Return an element with scripts, those of all single letters at the same depth and height, as in TeX."""
     letter = base.removeprefix("<mi>").removesuffix("</mi>")
     gone = ' depth="0"' * bool(below and letter in DEEP) + ' height="0"' * bool(above and letter in TALL)
     base = f"<mpadded{gone}>{base}</mpadded>" if gone else base

@@ -40,10 +40,7 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
 
 
 def derive_text(
-    entries: Iterable[tuple[AnyTransferFunction, PrintedForm]],
-    width: int = WIDTH,
-    *,
-    is_form_named: bool = False,
+    entries: Iterable[tuple[AnyTransferFunction, PrintedForm]], width: int = WIDTH, *, is_named: bool = False
 ) -> str:
     """Return transfer functions as fractions, with their definitions and hidden modes.
 
@@ -53,7 +50,7 @@ def derive_text(
     above: dict[str, list[Expression]] = {}
     lines: list[str] = []
     for tf, form in entries:
-        name = f", {form.name} form" if is_form_named else ""
+        name = f", {form.name} form" if is_named else ""
         lines += _fraction_lines(tf, form, name, width, above)
         lines += [""] * bool(lines[-1])
     return "\n".join(lines).rstrip()
@@ -86,8 +83,7 @@ def _fraction_lines(
     for line, word in zip(laws, words, strict=False):
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
-    closed = ((format_expression(left), expression) for left, expression in form.closed)
-    own = [each for each in closed if each[0] not in repeated]
+    own = [each for each in _closed(form) if each[0] not in repeated]
     for word, (left, expression) in zip(chain(["so   "], repeat("     ")), own, strict=False):
         lines += hanging(f"{INDENT}{word} {left} = ", expression, width)
     if form.where or form.laws:
@@ -107,14 +103,17 @@ def _fraction_lines(
 def _repeated(form: PrintedForm, above: dict[str, list[Expression]]) -> list[str]:
     """Return the names that mean what they mean above, as everything does that they are made of."""
     meant: dict[str, list[Expression]] = {}
-    closed = ((format_expression(left), expression) for left, expression in form.closed)
-    for name, expression in chain[tuple[str, Expression]](form.where, form.laws, closed):
+    for name, expression in chain[tuple[str, Expression]](form.where, form.laws, _closed(form)):
         meant.setdefault(name, []).append(expression)
     new = {name for name, lines in meant.items() if above.get(name) != lines}
     while more := {n for n in meant.keys() - new if any(x.name in new for e in meant[n] for x in names(e))}:
         new |= more
     above |= meant
     return [name for name in meant if name not in new]
+
+
+def _closed(form: PrintedForm) -> list[tuple[str, Expression]]:
+    return [(format_expression(left), expression) for left, expression in form.closed]
 
 
 def _left_side(tf: AnyTransferFunction, form: PrintedForm) -> str:

@@ -400,9 +400,8 @@ def _value(parameter: ModelParameter, item: str, text: str) -> ExactValue:
     except SpecError as error:
         reason = error.diagnostics[0].message
         message = f"--over '{text[:60]}': {reason}"
-        raise UsageError(
-            Diagnostic("SF902", message, None, error.diagnostics[0].hint or f"write {FORMS}")
-        ) from None
+        hint = error.diagnostics[0].hint or f"write {FORMS}"
+        raise UsageError(Diagnostic("SF902", message, None, hint)) from None
 
 
 def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:

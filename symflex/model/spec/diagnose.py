@@ -175,9 +175,8 @@ def _bad_value(source: Source, text: str, statement: Statement, message: str, of
         return Diagnostic("SF101", f"{_shown(shown)} is not an escape sequence", Span(source, *escape), hint)
     if value[0] in "\"'":
         message = f"unexpected text after the value: {_shown(text[offset : whole.end])}"
-        return Diagnostic(
-            "SF101", message, Span(source, offset, max(offset + 1, whole.end)), "one key a line"
-        )
+        place = Span(source, offset, max(offset + 1, whole.end))
+        return Diagnostic("SF101", message, place, "one key a line")
     if value[0] not in "[{":
         said, hint = _bad_scalar(value)
         return Diagnostic("SF101", said, whole, hint)

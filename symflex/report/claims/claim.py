@@ -129,13 +129,7 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 
 
 def verdict_counts(findings: Sequence[Finding]) -> str:
-    """Say how many claims have each verdict.
-
-    Examples
-    --------
-    >>> verdict_counts([judged(True), judged(True, condition=True), judged(True)])
-    '2 hold, 1 hold with a condition'
-    """
+    """Say how many claims have each verdict."""
     counts: Counter[str] = Counter(finding.verdict for finding in findings)
     return ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
 
