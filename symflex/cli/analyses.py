@@ -35,11 +35,11 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     Every root is proved to lie within its radius, with its multiplicity, and the list is proved complete. A
     distributed system has infinitely many roots; by default, the lowest are shown.
 
-    --explain names the constrained system whose poles are the zeros. --letters adds natural frequencies and
-    damping ratios in letters, the conditions for real and imaginary roots, and frequency equations.
+    --explain identifies the constrained system whose poles are the zeros. --letters adds natural frequencies
+    and damping ratios in letters, the conditions for real and imaginary roots, and frequency equations.
     --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
     per relative change of a parameter. Put it after SPEC: it takes the next word as the name of a parameter.
-    --spread adds rectangles that poles and zeros do not leave for any combination of values off by a share.
+    --spread adds rectangles that contain the poles and zeros for all combinations of values within a share.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots certified so far are shown.
@@ -108,7 +108,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
 def rational(spec: Specification, given: RationalOptions) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
-    A distributed system keeps as many modes as --modes says: in product form their poles and zeros, in modal
+    A distributed system keeps as many modes as --modes gives: in product form their poles and zeros, in modal
     form their residues and a static correction. By sampling, symflex finds up to which frequencies the
     approximation is within 1 % and 5 % of the exact function. A lumped system with all its modes is its own
     approximation.
@@ -142,16 +142,16 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     between boundaries. Gain and phase margins are those of the value that K has in SPEC.
 
     --over takes any parameter: a delay, a length, a mass. Two of them make a chart of boxes in which the
-    number of poles in the right half-plane is proved; boxes about a boundary stay undecided.
+    number of poles in the right half-plane is certified; boxes about a boundary stay undecided.
 
-    --spread asks whether SPEC is stable for every combination of its values at once, each off by up to a
+    --spread checks whether SPEC is stable for every combination of its values, each off by up to a
     share; or prints a combination for which it is proved not to be. Put it after SPEC, with or without a
     share.
 
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie in the left half-plane; with two of --over, the boundary as a curve.
 
-    Exit code 4: something is not proved; the output says what. Structures without damping have poles all
+    Exit code 4: something is not certified; the output says what. Undamped structures have poles all
     along the axis; these are counted up to a frequency, which is printed.
     """
     from symflex.cli.progress import ProgressBar

@@ -56,7 +56,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Kinds are bode, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability and step.
 
-    modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
+    modes draws the lowest mode shapes: as many as --modes gives, else [analysis] modes, else five. locus
     --gain K draws the paths of the closed-loop poles as K grows, from certified poles to certified zeros; for
     a distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
     --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their certified peaks.

@@ -44,7 +44,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from the right (t -> 0+).
 
-    If no method proves the response, as for undamped beams with controllers, the lowest 25 modes are
+    If no method certifies the response, as for undamped beams with controllers, the lowest 25 modes are
     summed (12 in a large network whose higher modes are small) and the contribution of the others is
     estimated. The first line then says that the values are not certified.
 
@@ -208,7 +208,7 @@ def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None
 def peak(spec: Specification, given: PeakOptions) -> int:
     """Print the largest magnitude of one transfer function of SPEC over all frequencies, and where it is.
 
-    No frequency has a larger one, which is proved; it is infinite if a pole lies on the imaginary axis.
+    It is certified that no frequency has a larger one; a pole on the imaginary axis makes it infinite.
     Stable lumped functions have their H2 norm, too. Exit code 4: from some frequency on no bound is known.
     """
     from symflex import pipeline
