@@ -53,6 +53,3 @@ class Sweep(sweep_room.Sweep):
         from symflex.figures import DEFAULT_FONT, draw_sweep  # imports matplotlib
 
         return draw_sweep(self, modes=modes, width_mm=width_of(width), font=font or DEFAULT_FONT, ax=ax)
-
-    def _repr_html_(self) -> str:
-        return sweep_room.sweep_html(self)

@@ -115,12 +115,12 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate
-    from symflex.analysis.rational.approximation import rational_json, rational_text
+    from symflex.analysis.rational.approximation import rational_json
 
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
     approximation = approximate(bound, given.modes, given.form)
-    answer(given.as_json, lambda: rational_json(approximation), lambda: rational_text(approximation))
+    answer(given.as_json, lambda: rational_json(approximation), lambda: approximation.text(None))
 
 
 class Ranged(Command):
@@ -219,7 +219,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.sweep import run
     from symflex.sweep.files import check_writable
-    from symflex.sweep.sweep import sweep_json, sweep_text
+    from symflex.sweep.sweep import sweep_json
 
     if given.workers and given.scheduler:
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
@@ -238,7 +238,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
         swept = run.sweep(task, design, given, executor, workers=size, progress=bar)
     if given.output:
         note(f"wrote {Path(given.output)}")
-    answer(given.as_json, lambda: sweep_json(swept), lambda: sweep_text(swept, terminal_width()))
+    answer(given.as_json, lambda: sweep_json(swept), lambda: swept.text(terminal_width()))
     if swept.is_certified:
         return 0
     return 5 if any(code.startswith(BUDGET_CODE) for code in swept["code"].reshape(-1).tolist()) else 4

@@ -46,6 +46,8 @@ from symflex.transfer import AnyBoundFunction
 if TYPE_CHECKING:
     from symflex.loops.clouds import RootCloud
 
+    Roots = tuple[Sequence[RootMark], Sequence[RootCloud]]
+
 
 PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
@@ -119,11 +121,11 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         axes = own[i] if own else figure.add_axes(box)
         if own:
             panel_width, panel_height = inches_of(axes)
-        _draw_panel(axes, marks, clouds[i], view, panel_width, panel_height)
+        _draw_panel(axes, (marks, clouds[i]), view, panel_width, panel_height)
         if is_asked:
             axes.set_aspect("auto")
         panel = Panel.of(view, panel_width, panel_height, marks)
-        inset = () if is_asked else _draw_inset(axes, marks, clouds[i], panel)
+        inset = () if is_asked else _draw_inset(axes, (marks, clouds[i]), panel)
         write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks, inset)
         axes.set_title(label_of_tf(bound.source), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
@@ -158,14 +160,8 @@ def _view(
     return replace(wider, shown=view.shown) if corners else view
 
 
-def _draw_panel(
-    axes: Axes,
-    marks: Sequence[RootMark],
-    clouds: Sequence[RootCloud],
-    view: View,
-    width: float,
-    height: float,
-) -> None:
+def _draw_panel(axes: Axes, roots: Roots, view: View, width: float, height: float) -> None:
+    marks, clouds = roots
     axes.set_xlim(*view.re)
     axes.set_ylim(*view.im)
     axes.set_aspect("equal", adjustable="box")
@@ -184,9 +180,7 @@ def _draw_panel(
             axes.add_patch(box)
 
 
-def _draw_inset(
-    axes: Axes, marks: Sequence[RootMark], clouds: Sequence[RootCloud], panel: Panel
-) -> tuple[Box, ...]:
+def _draw_inset(axes: Axes, roots: Roots, panel: Panel) -> tuple[Box, ...]:
     """Draw the roots close to the origin where no root is, and return what it covers [points]."""
     near, (wide, high) = crowded(panel.view), panel.size
     across, upwards = INSET * wide, INSET * high
@@ -198,8 +192,8 @@ def _draw_inset(
     if panel.cost(box, (), ()):
         return ()
     inset = axes.inset_axes(((box[0] + PAD) / wide, (box[1] + PAD / 2) / high, INSET, INSET))
-    view = choose_view([m for m in marks if m.s in near], None, (across / upwards,) * 2, near)
-    _draw_panel(inset, marks, clouds, view, across / POINTS_PER_INCH, upwards / POINTS_PER_INCH)
+    view = choose_view([m for m in roots[0] if m.s in near], None, (across / upwards,) * 2, near)
+    _draw_panel(inset, roots, view, across / POINTS_PER_INCH, upwards / POINTS_PER_INCH)
     inset.tick_params(labelsize=NOTE_POINTS, pad=2)
     return (box,)
 

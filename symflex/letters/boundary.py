@@ -6,8 +6,8 @@ Output: :class:`Conditions`, the relations of the curve and those of the values 
 Example: ``s + K exp(-s T)`` has poles at ``s = j omega`` where ``K = omega`` and ``omega T = pi/2 + 2 n pi``.
 
 On the axis ``A + K B + T C = 0`` are two linear equations, its real and its imaginary part (D-decomposition;
-Neimark 1949). With a delay the magnitude of ``exp(-s T) = -A/(K B)``, which is one, gives K. The curve is
-put into the characteristic function, in balls at random values, before it is printed.
+Neimark 1949). With a delay the magnitude of ``exp(-s T) = -A/(K B)``, which is one, gives K, and its angle
+gives T. The curve is put into the characteristic function, in balls at random values, before it is printed.
 """
 
 from __future__ import annotations
@@ -25,25 +25,37 @@ from symflex.algebra import LAPLACE, Factored, irreducible_factors
 from symflex.algebra.ring import coefficients_of
 from symflex.balls import at_centre, ball, precision
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UsageError
-from symflex.expressions import Call, Name, format_expression, product_of, quotient
-from symflex.letters.routh import BITS, LONGEST, POINTS, Conditions, SymbolicRelation, read, relation_of
+from symflex.expressions import Call, Name, Negative, negative, number, product_of, quotient, sum_of
+from symflex.letters.routh import (
+    BITS,
+    LONGEST,
+    POINTS,
+    Conditions,
+    Signs,
+    SymbolicRelation,
+    read,
+    relation_of,
+)
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import seen_pair
 from symflex.model import ExactValue
 from symflex.model.analysis import lines_in_order
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
+from symflex.print.forms.arrange import length_sides
 from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
-from symflex.print.forms.notation import Line, constant_symbols, reachable
+from symflex.print.forms.naming import Naming
+from symflex.print.forms.notation import Line, constant_symbols, plain_printer, reachable, wave_times_length
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Kernel, Ring
     from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.transfer import TransferFunction
@@ -68,9 +80,8 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     whole = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
     shaped = [n for n in over for v in tf.kernels.values if v.depends_on(n)]
     gain, other = sorted(over, key=shaped.count)  # a delay comes last
-    turn = Factored.generator(ring, LAPLACE) * Factored.generator(ring, other)  # of exp(-s*T)
-    angles = {k.generator: k.dispersion.shift * k.length for k in tf.kernels.kernels if k.function == "exp"}
-    delays = [name for name, angle in angles.items() if (angle / turn).is_one]
+    rates = {k.generator: rate for k in tf.kernels.kernels if (rate := _rate(ring, k, other))}
+    delays = list(rates)
     moving = [f for f, e in whole.factors if e > 0 and ring.used_in((f,)) & {gain, other, *delays}]
     laws = [x for d in tf.kernels.dispersions for c in d.characteristic for x in c.factors]
     is_lossless = not any(m[0] % 2 for f, e in laws if len(f) > 1 or e % 2 for m in f.monoms())
@@ -79,22 +90,26 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
         solved = _solved(tf, whole, moving[0], (gain, other), delays)
     if solved is None:
         message = f"the characteristic function cannot be solved for {gain} and {other} in letters"
-        hint = "it has to be linear in both, or contain one exp(-s*T) and one gain; waves must be undamped"
+        hint = "it has to be linear in both, or contain one exp(-s*T) times one gain; waves must be undamped"
         raise ModelError(Diagnostic("SF801", message, parameters[0].span, hint))
     page, values = solved
+    if delays:
+        *values[1:], quarters, times = _arc(tf, page, gain, *values[1:])
     sides, lines, symbols = page.printed(*values)
     right, omega, turns = [quotient(*each) for each in sides], symbols[LAPLACE], ""
     left = [Call(name, omega) for name in (gain, other)]
+    shown, angle = [*right], None
     if delays:
         # The root of a square may have either sign.
         is_square = all(c > 0 for f, _ in values[0].factors for c in f.coeffs())
         right[0] = page.printer(symbols).square_root(values[0]) if is_square else Call("sqrt", right[0])
-        left[1:] = (Call(f, product_of([omega, Name(other)])) for f in ("cos", "sin"))
-        turns = f" with {other} = (atan2(sin, cos) + 2*n*pi)/{format_expression(omega)}, n = 0, 1, 2, ..."
-    _check(tf, moving[0], (gain, other), right, lines)
+        n, late = Naming.of(tf).take("n")[0], partial(_late, tf, omega, *rates[delays[0]])
+        shown = [right[0], late(_angle(quarters, times, right[1], Name(n)))]
+        turns, angle = f", {n} = 0, 1, 2, ...", (quarters, times, late)
+    _check(tf, moving[0], (gain, other), right, lines, angle)
     where = [line for line in reachable(right, lines) if Name(line[0]) not in (omega, symbols[IMAGINARY])]
     counts = [sum(len(f) for f, _ in value.factors) for value in values]
-    both = zip(counts, zip(left, right, strict=True), strict=True)
+    both = zip(counts, zip(left, shown, strict=True), strict=True)
     curve = [SymbolicRelation(n, "=", sides if n <= LONGEST else None) for n, sides in both]
     curve += [SymbolicRelation(1, "=", (Name(name), e)) for name, e in where]
     if not any(d.wavenumbers for d in tf.kernels.dispersions):
@@ -109,11 +124,11 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
 def _solved(
     tf: TransferFunction, whole: Factored, factor: fmpz_mpoly, over: Sequence[str], delays: Sequence[str]
 ) -> tuple[FrequencyPage, list[Factored]] | None:
-    """Return both parameters; or the square of a gain, and cosine and sine of frequency times delay."""
+    """Return both parameters; or the square of a gain, and cosine and sine of the angle of a delay."""
     ring, (gain, other) = tf.ratio.ring, over
     if delays:
         split = coefficients_of(ring, factor, [ring.index[n] for n in (*delays, gain, other)])
-        if set(split) not in ({(0, 0, 0), (1, 1, 0)}, {(0, 1, 0), (1, 0, 0)}):
+        if len(delays) > 1 or set(split) not in ({(0, 0, 0), (1, 1, 0)}, {(0, 1, 0), (1, 0, 0)}):
             return None
         still, turned = (Factored.polynomial(ring, split[key]) for key in sorted(split))
         whole = still / turned
@@ -147,12 +162,54 @@ def _solved(
     return page, [lowest(a_j * c - a * c_j, below), lowest(a * b_j - a_j * b, below)]
 
 
+def _rate(ring: Ring, kernel: Kernel, delay: str) -> tuple[Factored, Factored] | None:
+    """Return c and t of ``exp(-s*(c*T + t))``, c not 0."""
+    late = kernel.dispersion.shift * kernel.length / Factored.generator(ring, LAPLACE)
+    below, parts = late.denominator(), coefficients_of(ring, late.numerator().expand(), [ring.index[delay]])
+    if kernel.function != "exp" or max(parts) != (1,) or below.depends_on(delay) or late.depends_on(LAPLACE):
+        return None
+    c, t = (Factored.polynomial(ring, parts.get((n,), ring.constant(0))) / below for n in (1, 0))
+    return c, t
+
+
+def _arc(
+    tf: TransferFunction, page: FrequencyPage, gain: str, cosine: Factored, sine: Factored
+) -> tuple[Factored, int, int]:
+    """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``; m is 2 unless a sign is known."""
+    own, more = Signs.of(tf), {LAPLACE, gain}
+    signs = Signs(page.ring, own.positive | more, own.nonnegative | more)
+    c, s = (
+        prod((signs.of_polynomial(f) ** (2 - e % 2) for f, e in x.factors), start=(x.unit > 0) - (x.unit < 0))
+        for x in (cosine, sine)
+    )
+    if c:
+        return sine / cosine, 1 - c, 1
+    return (-cosine / sine, s, 1) if s else (sine / (Factored.number(page.ring, 1) + cosine), 0, 2)
+
+
+def _angle(quarters: int, times: int, tangent: Expression, n: Expression) -> Expression:
+    """Return an angle and n turns."""
+    half = quotient(number(quarters), number(2)) if quarters % 2 else number(quarters // 2)
+    turns = product_of([sum_of([product_of([number(2), n]), half]), Name("pi")])
+    arc = Call("atan", tangent.operand if isinstance(tangent, Negative) else tangent)
+    arcs = product_of([number(0 if tangent == number(0) else times), arc])
+    return sum_of([turns, negative(arcs) if isinstance(tangent, Negative) else arcs])
+
+
+def _late(tf: TransferFunction, omega: Expression, c: Factored, t: Factored, angle: Expression) -> Expression:
+    """Return the delay T of ``exp(-s*(c*T + t))`` that turns by an angle."""
+    above, below = length_sides(printer := plain_printer(tf), c)
+    late = product_of([below, sum_of([angle, negative(wave_times_length(printer, omega, t))])])
+    return quotient(late, product_of([omega, above]))
+
+
 def _check(
     tf: TransferFunction,
     f: fmpz_mpoly,
     over: Sequence[str],
     right: Sequence[Expression],
     lines: Sequence[Line],
+    angle: tuple[int, int, Callable[[Expression], Expression]] | None,
 ) -> None:
     """Put a curve into the characteristic function at random values. Raises InternalError: SF992."""
     random = Random(tf.name)
@@ -167,8 +224,11 @@ def _check(
             for name in lines_in_order(right, meanings)[0]:
                 known[name] = read(meanings[name], known.__getitem__)
             gain = known[over[0]] = read(right[0], known.__getitem__)
-            more, *sine = (read(e, known.__getitem__).real for e in right[1:])
-            time = (arb.atan2(sine[0], more) + 2 * arb.pi()) / ball(omega) if sine else more
+            time = read(right[1], known.__getitem__).real
+            if angle is not None:
+                quarters, times, delay = angle
+                start, end = (read(delay(number(n)), known.__getitem__).real for n in (0, 1))
+                time = start + (end - start) * ((4 + quarters) * arb.pi() / 2 + times * time.atan())
             fixed = ((over[0], partial(arb, gain.real)), (over[1], partial(arb, time)))
             kernels = BoundTransferFunction(
                 tf, numbers, tf.ratio, (), tf.kernels, fixed=fixed

@@ -14,8 +14,12 @@ class Printed:
         """Return what is said."""
         raise NotImplementedError
 
+    def text(self, width: int | None = WIDTH) -> str:
+        """Return it for a terminal of so many columns; without one, no line is broken."""
+        return passages_text(self.passages(), width)
+
     def __str__(self) -> str:
-        return passages_text(self.passages(), WIDTH)
+        return self.text()
 
     def _repr_html_(self) -> str:
         from symflex.print.html import passages_html  # only notebooks ask

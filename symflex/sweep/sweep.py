@@ -9,7 +9,8 @@ import numpy as np
 
 from symflex.errors import counted
 from symflex.errors.optional import installed
-from symflex.print.text import Passage, passages_text
+from symflex.print.notebook import Printed
+from symflex.print.text import Passage
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, VERDICTS, PointStatus, RootStatus
@@ -56,7 +57,7 @@ class Labelled:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Sweep:
+class Sweep(Printed):
     """What was found at all points of a design."""
 
     # What was swept, in words: ``schema``, ``tf``, ``of``, ``parameters``, ``title``, ``version``, ``key``.
@@ -70,6 +71,34 @@ class Sweep:
         names = ", ".join(each.name for each in self.parameters)
         points = counted(self["point_status"].size, "point")
         return f"<Sweep {self.attribute('tf')}: {self.of} at {points}, {names}, {status}>"
+
+    def passages(self) -> Iterator[Passage]:
+        """Return what was swept, how much of it is proved, and between which values each mode moves."""
+        status = self["point_status"]
+        shape = " x ".join(map(str, status.shape))
+        points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
+        lines = [f"{self.attribute('tf')}: {self.of} at {points}"]
+        for each in self.parameters:
+            unit = f" {each.unit}" if each.unit else ""
+            drawn = each.dims == ("draw",)
+            how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
+            lines.append(f"{INDENT}{each.name} = {_span(each.values)}{unit}{how}")
+        yield Passage(lines)
+        proved = [f"{INDENT}{count} {STATES[name]}" for name, count in self.counts.items() if count]
+        codes = sorted({code for code in self["code"].reshape(-1).tolist() if code})
+        if codes:
+            proved.append(f"{INDENT}codes: {', '.join(codes)}")
+        if self.of == "poles":
+            proved += _stability(self, points)
+        if self.of in ("poles", "zeros"):
+            yield Passage([*proved, *_doubts(self)])
+            more = self["status"].shape[-1] - MODES_SHOWN
+            shown = f"the lowest {MODES_SHOWN} modes, and {more} more" if more > 0 else "modes"
+            yield Passage([INDENT + shown], _mode_rows(self))
+        else:
+            yield Passage(proved)
+            if self.of == "margins":
+                yield Passage(_margins(self))
 
     def __getitem__(self, name: str) -> Array:
         """Return an array by its name."""
@@ -247,46 +276,6 @@ STATES = {
     "not_certified": "not certified",
     "failed": "failed",
 }
-
-
-def sweep_text(sweep: Sweep, width: int = 80) -> str:
-    """Return what was swept, how much of it is proved, and between which values each mode moves."""
-    return passages_text(_passages(sweep), width)
-
-
-def sweep_html(sweep: Sweep) -> str:
-    """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import passages_html  # only notebooks ask
-
-    return passages_html(_passages(sweep))
-
-
-def _passages(sweep: Sweep) -> Iterator[Passage]:
-    status = sweep["point_status"]
-    shape = " x ".join(map(str, status.shape))
-    points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
-    lines = [f"{sweep.attribute('tf')}: {sweep.of} at {points}"]
-    for each in sweep.parameters:
-        unit = f" {each.unit}" if each.unit else ""
-        drawn = each.dims == ("draw",)
-        how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
-        lines.append(f"{INDENT}{each.name} = {_span(each.values)}{unit}{how}")
-    yield Passage(lines)
-    proved = [f"{INDENT}{count} {STATES[name]}" for name, count in sweep.counts.items() if count]
-    codes = sorted({code for code in sweep["code"].reshape(-1).tolist() if code})
-    if codes:
-        proved.append(f"{INDENT}codes: {', '.join(codes)}")
-    if sweep.of == "poles":
-        proved += _stability(sweep, points)
-    if sweep.of in ("poles", "zeros"):
-        yield Passage([*proved, *_doubts(sweep)])
-        more = sweep["status"].shape[-1] - MODES_SHOWN
-        shown = f"the lowest {MODES_SHOWN} modes, and {more} more" if more > 0 else "modes"
-        yield Passage([INDENT + shown], _mode_rows(sweep))
-    else:
-        yield Passage(proved)
-        if sweep.of == "margins":
-            yield Passage(_margins(sweep))
 
 
 def _words(sweep: Sweep) -> dict[str, int]:

@@ -11,7 +11,7 @@ from symflex.errors import SymflexError
 from symflex.options import SweepOptions
 from symflex.sweep import read_design, sweep_task
 from symflex.sweep.files import netcdf_bytes, npz_bytes, read_sweep
-from symflex.sweep.sweep import sweep_json, sweep_text
+from symflex.sweep.sweep import sweep_json
 from tests.fuzz.target_numpy_archive import packed, unpacked
 
 ROOMS = ("symflex.data.measurement", "symflex.sweep.files", "symflex.sweep")
@@ -50,5 +50,5 @@ def run(data):
     place().write_bytes(data if data[:3] == b"CDF" else packed(data))
     with suppress(SymflexError):
         sweep = read_sweep(place())
-        sweep_text(sweep, 80)
+        sweep.text(80)
         sweep_json(sweep)

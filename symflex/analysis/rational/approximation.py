@@ -24,7 +24,7 @@ from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
 from symflex.print.notebook import Printed
-from symflex.print.text import Passage, passages_text
+from symflex.print.text import Passage
 from symflex.roots import PoleZeroMap, Root
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
@@ -277,7 +277,16 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
 
     def passages(self) -> Iterator[Passage]:
         """Return poles and zeros, or residues, and how good the approximation is."""
-        return _passages(self)
+        head, *said = _said(self)
+        yield Passage([head])
+        yield Passage([INDENT + line for line in said])
+        if self.residues:
+            yield Passage([_counted("poles and residues", self.poles)], _residue_rows(self))
+        else:
+            yield Passage([_counted("poles", self.poles)], _root_rows(self.poles))
+        yield Passage([_counted("zeros", self.zeros)], _root_rows(self.zeros))
+        if self.is_estimate:
+            yield Passage([f"{INDENT}{ESTIMATE}"])
 
     @property
     def source(self) -> AnyTransferFunction:
@@ -428,43 +437,6 @@ DIGITS = 10
 JSON_DIGITS = 17  # so many give a double back exactly
 
 Row = tuple[str, ...]
-
-
-def rational_text(approximation: RationalApproximation) -> str:
-    r"""Return an approximation as tables, with the frequencies up to which it is valid, in 80 columns.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> from symflex.analysis.rational import approximate
-    >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "3*u/(s + 2)"')
-    >>> print(rational_text(approximate(pipeline.derive_bound(model, [("y", "u")])[0])))
-    y/u   transfer function [s], product form, 1 mode; stable
-    <BLANKLINE>
-      exact: nothing is left out of this rational function
-      gain: 3
-      static gain: 1.5
-    <BLANKLINE>
-      poles: 1
-        Re [rad/s]  Im [rad/s]   f [Hz]  zeta
-                -2           0  0.31831     1
-    <BLANKLINE>
-      zeros: none
-    """
-    return passages_text(_passages(approximation))
-
-
-def _passages(approximation: RationalApproximation) -> Iterator[Passage]:
-    head, *said = _said(approximation)
-    yield Passage([head])
-    yield Passage([INDENT + line for line in said])
-    if approximation.residues:
-        yield Passage([_counted("poles and residues", approximation.poles)], _residue_rows(approximation))
-    else:
-        yield Passage([_counted("poles", approximation.poles)], _root_rows(approximation.poles))
-    yield Passage([_counted("zeros", approximation.zeros)], _root_rows(approximation.zeros))
-    if approximation.is_estimate:
-        yield Passage([f"{INDENT}{ESTIMATE}"])
 
 
 def _said(approximation: RationalApproximation) -> list[str]:

@@ -1,7 +1,6 @@
 """Boundaries in letters, against textbooks and against characteristic functions that were written by hand."""
 
-from cmath import cos, cosh, exp, sin, sinh, sqrt
-from math import atan2, tau
+from cmath import atan, cos, cosh, exp, pi, sin, sinh, sqrt
 
 import pytest
 
@@ -10,7 +9,7 @@ from symflex.errors import SymflexError
 
 ROD = {"type": "rod", "between": ["x", "tip"], "E": "E", "rho": "rho", "A": "A", "l": "l"}
 BEAM = {"type": "beam", "between": ["x", "tip"], "EI": "E", "rhoA": "rho", "l": "l"}
-FUNCTIONS = {"cos": cos, "cosh": cosh, "sin": sin, "sinh": sinh, "sqrt": sqrt}
+FUNCTIONS = {"atan": atan, "pi": pi, "cos": cos, "cosh": cosh, "sin": sin, "sinh": sinh, "sqrt": sqrt}
 
 
 def model_of(letters, **tables):
@@ -31,22 +30,40 @@ def machine(letters, member, force):
 def test_boundaries_of_textbooks():
     lag = "K(omega) = T*omega*sin(omega*L) - cos(omega*L); "
     lag += "K_i(omega) = omega*(T*omega*cos(omega*L) + sin(omega*L)); K_i = 0"
-    integrator = "K(omega) = omega; cos(omega*T) = 0; sin(omega*T) = omega/K; K = 0"
-    wall = "K(omega) = omega*sqrt(m^2*omega^2 + b^2); cos(omega*T) = m*omega^2/K; sin(omega*T) = b*omega/K; "
-    wall += "K = 0"
+    integrator = "K(omega) = omega; T(omega) = (2*n + 1/2)*pi/omega; K = 0"
+    wall = "K(omega) = omega*sqrt(m^2*omega^2 + b^2); T(omega) = (2*n*pi + atan(b/(m*omega)))/omega; K = 0"
+    delayed = "K(omega) = sqrt(T_1^2*omega^2 + 1); "
+    delayed += "T(omega) = ((2*n + 1)*pi - atan(T_1*omega) - omega*T_2)/omega; K + 1 = 0"
+    held = "K(omega) = sqrt(T_1^2*omega^2 + 1); "
+    held += "T(omega) = 2*((2*n + 1)*pi - atan(T_1*omega))/(3*omega); K + 1 = 0"
     for letters, transfer, over, expected in (
         ("K T", "K/s*exp(-s*T)", ("T", "K"), integrator),  # K*T < pi/2
         ("m b K T", "K/(m*s^2 + b*s)*exp(-s*T)", ("K", "T"), wall),  # a haptic wall
+        ("K T T_1 T_2", "K/(T_1*s + 1)*exp(-s*(T + T_2))", ("K", "T"), delayed),
+        ("K T T_1", "K/(T_1*s + 1)*exp(-1.5*T*s)", ("T", "K"), held),  # a sampled computer
         # Silva, Datta and Bhattacharyya 2005, PI control of a lag with delay
         ("K K_i T L", "(K + K_i/s)/(T*s + 1)*exp(-s*L)", ("K", "K_i"), lag),
     ):
         assert "; ".join(map(str, loop(letters, transfer).conditions(over=over).conditions)) == expected
 
 
+def test_an_arc_tangent_is_typeset_as_a_function():
+    shown = loop("K T L", "K/(T*s + 1)*exp(-s*L)").conditions(over=("K", "L")).latex()
+    assert r"- \operatorname{arctan}(T \omega)" in shown
+
+
 def on_rod(s, v):
     q = s * v["l"] * sqrt(v["rho"] / v["E"])
     force = (v["K"] + v["K_d"] * s) * exp(-s * v["T"])
     return v["m"] * s**2 * cosh(q) + s * v["A"] * sqrt(v["E"] * v["rho"]) * sinh(q) + force
+
+
+def on_spring(s, v):
+    return v["m"] * s**2 + v["b"] * s + v["k"] + v["K"] * s * exp(-s * (v["T"] * v["a"] + v["T_2"]) / 2)
+
+
+def in_filter(s, v):
+    return v["T_1"] * s + 1 + v["K"] * exp(-s * v["T"]) * (1 + exp(-s * v["T_2"]))
 
 
 def on_beam(s, v):
@@ -57,11 +74,27 @@ def on_beam(s, v):
     return v["m"] * s**2 + v["K"] * exp(-s * v["T"]) + stiffness
 
 
+SPRING = model_of(
+    "m b k K T a T_2",
+    elements={
+        "body": {"type": "mass", "at": "x", "m": "m"},
+        "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+        "loss": {"type": "damper", "between": ["x", "ground"], "b": "b"},
+        "drive": {"type": "force_source", "at": "x", "f": "F - K*exp(-s*(a*T + T_2)/2)*s*x"},
+    },
+    inputs={"F": {}},
+    outputs={"X": "x"},
+)
+
+
 @pytest.mark.parametrize(
     ("model", "over", "function"),
     [
         (machine("m E rho A l K K_d T", ROD, "(K + K_d*s)*exp(-s*T)*tip"), ("K", "K_d"), on_rod),
         (machine("m E rho l K T", BEAM, "K*exp(-s*T)*x"), ("K", "T"), on_beam),
+        (SPRING, ("K", "T"), on_spring),
+        # Neither cosine nor sine of the angle has a sign.
+        (loop("K T T_1 T_2", "K*(1 + exp(-s*T_2))*exp(-s*T)/(T_1*s + 1)"), ("K", "T"), in_filter),
     ],
 )
 def test_a_pole_lies_on_the_axis_where_the_boundary_says(model, over, function):
@@ -69,11 +102,10 @@ def test_a_pole_lies_on_the_axis_where_the_boundary_says(model, over, function):
     for omega in (0.3, 1.1, 2.7):
         known = {p.name: 0.5 + 0.1 * i for i, p in enumerate(model.resolved.parameters) if p.name not in over}
         known["omega"] = omega
-        # Names stand below the lines that use them, and sine and cosine below the gain.
+        known["n"] = 1
+        # Names stand below the lines that use them, and the delay below the gain.
         for left, right in [*[x for x in lines if x[0].isidentifier()][::-1], *lines]:
             known[left.removesuffix("(omega)")] = eval(right, FUNCTIONS, known)  # noqa: S307 (ours)
-        if "T" in over:
-            known["T"] = (atan2(known["sin(omega*T)"].real, known["cos(omega*T)"].real) + tau) / omega
         assert abs(function(1j * omega, known)) < 1e-9
 
 
