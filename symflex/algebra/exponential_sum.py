@@ -69,10 +69,6 @@ def parts(amplitude: Mapping[Monomial, Gaussian]) -> Iterator[tuple[Monomial, Ga
     yield from ((m, (0, im)) for m, (_, im) in amplitude.items() if im)
 
 
-def _sparse(exponents: Sequence[int]) -> Monomial:
-    return tuple((i, int(e)) for i, e in enumerate(exponents) if e)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Argument:
     """What an exponential is taken of, but for a factor."""
@@ -227,7 +223,11 @@ def exponential_sum(
             return None
     # Descending, as in the ring, so that sums of balls are the same on every way here.
     amplitudes = {
-        exponent: {_sparse(m): terms[m] for m in sorted(terms, reverse=True) if any(terms[m])}
+        exponent: {
+            tuple((i, int(e)) for i, e in enumerate(m) if e): terms[m]
+            for m in sorted(terms, reverse=True)
+            if any(terms[m])
+        }
         for exponent, terms in collected.items()
     }
     return ExponentialSum({exponent: own for exponent, own in amplitudes.items() if own}, degree)

@@ -16,7 +16,7 @@ vibration: a vector diagram approach); without damping W is V, with it W is such
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from flint import acb, arb
@@ -193,7 +193,11 @@ def input_shaper(
     with precision(bits):
         impulses = [(arb(0), arb(1))]
         for root in chosen:
-            impulses = _convolved(impulses, _of_mode(bound, root, kind))
+            own = _of_mode(bound, root, kind)
+            if len(impulses) * len(own) > MOST_IMPULSES:
+                message = f"the modes together need more than {MOST_IMPULSES} impulses"
+                raise UsageError(Diagnostic("SF902", message, None, "shape fewer modes"))
+            impulses = [(t + u, a * b) for t, a in impulses for u, b in own]
         impulses.sort(key=lambda impulse: impulse[0].mid())
     note = "joint shapers are not computed: one for each mode, in series" if joint and modes > 1 else ""
     return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, note)
@@ -209,10 +213,3 @@ def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, 
         )
         raise ModelError(Diagnostic("SF814", message, None, "use zv, or no shaper: the mode hardly rings"))
     return [(half * i, size / whole) for i, size in enumerate(sizes)]
-
-
-def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
-    if len(one) * len(other) > MOST_IMPULSES:
-        message = f"the modes together need more than {MOST_IMPULSES} impulses"
-        raise UsageError(Diagnostic("SF902", message, None, "shape fewer modes"))
-    return [(t + u, a * b) for t, a in one for u, b in other]

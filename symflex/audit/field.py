@@ -237,7 +237,8 @@ class Arithmetic:
         result = self._number_power(Fraction(parts[0]), total)
         for recipe, power in parts[1]:
             turned = is_flipped and not self._is_sum_of_positives(recipe)
-            result = result * self._sum_power(_negated(recipe) if turned else recipe, power * total)
+            signed = tuple((key, -n) for key, n in recipe) if turned else recipe
+            result = result * self._sum_power(signed, power * total)
         return result
 
     def _parts(self, factor: fmpz_mpoly) -> tuple[int, list[tuple[Recipe, int]]] | None:
@@ -375,7 +376,8 @@ class Arithmetic:
             unit = self.ground.waves[place].unit
             n = coefficient / unit
             if n.denominator != 1:
-                finer = Wave(key, _common_unit(coefficient, unit))
+                below = coefficient.denominator * unit.denominator  # both are multiples of the new unit
+                finer = Wave(key, Fraction(gcd(int(coefficient * below), int(unit * below)), below))
                 waves = (*self.ground.waves[:place], finer, *self.ground.waves[place + 1 :])
                 raise GrowError(self.ground.grown(waves=waves))
             if abs(n) > MOST_MULTIPLES:
@@ -500,20 +502,10 @@ def _recipe_of_plain(names: Sequence[str], part: fmpz_mpoly) -> Recipe:
     return tuple(sorted(terms))
 
 
-def _negated(recipe: Recipe) -> Recipe:
-    return tuple((key, -coefficient) for key, coefficient in recipe)
-
-
 def ground_of(parameters: Sequence[tuple[str, bool]]) -> Ground:
     """Return the ground of a model's parameters, each with whether it is positive."""
     names = (LAPLACE, *(n for n, _ in parameters), "pi")
     return Ground(names, frozenset({LAPLACE, "pi", *(n for n, positive in parameters if positive)}))
-
-
-def _common_unit(left: Fraction, right: Fraction) -> Fraction:
-    """Return the largest number of which both are integer multiples."""
-    common = gcd(left.numerator * right.denominator, right.numerator * left.denominator)
-    return Fraction(common, left.denominator * right.denominator)
 
 
 def _primes(number: int) -> list[tuple[int, int]]:

@@ -84,8 +84,9 @@ def copy(name: str, folder: str | None) -> int:
     target = Path(folder or (path.name if path.is_dir() else "."))
     files = _all_in(path) if path.is_dir() else _needed_by(path)
     for inside, file in files.items():
-        if os.path.lexists(target / inside) and not _is_the_same(target / inside, file):
-            message, hint = f"'{target / inside}' exists and is not overwritten", "name another FOLDER"
+        there = target / inside
+        if os.path.lexists(there) and not (there.is_file() and filecmp.cmp(there, file, shallow=False)):
+            message, hint = f"'{there}' exists and is not overwritten", "name another FOLDER"
             raise UsageError(Diagnostic("SF903", message, None, hint))
     write_tree(target, {inside: file.read_bytes() for inside, file in files.items()})
     first = target if path.is_dir() else target / path.name
@@ -94,10 +95,6 @@ def copy(name: str, folder: str | None) -> int:
     others = f", {len(files)} files" if path.is_dir() else others
     note(f"wrote {first}{others}; try: symflex {tries} {first}")
     return 0
-
-
-def _is_the_same(there: Path, file: Path) -> bool:
-    return there.is_file() and filecmp.cmp(there, file, shallow=False)
 
 
 def _all_in(folder: Path) -> dict[str, Path]:

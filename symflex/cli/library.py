@@ -117,7 +117,14 @@ def elements(name: str | None, *, as_json: bool) -> int:
             {
                 "schema": "symflex.elements/1",
                 "elements": [_element_json(e) for e in elements],
-                "blocks": [_block_json(b) for b in blocks],
+                "blocks": [
+                    {
+                        "type": b.type_name,
+                        "summary": b.summary,
+                        "parameters": [_parameter_json(p) for p in b.parameters],
+                    }
+                    for b in blocks
+                ],
             }
         )
     elif name is None:
@@ -239,14 +246,6 @@ def _element_json(element: Element) -> dict[str, object]:
             for c in element.choices
         ],
         "through": list(element.through),
-    }
-
-
-def _block_json(block: Block) -> dict[str, object]:
-    return {
-        "type": block.type_name,
-        "summary": block.summary,
-        "parameters": [_parameter_json(p) for p in block.parameters],
     }
 
 

@@ -139,11 +139,14 @@ def _data(
         {**_function(m, at), "tape": tape_of(m.tf, names)}
         for m, at in zip(contents.members, located, strict=True)
     ]
+    # frequencies [Hz] around the roots, or the default of a frequency response
+    sizes = [abs(complex(x, y)) / tau for f in functions for x, y, _ in f["poles"] + f["zeros"] if x or y]
+    around = [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
     return {
         "title": model.title,
         "parameters": [_parameter(p, names[p.name], p.name in moving) for p in used],
         "functions": functions,
-        "band": [float(f) for f in model.analysis.band or ()] or _band(functions),
+        "band": [float(f) for f in model.analysis.band or ()] or around,
         "specification": _pieces(model, [p.name for p in used]),
     }
 
@@ -188,12 +191,6 @@ def _upper(roots: Iterable[Root]) -> list[list[float]]:
         for z, r in points
         if r.is_real or z.imag > 0
     ]
-
-
-def _band(functions: Sequence[dict[str, Any]]) -> list[float]:
-    """Return frequencies [Hz] around the roots, or the default of a frequency response."""
-    sizes = [abs(complex(x, y)) / tau for f in functions for x, y, _ in f["poles"] + f["zeros"] if x or y]
-    return [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
 
 
 def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:

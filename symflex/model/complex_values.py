@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.expressions import Expression
-    from symflex.model.model import PlacedBlock
     from symflex.model.network import Draft
 
 UNIT, ONE = Name(IMAGINARY), Fraction(1)
@@ -59,7 +58,7 @@ def with_real_values(draft: Draft) -> Draft:
 
     Definitions and blocks with j that are needed no more are left out.
     """
-    ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
+    ratios = {b.name: Quotient(*(e for _, e in b.values)) for b in draft.blocks if b.block is BLOCKS["tf"]}
     values = {d.name: d.expression for d in draft.definitions} | ratios
     reading = _ComplexNames({})
     while len(found := {n: e for n, e in values.items() if reading.has_unit(e)}) > len(reading.values):
@@ -92,10 +91,6 @@ def with_real_values(draft: Draft) -> Draft:
         signals=signals,
         outputs=outputs,
     )
-
-
-def _ratio(block: PlacedBlock) -> Expression:
-    return Quotient(*(e for _, e in block.values))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ A coordinate that elements or inputs are attached to is a node: its equation act
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -45,10 +45,8 @@ from symflex.model.network import Draft, DraftElement
 from symflex.model.operating_point import (
     NOWHERE,
     SMOOTH,
-    AtRest,
     linearised,
     read_operating_point,
-    with_value,
 )
 from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.spec import TableValue
@@ -158,36 +156,35 @@ def with_motion(
     nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
     nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
     rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes)
-    linear = linearised(
+    if energy:
+        rest = rest or NOWHERE
+        multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
+        known = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
+        rest = replace(
+            rest,
+            values={**rest.values, **known},
+            multipliers=tuple(v.name for v in known.values()),
+            coordinates=tuple(x.name for x in energy if x.name not in multipliers),
+        )
+    signals, found, point, solved = linearised(
         reader,
         (*draft.signals, *energy),
-        _with_multipliers(energy, rest),
+        rest,
         inputs,
         loads | nodes,
         {**dict.fromkeys(taken), **{d.name: d.expression for d in draft.definitions}},
         {p.name: lower(QuantityLiteral(p.quantity)) for p in draft.declared if p.quantity is not None},
         {p.name for p in draft.declared if p.assume != "positive"},
     )
-    definitions = in_order(reader, [*draft.definitions, *linear.definitions])
-    found = {d.name for d in linear.definitions}
-    declared = tuple(with_value(p, linear.solved) for p in draft.declared if p.name not in found)
-    draft = replace(draft, declared=declared, definitions=definitions, signals=linear.signals)
-    return _hung(draft, {x.name for x in energy}), linear.point
-
-
-def _with_multipliers(energy: Sequence[Signal], rest: AtRest | None) -> AtRest | None:
-    """Return the operating point, at 0 if none was given, with the multipliers among what is solved for."""
-    multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
-    if not energy:
-        return rest
-    rest = rest or NOWHERE
-    known = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
-    return replace(
-        rest,
-        values={**rest.values, **known},
-        multipliers=tuple(v.name for v in known.values()),
-        coordinates=tuple(x.name for x in energy if x.name not in multipliers),
-    )
+    declared = []
+    for p in draft.declared:
+        if p.name in solved and p.quantity is not None:
+            declared.append(replace(p, quantity=replace(p.quantity, magnitude=solved[p.name], pi_power=0)))
+        elif all(d.name != p.name for d in found):
+            declared.append(p)
+    definitions = in_order(reader, [*draft.definitions, *found])
+    draft = replace(draft, declared=tuple(declared), definitions=definitions, signals=signals)
+    return _hung(draft, {x.name for x in energy}), point
 
 
 def _hung(draft: Draft, coordinates: Collection[str]) -> Draft:

@@ -15,7 +15,7 @@ random values, so that a number that is not zero is proved, and an identity miss
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import count
 from random import Random
@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from symflex.errors import Span
-    from symflex.model.declarations import DeclaredParameter
     from symflex.model.model import Signal
     from symflex.model.reading import Reader
     from symflex.model.spec import TableValue
@@ -97,16 +96,6 @@ class AtRest:
 
 
 NOWHERE = AtRest({}, (), (), None)
-
-
-@dataclass(frozen=True)
-class Linearised:
-    """Signals with linear equations, and what else follows."""
-
-    signals: tuple[Signal, ...]
-    definitions: tuple[Definition, ...] = ()
-    point: OperatingPoint | None = None
-    solved: Mapping[str, Fraction] = field(default_factory=dict)  # parameters that have a value alone
 
 
 def read_operating_point(
@@ -157,8 +146,8 @@ def linearised(
     constants: Mapping[str, Expression | None],
     numbers: Mapping[str, Expression],
     signed: Collection[str],
-) -> Linearised:
-    """Return signals with linear equations, and definitions of the values at rest.
+) -> tuple[tuple[Signal, ...], list[Definition], OperatingPoint | None, Mapping[str, Fraction]]:
+    """Return signals with linear equations, definitions of values at rest, the point, and solved parameters.
 
     ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that are
     defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
@@ -168,8 +157,9 @@ def linearised(
     where one does not hold at rest.
     """
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
-    if not equations or (rest is None and not any(map(_primes, equations.values()))):
-        return Linearised(signals)
+    primes = (isinstance(n, Derivative | Differentiated) for e in equations.values() for n in nodes(e))
+    if not equations or (rest is None and not any(primes)):
+        return signals, [], None, {}
     point = _AboutRest(
         reader, rest or NOWHERE, frozenset(inputs), dict(constants), numbers, frozenset(signed)
     )
@@ -184,7 +174,8 @@ def linearised(
             return replace_values(plain, {n: _term(n, number(1)) for n in rates})
 
         rewritten = {n: replace(e, left=in_s(e.left), right=in_s(e.right)) for n, e in equations.items()}
-        return Linearised(tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals))
+        kept = tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals)
+        return kept, [], None, {}
     for x in signals:
         leaves = [n for n in nodes(x.expression) if point.varies(n)]
         if x.name not in equations and all(isinstance(n, Name) and n.name in moving for n in leaves):
@@ -195,7 +186,10 @@ def linearised(
             left = point.at_rest(sum_of([Name(name), negative(value)]))
             point.left_over.append((left, Equation(Name(name), value, span=point.values[name].span)))
     parts = (*equations.values(), *point.signals.values())
-    point.bare = {n for e in parts for n in point.moving_in(e) if isinstance(n, Name)}
+    products = [n for e in parts for n in nodes(e) if isinstance(n, Product)]
+    after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
+    leaves = [n for e in parts for n in nodes(e) if point.varies(n) and id(n) not in after_s]
+    point.bare = {n for n in leaves if isinstance(n, Name)}
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
         point.check_names(rest)
@@ -203,19 +197,7 @@ def linearised(
     if reader.problems:
         raise SpecError(*reader.problems)
     kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
-    return Linearised(kept, tuple(point.definitions), point.described(equations, made), point.by_value)
-
-
-def with_value(parameter: DeclaredParameter, solved: Mapping[str, Fraction]) -> DeclaredParameter:
-    """Return a parameter with the value that holds at rest, if it was solved for."""
-    quantity = parameter.quantity
-    if quantity is None or parameter.name not in solved:
-        return parameter
-    return replace(parameter, quantity=replace(quantity, magnitude=solved[parameter.name], pi_power=0))
-
-
-def _primes(expression: Expression) -> bool:
-    return any(isinstance(n, Derivative | Differentiated) for n in nodes(expression))
+    return kept, point.definitions, point.described(equations, made), point.by_value
 
 
 class _AboutRest:
@@ -318,16 +300,6 @@ class _AboutRest:
                         self.reader.note(
                             "SF224", message, call.span or span, "correct the values of parameters"
                         )
-
-    def moving_in(self, equation: Expression) -> list[Expression]:
-        """Return the leaves that vary, of the products that the equation has, but for what follows an s."""
-        after_s = {
-            id(f)
-            for n in nodes(equation)
-            if isinstance(n, Product) and any(map(_order_of_s, n.factors))
-            for f in n.factors
-        }
-        return [n for n in nodes(equation) if self.varies(n) and id(n) not in after_s]
 
     def _with_primes(self, expression: Expression) -> Expression:
         """Return ``x''`` in place of ``s^2*x``."""

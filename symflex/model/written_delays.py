@@ -41,7 +41,11 @@ SIZE_LIMIT = 200  # nodes of what is written out: definitions of definitions wou
 def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     """Return a draft with a delay block for each ``exp(-s*T)``; their names are not among those taken."""
     places = draft.expressions()
-    ratios = {b.name: _ratio(b) for b in draft.blocks if b.block is BLOCKS["tf"]}
+    ratios = {
+        b.name: Quotient(*(dict(b.values)[n] for n in ("num", "den")))
+        for b in draft.blocks
+        if b.block is BLOCKS["tf"]
+    }
     places += ratios.values()
     # What depends on x is no delay, unless x is a parameter.
     along = {COORDINATE} - {p.name for p in draft.declared} - {p.name for p in draft.inherited}
@@ -78,11 +82,6 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
         blocks=tuple(b for b in draft.blocks if b.name not in late),
     ).rewritten(put_in)
     return replace(kept, blocks=(*kept.blocks, *blocks.values()))
-
-
-def _ratio(block: PlacedBlock) -> Expression:
-    values = dict(block.values)
-    return Quotient(values["num"], values["den"])
 
 
 def _written_delay(node: Expression) -> Expression | None:

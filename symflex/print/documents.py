@@ -164,9 +164,6 @@ def _run(text: str, *, is_upright: bool = False) -> str:
 def typst_document(title: str, entries: Sequence[tuple[AnyTransferFunction, PrintedForm]]) -> str:
     """Return a document that Typst compiles as it stands."""
     page = "#set page(width: auto, height: auto, margin: 1cm)"
-    head = f'{page}\n#text(size: 14pt, weight: "bold")[#"{_plain(title)}"]\n'
+    plain = "".join(c for c in title if c.isprintable()).replace("\\", "\\\\").replace('"', '\\"')
+    head = f'{page}\n#text(size: 14pt, weight: "bold")[#"{plain}"]\n'
     return "\n".join([head, *(typst(tf, form) + "\n" for tf, form in entries)])
-
-
-def _plain(text: str) -> str:
-    return "".join(c for c in text if c.isprintable()).replace("\\", "\\\\").replace('"', '\\"')

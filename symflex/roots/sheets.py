@@ -69,7 +69,9 @@ def locate_on_sheet(
         roots, is_open = on_sheet(getattr(located, name), bound)
         reason = reason or (EITHER_SHEET if is_open else None)
         sides.append(in_order([*roots, *(_shifted(r, bound) for r in getattr(apart, name))]))
-    has_more = (has_kernels(_summed(part), bound.kernels) for part in (bound.den, bound.num))
+    # an exponential alone has no root
+    summed = (part.filter(lambda factor: len(factor) > 1) for part in (bound.den, bound.num))
+    has_more = (has_kernels(part, bound.kernels) for part in summed)
     if count and any(more and len(groups(side)) < count for side, more in zip(sides, has_more, strict=True)):
         region = Band(Fraction(0), Fraction(bound.from_root(2 * pi * high) / (2 * pi)))
     poles, zeros = (chosen(side, region) for side in sides)
@@ -113,11 +115,6 @@ def _is_whole(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
     powers = {dict(monomial).get(0, 0) for monomial, _ in terms_of(factor)}
     is_plain = len(powers) > 1 and ring.used_in([factor]).isdisjoint(bound.kernels.generators)
     return is_plain and not any(power % bound.sheets for power in powers)
-
-
-def _summed(part: Factored) -> Factored:
-    """Return the factors that may have a root, unlike an exponential."""
-    return part.filter(lambda factor: len(factor) > 1)
 
 
 def _part(

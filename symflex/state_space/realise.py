@@ -246,15 +246,15 @@ def _as_filter(row: Row, column: int) -> tuple[dict[int, FieldElement], Row] | N
     for other, powers in parts.items():
         lead = powers[max(powers)]
         monic = {power: value / lead for power, value in powers.items()}
-        if max(monic) == 0 or (num is not None and not _equal(num, monic)):
+        if max(monic) == 0:
+            return None
+        if num is not None and (
+            num.keys() != monic.keys() or any(not (num[i] - monic[i]).is_zero for i in num)
+        ):
             return None
         num = monic
         result[other, 0] = lead
     return None if num is None else (num, result)
-
-
-def _equal(left: Mapping[int, FieldElement], right: Mapping[int, FieldElement]) -> bool:
-    return left.keys() == right.keys() and all((left[i] - right[i]).is_zero for i in left)
 
 
 def _row(ring: Ring, form: LinearForm, columns: Mapping[Variable, int], radicals: Radicals) -> Row:

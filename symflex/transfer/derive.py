@@ -73,7 +73,8 @@ def derive_all(
         again = assemble(named, nested_transfer)
         other = _CramerQuotients(again, most, equations, kept)
         derived = tuple(
-            min(tf, other.finish(*pair), key=_terms) for tf, pair in zip(derived, pairs, strict=True)
+            min(tf, other.finish(*pair), key=lambda t: sum(len(f) * abs(e) for f, e in t.ratio.factors))
+            for tf, pair in zip(derived, pairs, strict=True)
         )
     compare(workshop.solve, [agreement(tf) for tf in derived])
     return derived
@@ -105,11 +106,6 @@ class ClosedDefinitions:
         except BudgetError:
             spend()
             return None
-
-
-def _terms(tf: TransferFunction) -> int:
-    """Return how many terms the factors of an expanded function have, and what they are divided by."""
-    return sum(len(f) * abs(e) for f, e in tf.ratio.factors)
 
 
 class _CramerQuotients:

@@ -214,18 +214,14 @@ def derive_as(
         # Where one beam's motion is another's, the estimate may be far too small.
         if solves and _may_be_large(model) and max(map(_kernel_products, derived)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
-        if is_read and _may_be_large(model) and (terms := max(map(_terms, derived))) > READABLE_TERMS:
+        terms = max((len(f) for tf in derived for f, _ in (*tf.num.factors, *tf.den.factors)), default=0)
+        if is_read and terms > READABLE_TERMS and _may_be_large(model):
             reason = f"in nested form: its formula would have {terms} terms (--representation expanded)"
             return derive_nested(model, pairs), reason
         return derived, ""
     except BudgetError as error:
         spend()
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
-
-
-def _terms(tf: TransferFunction) -> int:
-    """Return how many terms the longest factor of a transfer function has."""
-    return max((len(f) for f, _ in (*tf.num.factors, *tf.den.factors)), default=0)
 
 
 def _kernel_products(tf: TransferFunction) -> int:

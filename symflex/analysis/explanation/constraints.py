@@ -53,7 +53,8 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
     >>> hold(model, ((Variable("node", "x"), 1),)).spec
     'hold = { type = "fixed", at = "x" }'
     """
-    name = _free_name(model)
+    taken = {use.name for use in model.elements}
+    name = next(n for n in (HOLD, *(f"{HOLD}_{i}" for i in range(2, len(taken) + 3))) if n not in taken)
     if len(coordinates) == PAIR:
         (first, _), (second, _) = coordinates
         references = {"from": _reference(first), "to": _reference(second)}
@@ -82,11 +83,6 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
 
 def _with(model: Model, placed: PlacedElement) -> Model:
     return replace(model, elements=(*model.elements, placed))
-
-
-def _free_name(model: Model) -> str:
-    taken = {use.name for use in model.elements}
-    return next(n for n in (HOLD, *(f"{HOLD}_{i}" for i in range(2, len(taken) + 3))) if n not in taken)
 
 
 def _reference(variable: Variable) -> NodeReference:

@@ -20,7 +20,6 @@ from symflex.expressions import (
     Call,
     Derivative,
     Equation,
-    Expression,
     Name,
     format_expression,
     is_number,
@@ -121,12 +120,8 @@ def _single(condition: Equation, unknown: str) -> Call | None:
         return None
     other = next(side for side in sides if own[0] not in names(side))
     plain = is_number(other, 0)
-    return own[0] if plain or _is_load(other) else None
-
-
-def _is_load(side: Expression) -> bool:
-    read = names(side)
-    return len(read) == 1 and isinstance(read[0], Name)
+    read = names(other)
+    return own[0] if plain or (len(read) == 1 and isinstance(read[0], Name)) else None
 
 
 BENDING_ORDER = 4

@@ -214,7 +214,8 @@ def _by_condition(case: _Case) -> ZeroExplanation | None:
     if held is None:
         return None
     # The factor that cleared the denominators of the condition with the input is not part of the numerator.
-    scale = _coefficient(case.equations, case.pair[1])
+    terms = [term for row in case.equations.rows for term in row.form.terms]
+    scale = next(c for v, c in terms if v.kind == "input" and v.owner == case.pair[1])
     relation = case.relate(scale, held)
     if relation is None and replaced.is_dual:
         return case.explained("colocated", "not shown", constraint, is_direct=True)
@@ -233,12 +234,6 @@ def _by_condition(case: _Case) -> ZeroExplanation | None:
         parts=case.separate(held.equations).parts,
         ends=(EndChange(replaced.field.name, *ends),) if all(ends) else (),
     )
-
-
-def _coefficient(equations: Equations, source: str) -> Factored:
-    """Return what multiplies an input in the one row that holds it."""
-    terms = [term for row in equations.rows for term in row.form.terms]
-    return next(c for v, c in terms if v.kind == "input" and v.owner == source)
 
 
 def _by_terminals(case: _Case) -> ZeroExplanation | None:

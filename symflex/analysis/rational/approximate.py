@@ -167,8 +167,10 @@ def approximate(
     if bound.is_zero:
         message = f"{bound.name} is identically zero"
         raise ModelError(Diagnostic("SF402", message, None, "the input does not reach the output"))
-    if modes is None:
-        modes = _default_modes(bound, band)
+    if modes is None and band is not None:
+        modes = len(modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
+    elif modes is None:
+        modes = bound.source.model.analysis.modes or DEFAULT_MODES
     kept = truncate(bound, modes, DIGITS)
     made = FORMS[form](bound, kept, DIGITS)
     low, high, stated = _bands(kept, band)
@@ -184,12 +186,6 @@ def approximate(
         band=stated,
         stability=kept.found.verdict,
     )
-
-
-def _default_modes(bound: AnyBoundFunction, band: tuple[float, float] | None) -> int:
-    if band is not None:
-        return len(modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
-    return bound.source.model.analysis.modes or DEFAULT_MODES
 
 
 def _bands(kept: KeptRoots, band: tuple[float, float] | None) -> tuple[float, float, tuple[float, float]]:

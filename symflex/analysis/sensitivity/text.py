@@ -57,7 +57,7 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
     places = {(p.re, p.im) for p in printed.values()}
     for index, group in groupby(moved, key=lambda m: m.index):
         re, im = printed[index].re, printed[index].im
-        mirrored = im != "0" and (re, _negated(im)) in places
+        mirrored = im != "0" and (re, im[1:] if im[0] == "-" else f"-{im}") in places
         if mirrored and im.startswith("-"):
             continue
         place = (re, f"+-{im}" if mirrored else im)
@@ -115,10 +115,6 @@ def _number(value: arb) -> str:
     return NEARLY_ZERO if value.contains(0) and not value.is_zero() else figure(value, DIGITS)
 
 
-def _negated(text: str) -> str:
-    return text.removeprefix("-") if text.startswith("-") else f"-{text}"
-
-
 def _is_zero(derivative: RootDerivative) -> bool:
     return derivative.value.rational == 0
 
@@ -143,7 +139,9 @@ def sensitivity_formula(
     """
     kept = sympy.Integer(1)
     for factor in sympy.Mul.make_args(den):
-        opened = _opened(factor, where)
+        opened = factor
+        while any(opened.has(name) for name, _ in where):  # in any order, and in no circle
+            opened = opened.subs(where)
         base, exponent = opened.as_base_exp()
         if exponent.is_Integer and exponent > 0:
             opened = base
@@ -151,10 +149,3 @@ def sensitivity_formula(
             kept *= opened
     slope = sympy.diff(kept, s)
     return (sympy.Integer(0), sympy.Integer(1)) if slope == 0 else (-sympy.diff(kept, parameter), slope)
-
-
-def _opened(expression: sympy.Expr, where: Sequence[tuple[sympy.Symbol, sympy.Expr]]) -> sympy.Expr:
-    # Lines may stand in any order, but none goes round in a circle.
-    while any(expression.has(name) for name, _ in where):
-        expression = expression.subs(where)
-    return expression

@@ -47,7 +47,7 @@ from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
 from symflex.analysis.time_response.sampled import Refused
 from symflex.balls import ball, precision
-from symflex.expressions import Attribute, Expression, Name, Negative, Number, Sum, substitute
+from symflex.expressions import Attribute, Name, Negative, Number, Sum, substitute
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, Variable
 from symflex.model import Model
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
@@ -173,7 +173,9 @@ def _colocated(
         kind = force_on(model, coordinates[0][0]) or ""
         nodes = tuple(NodeReference(v.owner, v.component) for v, _ in coordinates)
         forces.append(Input(f"{INPUT}_{i}", kind, nodes))
-        shown.append(Output(f"{OUTPUT}_{i}", _written(coordinates)))
+        terms = [Attribute(v.owner, v.component) if v.component else Name(v.owner) for v, _ in coordinates]
+        moves = terms[0] if len(terms) == 1 else Sum((terms[0], Negative(terms[1])))
+        shown.append(Output(f"{OUTPUT}_{i}", moves))
     # What else drives the model stays, at rest: without it a support would be missing.
     given = replace(model, inputs=(*model.inputs, *forces), outputs=tuple(shown), figures=(), published=())
     pairs = [(o.name, i.name) for o in shown for i in forces]
@@ -190,9 +192,3 @@ def force_on(model: Model, variable: Variable) -> str | None:
     own = COMPONENT_DOMAIN.get(variable.component, domain)
     kinds = (k for k, kind in INPUT_KINDS.items() if kind.domain == own and not kind.is_imposed)
     return None if own in CIRCUITS else next(kinds, None)
-
-
-def _written(coordinates: Coordinates) -> Expression:
-    """Return coordinates as an expression, the first less the second."""
-    terms = [Attribute(v.owner, v.component) if v.component else Name(v.owner) for v, _ in coordinates]
-    return terms[0] if len(terms) == 1 else Sum((terms[0], Negative(terms[1])))

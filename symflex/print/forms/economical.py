@@ -226,7 +226,8 @@ def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:
             continue
         c, s, e, o = (ring.generator(p[f]) for p in (first, second) for f in (even, odd))
         for left, right, times, joined in ((c * e, s * o, sign, even), (s * e, c * o, 1, odd)):
-            removed, other, put = (_powers(m) for m in (left, right, ring.generator(one.kernels[joined])))
+            monomials = (left, right, ring.generator(one.kernels[joined]))
+            removed, other, put = (tuple(map(int, m.degrees())) for m in monomials)
             for powers, x in list(terms.items()):
                 rest = tuple(n - m for n, m in zip(powers, removed, strict=True))
                 beside, new = (tuple(map(add, rest, p)) for p in (other, put))
@@ -234,10 +235,6 @@ def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:
                     del terms[powers], terms[beside]
                     terms[new] = terms.get(new, 0) + x
     return Factored.polynomial(ring, ring.context.from_dict({p: x for p, x in terms.items() if x}))
-
-
-def _powers(monomial: fmpz_mpoly) -> tuple[int, ...]:
-    return tuple(map(int, monomial.degrees()))
 
 
 def _terms(length: Factored) -> int:

@@ -36,7 +36,10 @@ def siunitx_unit(unit: str) -> str | None:
     if factors is None:
         return None
     ordered = sorted(factors, key=lambda factor: factor[2] < 0)
-    return "".join(r"\per" * (sign < 0) + symbol + _power(power) for symbol, power, sign in ordered)
+    return "".join(
+        r"\per" * (sign < 0) + symbol + _POWERS.get(power, rf"\tothe{{{power}}}")
+        for symbol, power, sign in ordered
+    )
 
 
 def quantity_latex(number: str, unit: str) -> str:
@@ -62,10 +65,6 @@ def unit_latex(unit: str) -> str:
 def _option(known: str) -> str:
     """Return the option that keeps a slash from opening a unit."""
     return "[per-mode=power]" if known.startswith(r"\per") else ""
-
-
-def _power(power: str) -> str:
-    return _POWERS.get(power, rf"\tothe{{{power}}}")
 
 
 def _symbol(text: str) -> str | None:

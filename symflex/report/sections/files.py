@@ -63,8 +63,9 @@ def figure_section(study: Study) -> ChapterPart | None:
     warnings: list[str] = []
     files: dict[str, bytes] = {}
     code = 0
-    asked = study.model.figures
-    for figure in (*(asked or _defaults(drawable)), *_steps(study, drawable)):
+    asked, pairs = study.model.figures, tuple(drawable)[:MOST_CURVES]
+    usual = (Figure("bode", "bode", pairs), Figure("poles_zeros", "poles_zeros", pairs)) if pairs else ()
+    for figure in (*(asked or usual), *_steps(study, drawable)):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: PageFigure | SymflexError
         is_loop = (bool(figure.gain) and figure.kind in LOOP_FIGURES) or bool(figure.over)
@@ -86,11 +87,6 @@ def figure_section(study: Study) -> ChapterPart | None:
         else:
             blocks.append(drawn)
     return ChapterPart("Figures", tuple(blocks), files, tuple(warnings), code) if blocks else None
-
-
-def _defaults(drawable: dict[tuple[str, str], AnyBoundFunction]) -> tuple[Figure, ...]:
-    pairs = tuple(drawable)[:MOST_CURVES]
-    return (Figure("bode", "bode", pairs), Figure("poles_zeros", "poles_zeros", pairs)) if pairs else ()
 
 
 def _steps(study: Study, drawable: dict[tuple[str, str], AnyBoundFunction]) -> tuple[Figure, ...]:
