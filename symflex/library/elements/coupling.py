@@ -449,7 +449,7 @@ FELT: tuple[Port, Port] = (
 
 
 class Vcvs(ControlledSource):
-    """A voltage source that a voltage controls: ``v_1 - v_2 = mu*(in_1 - in_2)``.
+    """A voltage-controlled voltage source: ``v_1 - v_2 = mu*(in_1 - in_2)``.
 
     ``i`` [A] is delivered into the first terminal.
     """
@@ -462,7 +462,7 @@ class Vcvs(ControlledSource):
 
 
 class Vccs(ControlledSource):
-    """A current source that a voltage controls: ``i = g*(in_1 - in_2)`` [A].
+    """A voltage-controlled current source: ``i = g*(in_1 - in_2)`` [A].
 
     It is delivered into the first terminal, and drawn from the second.
     """
@@ -475,7 +475,7 @@ class Vccs(ControlledSource):
 
 
 class Ccvs(ControlledSource):
-    """A voltage source that a current controls: ``v_1 - v_2 = r*i_in``; ``i_in`` flows from in_1 to in_2.
+    """A current-controlled voltage source: ``v_1 - v_2 = r*i_in``; ``i_in`` flows from in_1 to in_2.
 
     ``i`` [A] is delivered into the first terminal.
     """
@@ -488,7 +488,7 @@ class Ccvs(ControlledSource):
 
 
 class Cccs(ControlledSource):
-    """A current source that a current controls: ``i = beta*i_in`` [A]; ``i_in`` flows from in_1 to in_2.
+    """A current-controlled current source: ``i = beta*i_in`` [A]; ``i_in`` flows from in_1 to in_2.
 
     It is delivered into the first terminal, and drawn from the second.
     """
