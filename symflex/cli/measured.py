@@ -43,9 +43,10 @@ def fit(given: FitOptions) -> int:
     from symflex.analysis.measured import fit as fitted
     from symflex.data.fitting import mode_shapes
     from symflex.data.fitting.specification import fit_specification
-    from symflex.data.fitting.text import fit_json, fit_text
+    from symflex.data.fitting.text import fit_json, fit_passages
     from symflex.data.measurement import prepared
     from symflex.files.write import write_atomically
+    from symflex.print.text import passages_text
 
     if given.base is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
@@ -93,7 +94,7 @@ def fit(given: FitOptions) -> int:
     answer(
         given.as_json,
         lambda: fit_json(resonances, shapes),
-        lambda: fit_text(resonances, terminal_width(), shapes),
+        lambda: passages_text(fit_passages(resonances, shapes), terminal_width()),
     )
     _draw(whole, given)
     return 0

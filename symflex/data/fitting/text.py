@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
-from symflex.print.text import INDENT, Passage, passages_text
+from symflex.print.text import INDENT, Passage
 
 SCHEMA: Final = "symflex.fit/1"
 ERROR_DIGITS: Final = 2
@@ -20,11 +20,6 @@ STARTS: Final = {
     "aaa": "AAA approximation",
     "none": "nothing but a gain",
 }
-
-
-def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
-    """Return the report of a fit, and of mode shapes, for a terminal of so many columns."""
-    return passages_text(fit_passages(fit, shapes), width)
 
 
 def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Passage]:
