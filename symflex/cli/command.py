@@ -55,13 +55,12 @@ class Specification:
 
         model = pipeline.load(self.path, self.allow_outside, self.settings)
         if count := len(pipeline.warnings(model)):
-            last = f"{counted(count, 'warning')}: symflex check {self.path}"
-            click.get_current_context().call_on_close(lambda: note(last))
+            said = f"{counted(count, 'warning')}: symflex check {self.path}"
+            click.get_current_context().call_on_close(lambda: note(said))
         return model
 
 
-COMMON: Final = frozenset("--json --set --allow-outside --budget --memory --help".split())
-"""Options of nearly every command."""
+COMMON: Final = frozenset("--json --set --allow-outside --budget --memory --help".split())  # to many commands
 
 
 class Command(click.Command):

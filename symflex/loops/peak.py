@@ -53,9 +53,6 @@ SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
 BELOW, SAME, FURTHER = 1e9, 1e-7, 60
 """The highest frequency over the first if 0 stays open; distance of places shown as one; steps far out."""
 
-STEP, BAND_DIGITS = 2.0625, 12
-"""Ratio of the ends of a search for a bandwidth, which fall on no round number; digits of it."""
-
 
 @dataclass(frozen=True)
 class Peak(Printed):
@@ -180,16 +177,13 @@ def _bandwidth(bound: BoundTransferFunction, inverse: LoopFunction) -> arb | Non
     above, below = origin.sizes(arb(0))
     level, low = abs(above / below) * arb(2).sqrt(), float((origin.series[0].reach / 4).lower())
     while origin.side(level, arb(low)) >= 0:
-        low /= STEP
+        low /= FIRST_RATIO
     waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, inverse.b))
-    end = min(low * STEP**FURTHER, waves.frequency_of(WAVES) * FURTHER)
-    while low < end:
-        found = find_on_axis(
-            inverse.on, lambda value: value.excess(level), lambda _: False, (low, low * STEP), BAND_DIGITS
-        )
+    end = min(low * BELOW, waves.frequency_of(WAVES) * FURTHER)
+    for ends in reversed(pieces(low, end, FIRST_RATIO)):
+        found = find_on_axis(inverse.on, lambda v: v.excess(level), lambda _: False, ends, 12)
         if found.undecided or found.roots:
             return None if found.undecided else bound.frequency(found.roots[0])
-        low *= STEP
     return None
 
 

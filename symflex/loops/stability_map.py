@@ -499,10 +499,6 @@ def _margins(stability: StabilityMap) -> Passage:
     return Passage(lines, rows, has_head=False)
 
 
-LEAST_DEGREES = 30
-"""Phase margin below which a loop rings too long for use (Franklin et al. 2010, section 6.4)."""
-
-
 def crossover_text(gain: str, crossover: AllowedCrossover) -> str:
     """Return the gain crossover that a gain margin of 6 dB allows, in one line."""
     if crossover.gain is None:
@@ -514,7 +510,7 @@ def crossover_text(gain: str, crossover: AllowedCrossover) -> str:
     angle = degrees(crossover.phase_margin)
     size = figure(abs(angle), 3, trimmed=True)
     shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
-    shown += ": not usable" if abs(angle) < LEAST_DEGREES else ""
+    shown += ": not usable" if abs(angle) < 30 else ""  # noqa: PLR2004 (with less it rings too long)
     return shown if crossover.is_limited else f"at least {shown}"
 
 

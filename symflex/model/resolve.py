@@ -431,8 +431,7 @@ def _in_radians(model: Model, coordinates: Iterable[str]) -> tuple[Output, ...]:
     still = {LAPLACE, "pi", *(p.name for p in model.parameters), *(d.name for d in model.definitions)}
 
     def turns(expression: Expression) -> bool:
-        found = {f".{n.name}" if isinstance(n, Attribute) else n.name for n in names(expression)}
-        moving = found - still
+        moving = {f".{n.name}" if isinstance(n, Attribute) else n.name for n in names(expression)} - still
         return bool(moving) and moving <= angles
 
     signals = {x.name: x.expression for x in model.signals if not isinstance(x.expression, Equation)}

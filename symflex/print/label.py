@@ -314,8 +314,8 @@ def with_scripts(base: str, below: str, above: str) -> str:
     letter = base.removeprefix("<mi>").removesuffix("</mi>")
     gone = ' depth="0"' * bool(below and letter in DEEP) + ' height="0"' * bool(above and letter in TALL)
     base = f"<mpadded{gone}>{base}</mpadded>" if gone else base
-    # Letters that are slanted and not italic lean into what stands above their end.
-    base = row(base, '<mspace width="0.12em"></mspace>') if above and 'class="it"' in base else base
+    if above and 'class="it"' in base:  # slanted letters lean into what stands above their end
+        base = row(base, '<mspace width="0.12em"></mspace>')
     if below and above:
         return f"<msubsup>{base}{below}{above}</msubsup>"
     return f"<msub>{base}{below}</msub>" if below else f"<msup>{base}{above}</msup>" if above else base

@@ -50,8 +50,7 @@ from symflex.transfer import AnyTransferFunction
 
 INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
 SPACED_TIMES: Final = '<mo lspace="0.17em" rspace="0">&#x2062;</mo>'
-DOT: Final = '<mo lspace="0" rspace="0.25em">⋅</mo>'
-"""Between factors on two lines, or after the blank at which a line may end."""
+DOT: Final = '<mo lspace="0" rspace="0.25em">⋅</mo>'  # after the blank at which a line may end
 APPLY_FUNCTION: Final = "<mo>&#x2061;</mo>"
 EQUALS: Final = "<mo>=</mo>"
 

@@ -248,11 +248,10 @@ def _phase_text(located: PoleZeroMap) -> str:
     """Say whether zeros lie in the right half-plane; of endlessly many zeros those shown are known."""
     if count := sum(zero.multiplicity for zero in located.zeros if zero.re > 0):
         return f"not minimum phase: {counted(count, 'zero')} in the right half-plane"
-    if not located.certificate.certified or not all(z.re < 0 or z.on_imaginary_axis for z in located.zeros):
-        return ""
+    is_sure = located.certificate.certified and all(z.re < 0 or z.on_imaginary_axis for z in located.zeros)
     if located.is_infinite or region_text(located.region):
-        return "no zero shown is in the right half-plane" if located.zeros else ""
-    return "minimum phase: no zero is in the right half-plane"
+        return "no zero shown is in the right half-plane" if is_sure and located.zeros else ""
+    return "minimum phase: no zero is in the right half-plane" * is_sure
 
 
 def region_text(region: Region) -> str:

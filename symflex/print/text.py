@@ -42,18 +42,10 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
 def derive_text(
     entries: Iterable[tuple[AnyTransferFunction, PrintedForm]], width: int = WIDTH, *, is_named: bool = False
 ) -> str:
-    """Return transfer functions as fractions, with their definitions and hidden modes.
-
-    Sums longer than ``width`` columns are broken before plus and minus. A definition that stands above, in
-    the same names, is not repeated.
-    """
+    """Return transfer functions as fractions, sums broken at ``width`` columns, and no definition twice."""
     above: dict[str, list[Expression]] = {}
-    lines: list[str] = []
-    for tf, form in entries:
-        name = f", {form.name} form" if is_named else ""
-        lines += _fraction_lines(tf, form, name, width, above)
-        lines += [""] * bool(lines[-1])
-    return "\n".join(lines).rstrip()
+    kinds = ((tf, form, f", {form.name} form" * is_named) for tf, form in entries)
+    return "\n\n".join("\n".join(_fraction_lines(*kind, width, above)).rstrip() for kind in kinds)
 
 
 def _fraction_lines(
@@ -83,9 +75,9 @@ def _fraction_lines(
     for line, word in zip(laws, words, strict=False):
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
-    own = [each for each in _closed(form) if each[0] not in repeated]
+    own = [(left, e) for left, e in form.closed if format_expression(left) not in repeated]
     for word, (left, expression) in zip(chain(["so   "], repeat("     ")), own, strict=False):
-        lines += hanging(f"{INDENT}{word} {left} = ", expression, width)
+        lines += hanging(f"{INDENT}{word} {format_expression(left)} = ", expression, width)
     if form.where or form.laws:
         lines.append("")
     for factor, multiplicity in hidden:
@@ -103,17 +95,14 @@ def _fraction_lines(
 def _repeated(form: PrintedForm, above: dict[str, list[Expression]]) -> list[str]:
     """Return the names that mean what they mean above, as everything does that they are made of."""
     meant: dict[str, list[Expression]] = {}
-    for name, expression in chain[tuple[str, Expression]](form.where, form.laws, _closed(form)):
+    closed = ((format_expression(left), e) for left, e in form.closed)
+    for name, expression in chain[tuple[str, Expression]](form.where, form.laws, closed):
         meant.setdefault(name, []).append(expression)
     new = {name for name, lines in meant.items() if above.get(name) != lines}
     while more := {n for n in meant.keys() - new if any(x.name in new for e in meant[n] for x in names(e))}:
         new |= more
     above |= meant
     return [name for name in meant if name not in new]
-
-
-def _closed(form: PrintedForm) -> list[tuple[str, Expression]]:
-    return [(format_expression(left), expression) for left, expression in form.closed]
 
 
 def _left_side(tf: AnyTransferFunction, form: PrintedForm) -> str:

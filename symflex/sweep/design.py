@@ -398,10 +398,9 @@ def _value(parameter: ModelParameter, item: str, text: str) -> ExactValue:
     try:
         return _assumed(parameter, item)
     except SpecError as error:
-        reason = error.diagnostics[0].message
-        message = f"--over '{text[:60]}': {reason}"
-        hint = error.diagnostics[0].hint or f"write {FORMS}"
-        raise UsageError(Diagnostic("SF902", message, None, hint)) from None
+        told = error.diagnostics[0]
+        message = f"--over '{text[:60]}': {told.message}"
+        raise UsageError(Diagnostic("SF902", message, None, told.hint or f"write {FORMS}")) from None
 
 
 def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:

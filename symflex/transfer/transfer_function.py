@@ -348,9 +348,8 @@ def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> 
         return "" if known is None else str(known)
     if output.dimension == source.dimension:
         return "1"
-    above, below = output.unit or str(output.dimension), str(source.dimension)
-    if "rad" in above and source.unit.startswith("rad"):
-        below = source.unit
+    above = output.unit or str(output.dimension)
+    below = source.unit if "rad" in above and source.unit.startswith("rad") else str(source.dimension)
     is_written = source.kind == "signal" and quotient_of_units(source.unit, "1") == source.unit
     # What turns above is not known: 1/s over rad/s is 1, and not 1/rad.
     if is_written and not above.startswith("1"):
