@@ -285,7 +285,7 @@ def draw_curves(
         if isinstance(drawn, NetworkLoop):
             followed = [_network_curve(drawn, gain, canvas)]
         else:
-            followed = [_curve(loop_gain(drawn), canvas)]
+            followed = [_curve(loop_gain(drawn), canvas, closed_loop(drawn))]
         if canvas.frame.has_verdict:
             said.append(f"closed loop {verdict_of_closed(drawn, gain).headline}")
     else:
@@ -355,12 +355,12 @@ def _columns(labels: Sequence[str], width: float) -> int:
     return max(1, min(len(labels), 3, fitting))
 
 
-def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
-    """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
+def _curve(bound: AnyBoundFunction, canvas: Canvas, *others: AnyBoundFunction) -> Curve:
+    """Return values along the axis, to where others have roots too, and what is known of its poles."""
     band, judged = canvas.band_of(bound.source.model), None
     if band is None:
         judged = roots_if_found(bound)
-        low, high = default_band(judged)
+        low, high = default_band(judged, *map(roots_if_found, others))
         band = low / WIDENED, high * WIDENED
     low, high = band
     located = roots_if_found(bound, Band(Fraction(low), Fraction(high)), judged)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)  # of L/(1 + L), with a contour each
+BESIDE: Final = 10  # least distance of a curve from the border [deg]
 REACH_DB, WIDEST = 40, 1080  # magnitudes [dB] and phases [deg] shown at most, unless others are asked for
 NOTE: Final = 5.5  # type of the contours' numbers [pt]
 
@@ -42,8 +43,8 @@ def _draw_chart(
     charts = [_phases_and_levels(curve) for curve in curves]
     shown = np.concatenate(charts)
     phases = shown.real[np.abs(shown.imag) <= REACH_DB]
-    high = 90 * ceil(float(phases.max(initial=-90)) / 90)
-    low = max(90 * floor(float(phases.min(initial=-181)) / 90), high - WIDEST)
+    high = 90 * ceil(float(phases.max(initial=-90) + BESIDE) / 90)
+    low = max(90 * floor(float(phases.min(initial=-180) - BESIDE) / 90), high - WIDEST)
     bottom = max(-REACH_DB, 10 * floor(float(shown.imag.min(initial=-20)) / 10))
     top = min(REACH_DB, 10 * ceil(float(shown.imag.max(initial=20)) / 10))
     axes.set_xlim(*(canvas.frame.x or (low, high)))
@@ -85,7 +86,9 @@ def _held(chart: npt.NDArray[np.complex128], axes: Axes) -> list[npt.NDArray[np.
 def _phases_and_levels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
     """Return phases [deg] plus j times levels [dB]; the first phase is from -270 to 90 degrees."""
     values = values[(np.abs(values) > 0) & np.isfinite(values)]
-    phases = np.degrees(np.unwrap(np.angle(values)))
+    angles = np.angle(values, deg=True)
+    steps = (np.diff(angles) + 180.1) % 360 - 180.1  # of half a turn, at a pole without damping, downwards
+    phases = np.cumsum(np.concatenate((angles[:1], steps)))
     if phases.size:
         phases -= 360 * ceil((phases[0] - 90) / 360)
     return np.asarray(phases + 20j * np.log10(np.abs(values)), np.complex128)
