@@ -94,9 +94,8 @@ class Analyses(Plotted):
     def step_info(self, digits: int = 12) -> StepInfo | None:
         r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
 
-        It is proved that no later peak is higher, and that no level is crossed again later. The result
-        is None if the response does not come to rest, comes to rest at 0, jumps after delays, or is not
-        proved.
+        It is proved that no later peak is higher, and that no level is crossed again later. The result is
+        None if the response does not come to rest, comes to rest at 0, jumps after delays, or is not proved.
 
         Examples
         --------

@@ -813,9 +813,8 @@ class Model:
         Parameters
         ----------
         over : mapping of str to str or sequence
-            Values per parameter, in SI units or with a unit: a sequence; ``"1e4:1e6:log:200"`` for 200
-            values between two limits; ``"1e4:1e6"``, ``"1e4:1e6:log"`` or ``"+-5%"`` as ranges to draw
-            from.
+            Values per parameter, in SI units or with a unit: a sequence; ``"1e4:1e6:log:200"`` for 200 values
+            between two limits; ``"1e4:1e6"``, ``"1e4:1e6:log"`` or ``"+-5%"`` as ranges to draw from.
         of : str
             ``poles``, ``zeros``, ``response`` or ``margins``.
         tf : str, optional

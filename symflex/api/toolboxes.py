@@ -60,8 +60,7 @@ def refuse_attribute(item: object, name: str, bound: type | None = None, way: st
 class Toolboxes:
     """State equations, samples, and systems of python-control, scipy and SymPy.
 
-    ``bound`` is the function of the package ``transfer``, ``_expanded`` the same as a quotient of
-    polynomials.
+    ``bound`` is the function of ``transfer``, ``_expanded`` the same as a quotient of polynomials.
     """
 
     if not TYPE_CHECKING:

@@ -144,9 +144,8 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --over takes any parameter: a delay, a length, a mass. Two of them make a chart of boxes in which the
     number of poles in the right half-plane is certified; boxes about a boundary stay undecided.
 
-    --spread checks whether SPEC is stable for every combination of its values, each off by up to a
-    share; or prints a combination for which it is proved not to be. Put it after SPEC, with or without a
-    share.
+    --spread checks whether SPEC is stable for every combination of its values, each off by up to a share; or
+    prints a combination for which it is proved not to be. Put it after SPEC, with or without a share.
 
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie in the left half-plane; with two of --over, the boundary as a curve.

@@ -251,10 +251,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     sample, or with --to state-space its matrices. Rounding errors are measured. A delay may be any
     fraction of a sample.
 
-    --form band writes a product over the poles and zeros in a band, times a short polynomial's
-    exponential: accurate up to the band's end, for the given parameter values only. C, MATLAB, Julia,
-    JavaScript, jax and array-api use this form for functions without a short formula, such as networks
-    and tapered members.
+    --form band writes a product over the poles and zeros in a band, times a short polynomial's exponential:
+    accurate up to the band's end, for the given parameter values only. C, MATLAB, Julia, JavaScript, jax and
+    array-api use this form for functions without a short formula, such as networks and tapered members.
     """
     from symflex import pipeline
     from symflex.codegen.export import Language

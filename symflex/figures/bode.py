@@ -72,8 +72,7 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right
     half-plane, or may lie there, the legend says so.
     """
-    # The default roots of distributed systems serve for nothing but a band and the poles in the right
-    # half-plane.
+    # The default roots of distributed systems only give a band and the poles in the right half-plane.
     given = canvas.band_of(bounds[0].source.model)
     judged = [None if given else roots_if_found(bound) for bound in bounds]
     low, high = given or default_band(*filter(None, judged))

@@ -58,7 +58,7 @@ POINTS: Final = 12
 BITS: Final = 192
 """Random values of all letters at which conditions are compared with roots, and precision of these."""
 POLES: Final = "poles"
-ALL_LEFT: Final = "all in the open left half-plane"
+LEFT: Final = "in the open left half-plane"
 Sign = Literal[">", "!=", "="]
 Factor = tuple["fmpz_mpoly", int]
 
@@ -160,9 +160,8 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     found, is_never = [(f, relation_of(arranger, f, sign)) for f, sign in kept], signs.is_never(kept)
     _check(tf, signs, moving, found)
     stay = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in on_axis)
-    others = ALL_LEFT.replace("all", "all others")
-    said = f"those of {stay} on the imaginary axis, {others}" if on_axis else ALL_LEFT
-    said = f"for no values {ALL_LEFT}, as then" if is_never else said + " exactly when" * bool(found)
+    said = f"those of {stay} on the imaginary axis, all others {LEFT}" if on_axis else f"all {LEFT}"
+    said = f"for no values all {LEFT}, as then" if is_never else said + " exactly when" * bool(found)
     relations = tuple(relation for _, relation in found)
     return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
 

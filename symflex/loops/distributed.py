@@ -151,7 +151,7 @@ class DistributedFactors(AxisSearch):
             self.method = "passive loop"
             return self._without_end, True
         reason = next(tail for tail in self._tails if isinstance(tail, str))
-        passive = "; as the loop is passive, none lies in the right half-plane"
+        passive = "; the loop is passive: none lies in the right half-plane"
         self.reasons.append(reason + passive if self.energy.is_passive else reason)
         return self._without_end, False
 

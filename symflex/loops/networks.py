@@ -203,9 +203,7 @@ class NetworkFactors(AxisSearch):
         if self.energy.rests:
             self.method = "passive loop"
             return radius, True
-        passive = (
-            "; as the loop is passive, none lies in the right half-plane" if self.energy.is_passive else ""
-        )
+        passive = "; the loop is passive: none lies in the right half-plane" if self.energy.is_passive else ""
         self.reasons.append(BEYOND + passive)
         return radius, False
 

@@ -355,8 +355,7 @@ class Crossing:
     is_symmetric: bool = False
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
-    # Growth of the number of right-half-plane poles of factors with kernels with the gain; None where
-    # unknown.
+    # Growth with the gain of the right-half-plane poles of factors with kernels; None where unknown.
     change: int | None = 0
 
 

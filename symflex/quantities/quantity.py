@@ -104,9 +104,8 @@ def looks_like_quantity(text: str) -> bool:
     - a constant (numbers, ``pi``, ``+ - * / ^``, parentheses), a space, and then a symbol, a number or
       an opening parenthesis: ``2 m``, ``22*pi rad/s``, ``5 1/s``, ``2 (N*m)``.
 
-    What follows is not looked at. A constant other than a plain number, standing alone, is an
-    expression: ``1/3``, ``2*pi``. Every text that :func:`parse_quantity` reads with a unit is one of the
-    above.
+    What follows is not looked at. A constant other than a plain number, standing alone, is an expression:
+    ``1/3``, ``2*pi``. Every text that :func:`parse_quantity` reads with a unit is one of the above.
 
     >>> [looks_like_quantity(text) for text in ("2 m", "3kg", "-0.5", "5 1/s", "2 kgg")]
     [True, True, True, True, True]

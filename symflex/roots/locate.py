@@ -191,10 +191,8 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     return other if is_better else located
 
 
-UNSEEN_WAVES = "a distributed part that is uncontrollable or unobservable may have poles anywhere"
-UNSEEN_ON_AXIS = (
-    "a distributed part that is uncontrollable or unobservable may have poles on the imaginary axis"
-)
+UNSEEN_WAVES = "an uncontrollable or unobservable distributed part may have poles anywhere"
+UNSEEN_ON_AXIS = "an uncontrollable or unobservable distributed part may have poles on the imaginary axis"
 DEFAULT_MODES = 5  # number of modes if neither the model nor the user gives it
 
 

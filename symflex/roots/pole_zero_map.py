@@ -97,10 +97,7 @@ class StabilityVerdict:
         if not self.moving or not self.hidden.endswith(AT_REST):  # elsewhere it is not known what moves
             return f"{self.hidden}, uncontrollable or unobservable"
         more = len(self.moving) - MOST_NAMES
-        shown = [
-            *self.moving[:MOST_NAMES],
-            *([f"{more} others" if more > 1 else "1 other"] if more > 0 else []),
-        ]
+        shown = [*self.moving[:MOST_NAMES], *([f"{more} other{'s' * (more > 1)}"] if more > 0 else [])]
         names = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
         return f"{self.hidden}: {names} {'are' if len(shown) > 1 else 'is'} arbitrary at rest"
 

@@ -116,8 +116,7 @@ class TransferFunction:
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     # The equations it was compared with, for comparing it again when it has numbers.
     solve: ModelSolve | None = field(default=None, compare=False, repr=False)
-    # True when factors with kernels cancelled and left none: no distributed part is controllable and
-    # observable.
+    # True when factors with kernels cancelled and left none: all distributed parts are hidden.
     hides_waves: bool = False
 
     @cached_property

@@ -61,11 +61,10 @@ class ZeroExplanation(Printed):
         ``"OUT/IN"``.
     kind : str
         ``colocated``: the zeros are the poles of the system with one coordinate held, on which the input
-        acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those
-        parts of the held system that it does not drive. ``partly``: such poles, and others.
-        ``noncolocated``: the poles of no held system. ``open circuit``: of the system with the terminals
-        open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
-        identically zero.
+        acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those parts
+        of the held system that it does not drive. ``partly``: such poles, and others. ``noncolocated``: the
+        poles of no held system. ``open circuit``: of the system with the terminals open. ``free``: of the
+        system in which nothing imposes the motion. ``zero``: the function is identically zero.
     status : str
         ``proved`` in the exact ring of the equations; ``almost surely`` of large networks, by comparison at
         random points, which errs with odds below 1 in 2^50; ``not shown`` where the two forms cannot be

@@ -5,7 +5,7 @@ Input: a bound transfer function, the name of an input, times. Output: an :class
 Ways are asked in the order of :data:`WAYS`, and the first that answers is taken. What others refused for is
 told of a response that is only estimated:
 
-    a servo about an undamped beamlossless modes: something loses energy, or waves have two wavenumbers
+    a servo about an undamped beam       lossless modes: something loses energy, or waves have two wavenumbers
                                          lossy modes: some waves have no material damping
                                          passive modes: something in the model may supply energy
                                          estimated modes answer

@@ -486,9 +486,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             if errors.zeta_z[r, i] > max(abs(modes.zeta_z[r, i]), LEAST_DAMPING) or (
                 errors.omega_z[r, i] > WEAK * abs(modes.omega_z[r, i])
             ):
-                warnings.append(
-                    f"{pair} is not determined by the data: its standard error is as large as its value"
-                )
+                warnings.append(f"{pair} is not determined: its standard error is as large as its value")
                 continue
             if abs(modes.zeta_z[r, i]) > OVERDAMPED:
                 lacking = "behaviour that a gain, a power of s and resonances cannot have"

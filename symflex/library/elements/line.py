@@ -265,16 +265,15 @@ class FrameMember(LineElement):
     """A uniform member of a plane frame: it bends as a beam of any theory, and stretches as a rod.
 
     It joins nodes in the plane. The second one is l [m] away from the first, at an angle [rad] from the x
-    axis, counted from x to y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it delivers
-    at its second end, along the axes x and y. At a point of the member, ``x``, ``y`` and ``theta`` are its
-    motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of
-    its direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond
-    it on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and
-    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in
-    tension. ``c_f`` and ``k_f`` are a foundation per length that acts along and across the member. An
-    ``inextensible`` member only bends. Everything else is as for ``beam`` and ``rod``. Valid for small
-    motions, in which bending and stretching do not act on each other. Source: Clough & Penzien 1993,
-    Dynamics of Structures, chapters 11 and 17.
+    axis, counted from x to y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it delivers at
+    its second end, along the axes x and y. At a point of the member, ``x``, ``y`` and ``theta`` are its
+    motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of its
+    direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond it on
+    the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and ``f_v = -EI v'''`` in the
+    Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in tension. ``c_f`` and ``k_f`` are a
+    foundation per length that acts along and across the member. An ``inextensible`` member only bends.
+    Everything else is as for ``beam`` and ``rod``. Valid for small motions, in which bending and stretching
+    do not act on each other. Source: Clough & Penzien 1993, Dynamics of Structures, chapters 11 and 17.
     """
 
     type_name = "frame"

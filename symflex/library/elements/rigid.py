@@ -138,10 +138,9 @@ def _offset(a: Variable | None, b: Variable | None, theta: Variable | None, leve
 class MasslessBeam(Element):
     """A massless beam of bending stiffness EI [N m^2] and length l [m].
 
-    ``f`` [N] and ``tau`` [N m] are the force and moment the beam delivers at its second end. A force P and
-    a moment M at the second end deflect it by ``(P*l^3/3 + M*l^2/2)/EI`` and turn it by
-    ``(P*l^2/2 + M*l)/EI``, relative to the rigid motion of the first end. Source: Timoshenko & Gere 1972,
-    table of beam deflections.
+    ``f`` [N] and ``tau`` [N m] are the force and moment the beam delivers at its second end. A force P and a
+    moment M at the second end deflect it by ``(P*l^3/3 + M*l^2/2)/EI`` and turn it by ``(P*l^2/2 + M*l)/EI``,
+    relative to the rigid motion of the first end. Source: Timoshenko & Gere 1972, table of beam deflections.
     """
 
     type_name = "massless_beam"
