@@ -95,18 +95,17 @@ def transfer_function_latex(
 
 
 def formula_latex(
-    left: str,
-    expression: Expression,
+    sides: Sequence[tuple[str, Expression]],
     where: Sequence[tuple[str, Expression]],
     labels: Mapping[str, str],
     *,
     width_mm: float,
 ) -> str:
-    r"""Return an equation of any expression as a display without a number, broken where it must be.
+    r"""Return equations of any expressions as a display without numbers, broken where they must be.
 
-    ``left`` is LaTeX already; the pairs of ``where`` are lines below the equation.
+    Left sides are LaTeX already; the pairs of ``where`` are lines below the equations.
 
-    >>> print(formula_latex("y", Name("omega_p1"), (), {}, width_mm=80))
+    >>> print(formula_latex([("y", Name("omega_p1"))], (), {}, width_mm=80))
     \begin{align*}
       y &= \omega_{p1}
     \end{align*}
@@ -114,8 +113,8 @@ def formula_latex(
     writer = Writer(labels)
     width = max(width_mm, NARROWEST_MM) / EM_MM
     # The commands of the left side are wider than what they print.
-    left_width = min(float(len(left)), _WIDEST_LEFT)
-    parts = [_align([_row(left, expression, writer, width, left_width)], "align*", "")]
+    column = max(min(float(len(left)), _WIDEST_LEFT) for left, _ in sides)
+    parts = [_align([_row(left, e, writer, width, column) for left, e in sides], "align*", "")]
     if where:
         parts.append(_align(_where_rows(_defined(where, writer), writer, width - _WHERE_WIDTH), "align*", ""))
     return "\n".join(parts)

@@ -230,11 +230,24 @@ def _labels(audit: Audit) -> dict[str, str]:
 def _formula(
     audit: Audit, expression: Expression, where: Sequence[tuple[str, Expression]], name: str
 ) -> DisplayedFormula:
-    labels = _labels(audit)
+    left = Mathematics(ratio_mathml(audit.tf), ratio_latex(audit.tf))
+    return equations([(left, expression)], _labels(audit), name, where)
+
+
+def equations(
+    sides: Sequence[tuple[Mathematics, Expression]],
+    labels: Mapping[str, str],
+    name: str,
+    where: Sequence[tuple[str, Expression]] = (),
+) -> DisplayedFormula:
+    """Return equations below each other, and definitions of names in them."""
     writer = MathmlWriter(labels)
-    is_narrow = writer.width(expression) <= WIDEST_FRACTION
-    pieces = (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
-    rows = [MathRow(ratio_mathml(audit.tf), pieces)]
+
+    def pieces(expression: Expression) -> tuple[str, ...]:
+        is_narrow = writer.width(expression) <= WIDEST_FRACTION
+        return (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
+
+    rows = [MathRow(left.mathml, pieces(e)) for left, e in sides]
     rows += [MathRow(label_mathml(n, labels), writer.pieces(e), is_where=True) for n, e in where]
-    latex = formula_latex(ratio_latex(audit.tf), expression, where, labels, width_mm=TEXT_WIDTH_MM)
+    latex = formula_latex([(left.latex, e) for left, e in sides], where, labels, width_mm=TEXT_WIDTH_MM)
     return DisplayedFormula(tuple(rows), latex, name)

@@ -2,22 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import Final
 
 from symflex.errors import SymflexError
 from symflex.expressions import Expression, Name
 from symflex.letters.frequency_equation import roots_in_letters
 from symflex.letters.groups import dimensionless_of
-from symflex.letters.limits import InLetters, limits_of
-from symflex.letters.roots import FactorInLetters
+from symflex.letters.limits import limits_of
+from symflex.letters.roots import IF, FactorInLetters
 from symflex.letters.short import approximation
 from symflex.options import DeriveOptions
 from symflex.print.latex.equation import model_labels
-from symflex.report.document import Block, ChapterPart, Code, Run, Section, labelled, parted, text
-from symflex.report.sections.formulas import displayed, ratio
+from symflex.report.document import (
+    Block,
+    ChapterPart,
+    Code,
+    Mathematics,
+    Run,
+    Section,
+    labelled,
+    parted,
+    text,
+    unit_text,
+)
+from symflex.report.sections.formulas import displayed, equations, ratio
 from symflex.report.sections.roots import decimal
 from symflex.report.study import Study, attempt
 from symflex.transfer import AnyTransferFunction
+
+NOTHING: Final = Mathematics("<mn>0</mn>", "0")
+SCALE: Final = {"scale": "G_{0}"}
+LIMITS: Final = {"G_infinity": r"G_{\infty}"}
+
+LONGEST: Final = 100
+"""Characters of a condition that a person reads; symflex chose the number, as the next."""
+MOST_ROWS: Final = 12
+"""Groups, with function and scale, that a person reads."""
 
 
 def letter_section(study: Study) -> ChapterPart | None:
@@ -27,20 +49,49 @@ def letter_section(study: Study) -> ChapterPart | None:
     maps, labels, sections = {x.tf: x for x in study.maps}, model_labels(study.model), list[Section]()
     for i, (tf, bound) in enumerate(pairs, start=1):
         found = roots_in_letters(tf, bound, maps[tf.name]) if tf.name in maps else ()
-        blocks = tuple(_factor(each, each.factor, labels) for each in found if each.factor)
-        read = (_lines(each, labels) for each in (limits_of(tf), dimensionless_of(tf)) if each.rows)
-        if blocks := (*blocks, *read, *_near(tf, f"eq:{study.stem}:near:{i}")):
+        said = [block for each in found for block in _factor(each, labels)]
+        said += [block for read in (_limits, _groups) for block in read(tf, labels)]
+        if blocks := (*said, *_near(tf, f"eq:{study.stem}:near:{i}")):
             sections.append(Section(tf.name, blocks, f"{study.stem}-letters-{i}", ratio(tf)))
     return ChapterPart("In letters", tuple(parted(sections)), {}) if sections else None
 
 
-def _lines(found: InLetters, labels: dict[str, str]) -> Block:
-    """Return a paragraph: what is read off a formula."""
-    runs: list[Run] = []
-    for row in (*found.rows, *found.where):
-        comment = f", {row.comment}; " if row.comment else "; "
-        runs += [Code(row.name), f"{row.relation.strip()} ", labelled(row.expression, labels), comment]
-    return text(*runs[:-1], str(runs[-1]).rstrip("; ") + ".")
+def _limits(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Block]:
+    """Yield the leading terms at both ends, and where they meet."""
+    found = limits_of(tf)
+    named = {
+        "s -> 0": ("G_0", "s → 0"),
+        "s -> infinity": ("G_infinity", "s → ∞"),
+        "both meet at": ("omega_m", ""),
+    }
+    runs, sides = list[Run](), list[tuple[Mathematics, Expression]]()
+    for row in found.rows:
+        name, end = named[row.name]
+        left = labelled(Name(name), LIMITS)
+        runs += ["; " if runs else "Leading terms: ", left, f" for {end}" if end else " where both meet"]
+        runs += [f" ({unit_text(row.comment)})"] if row.comment else []
+        sides.append((left, row.expression))
+    if sides:
+        where = [(row.name.removeprefix("where "), row.expression) for row in found.where]
+        yield text(*runs, ".")
+        yield equations(sides, labels, f"{tf.name} at both ends", where)
+
+
+def _groups(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Block]:
+    """Yield the function of groups without dimension, and the groups."""
+    found = dimensionless_of(tf)
+    if not 0 < len(found.rows) <= MOST_ROWS:
+        return
+    (head, *rows), over = found.rows, labelled(Name("scale"), SCALE)
+    scaled = Mathematics(f"<mi>G</mi><mo>/</mo>{over.mathml}", f"G/{over.latex}")
+    where = [(row.name.removeprefix("where "), row.expression) for row in (*rows, *found.where)]
+    yield text("With groups without dimension, and G for ", ratio(tf), ":")
+    yield equations([(scaled, head.expression)], {**labels, **SCALE}, f"{tf.name} with groups", where)
+    runs = list[Run]()
+    for row in rows:
+        runs += [labelled(Name(row.name), SCALE), f": {unit_text(row.comment)}. "] if row.comment else []
+    if runs:
+        yield text(*runs)
 
 
 def _near(tf: AnyTransferFunction, label: str) -> tuple[Block, ...]:
@@ -53,15 +104,24 @@ def _near(tf: AnyTransferFunction, label: str) -> tuple[Block, ...]:
     return *displayed(*near, label), text("; ".join(proof.said), ".")
 
 
-def _factor(factor: FactorInLetters, zero: Expression, labels: dict[str, str]) -> Block:
-    """Return a paragraph: what the roots of a factor are, and under which conditions."""
-    runs: list[Run] = [f"{factor.kind.capitalize()}: ", labelled(zero, labels), " = 0. "]
-    for formula in factor.formulas:
-        value = "" if formula.value is None else f" = {decimal(formula.value)} {formula.unit}".rstrip()
-        runs += [
-            labelled(Name(formula.name), labels),
-            " = ",
-            labelled(formula.expression, labels),
-            f"{value}. ",
-        ]
-    return text(*runs, *(run for line in factor.more() for run in (Code(line), ". ")))
+def _factor(factor: FactorInLetters, labels: Mapping[str, str]) -> Iterator[Block]:
+    """Yield what the roots of a factor are, and under which conditions; nothing where its names say it."""
+    if factor.factor is None or any(isinstance(f.expression, Name) for f in factor.formulas):
+        return
+    names = [(labelled(Name(f.name), labels), f) for f in factor.formulas]
+    yield text(f"{factor.kind.capitalize()} are the roots of")
+    yield equations(
+        [(NOTHING, factor.factor), *((name, f.expression) for name, f in names)], labels, factor.kind
+    )
+    runs = list[Run]()
+    for name, formula in names:
+        if formula.value is not None:
+            runs += [name, f" = {decimal(formula.value)} {formula.unit}".rstrip() + ". "]
+    for line in factor.more():
+        what, _, condition = line.partition(IF)
+        if len(condition) < LONGEST:
+            runs += [Code(line), ". "]
+        else:
+            runs += [f"{what.capitalize()} under a condition that ", Code("roots --letters"), " prints. "]
+    if runs:
+        yield text(*runs)
