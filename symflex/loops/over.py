@@ -17,9 +17,9 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import acb, arb
 
-from symflex.balls import ball, bits_for_digits
+from symflex.balls import ball, bits_for_digits, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, OpenBox
@@ -35,7 +35,7 @@ from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.model import Model, ModelParameter
     from symflex.transfer import Given
@@ -47,6 +47,8 @@ SLIVER = 64
 """Parts as narrow as the digits, up to which what lies between two boundaries is left to them."""
 LEAST = 10**6
 """Part of the range to which values about zero are enclosed."""
+ABOUT = 4
+"""How many times its width a gap is widened to each side for a proof that one pair crosses in it."""
 MOST_GAPS = 1000
 """Open parts side by side beyond which they are not halved: a pole touches the axis there, or stays on it."""
 
@@ -174,27 +176,35 @@ def find_intervals(
                     gaps.append(narrowed)
                 else:
                     left.append(narrowed)
-            halves = [half for box in left for half in function.halves(box)]
-            wide = _too_many(halves)
-            for row in wide:
-                ends = f"{float(row[0].box[0][0]):.6g} and {float(row[-1].box[0][1]):.6g}"
-                reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
-                gaps += row
-            frozen = {id(box) for row in wide for box in row}
-            pending = [box for box in halves if id(box) not in frozen]
+            pending = [half for box in left for half in function.halves(box)]
+            for low, high in _joined([box.box[0] for box in pending]):
+                row = [box for box in pending if low <= box.box[0][0] < high]
+                if len(row) > MOST_GAPS:
+                    ends = f"{float(low):.6g} and {float(high):.6g}"
+                    reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
+                    gaps += row
+                    pending = [box for box in pending if box not in row]
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
     # The ends do not belong to the range: there the order may be lower, or a pole meet the axis.
     rims = {*limits}
     inside = [gap for gap in gaps if not rims & {*gap.box[0]}]
     reasons += dict.fromkeys(box.radius for box in (*inside, *pending) if isinstance(box.radius, str))
+    # Slivers between open parts are left to these.
+    slim = Fraction(1, SLIVER)
+    parts = [(a, b) for a, b in _joined(decided) if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
     counted: list[Interval] = []
-    for part in _joined(decided, limits, digits):
-        verdict, axis = count_at(function, ((part[0] + part[1]) / 2,))
-        if verdict.right is None:
-            reasons.append(verdict.reason)
+    count: PoleCount | None = None
+    for before, part in pairwise([limits, *parts]):
+        own = [gap for gap in gaps if before[1] <= gap.box[0][0] < part[0]]
+        change = 0 if count is None else pair_that_crosses(function, own, (before[0], part[1]), bits)
+        if count and change:
+            count = PoleCount(count.right + change, count.axis)
         else:
-            counted.append((part, PoleCount(verdict.right, axis)))
+            verdict, axis = count_at(function, ((part[0] + part[1]) / 2,))
+            count = None if verdict.right is None else PoleCount(verdict.right, axis)
+            reasons += [verdict.reason] if count is None else []
+        counted += [(part, count)] if count else []
     boundaries, intervals = _boundaries(counted, gaps, limits, digits, reasons)
     stability = StabilityMap(
         parameter.name,
@@ -212,33 +222,53 @@ def find_intervals(
     return replace(stability, gain_margins=gain_margins(stability))
 
 
+def pair_that_crosses(
+    function: CharacteristicFunction, gaps: Sequence[OpenBox], around: Ends, bits: int
+) -> int:
+    """Return by how many a pair of poles that crosses the axis in a gap changes their number to the right.
+
+    No pole meets the axis around the gap. About it interval Newton proves one value, and one frequency, with
+    a root of one factor (Moore 1966); there it moves to one side. 0 where that is not proved.
+    """
+    pieces = [(i, piece) for gap in gaps for i, own in enumerate(gap.pieces) for piece in own]
+    which = {i for i, _ in pieces}
+    if len(which) != 1 or (function.factors[min(which)], 1) not in function.tf.den.factors:
+        return 0
+    first, last = min(gap.box[0][0] for gap in gaps), max(gap.box[0][1] for gap in gaps)
+    low, high = min(a for _, (a, _) in pieces), max(b for _, (_, b) in pieces)
+    wide = (first - ABOUT * (last - first), last + ABOUT * (last - first))
+    if not (around[0] < wide[0] and wide[1] < around[1] and low and all(gap.is_bounded for gap in gaps)):
+        return 0
+    with precision(bits):
+        omega, rise = acb(0, ball((low + high) / 2)), ball(ABOUT * (high - low))
+        s, values = omega + acb(0, arb(0, rise)), function.expanded((wide,))
+        near = values.generators(s)
+        ((_, slope),), ((_, (rate,)),) = values.around(s, [*which], near), values.at(s, [*which], near)
+        ((value, _),) = values.at(omega, [*which], near)
+        # The root is at omega - x.real, where x.imag vanishes.
+        turn = slope * acb(0, 1)
+        ways, off = rate / turn, value / turn
+        step = -off.imag / ways.imag
+        climb = off.real + ways.real * step
+        is_proved = abs(step) < values.halves[0] and abs(climb) < rise
+    return (2 if ways.imag > 0 else -2) if is_proved else 0
+
+
 def _is_narrow(ends: Ends, limits: Ends, digits: int) -> bool:
     """Tell whether a part is as narrow as the digits."""
     size = max(abs(ends[0]), abs(ends[1]), (limits[1] - limits[0]) / LEAST)
     return bool((ends[1] - ends[0]) * 10 ** (digits + 3) < size)
 
 
-def _too_many(boxes: Sequence[OpenBox]) -> list[list[OpenBox]]:
-    """Return rows of open parts, side by side, that are too long to be about one boundary."""
-    rows: list[list[OpenBox]] = []
-    for box in boxes:
-        if rows and rows[-1][-1].box[0][1] == box.box[0][0]:
-            rows[-1].append(box)
+def _joined(parts: Iterable[Ends], apart: Fraction = Fraction(0)) -> list[Ends]:
+    """Return parts that touch as one, ascending, also those that a share of their upper end keeps apart."""
+    joined: list[Ends] = []
+    for low, high in sorted(parts):
+        if joined and low - joined[-1][1] <= apart * high:
+            joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
         else:
-            rows.append([box])
-    return [row for row in rows if len(row) > MOST_GAPS]
-
-
-def _joined(decided: Sequence[Ends], limits: Ends, digits: int) -> list[Ends]:
-    """Return parts that touch as one, ascending; slivers between open parts are left to these."""
-    parts: list[Ends] = []
-    for low, high in sorted(decided):
-        if parts and parts[-1][1] == low:
-            parts[-1] = (parts[-1][0], high)
-        else:
-            parts.append((low, high))
-    slim = Fraction(1, SLIVER)
-    return [(a, b) for a, b in parts if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
+            joined.append((low, high))
+    return joined
 
 
 def _boundaries(
@@ -269,10 +299,6 @@ def _frequencies(gaps: Sequence[OpenBox], digits: int, *, is_real: bool) -> tupl
 
     A real pole meets the axis at 0 exactly.
     """
-    places: list[Ends] = []
-    for low, high in sorted(piece for gap in gaps for of_factor in gap.pieces for piece in of_factor):
-        if places and (low - places[-1][1]) * 10**digits <= high:
-            places[-1] = (places[-1][0], max(high, places[-1][1]))
-        else:
-            places.append((low, high))
+    pieces = (piece for gap in gaps for own in gap.pieces for piece in own)
+    places = _joined(pieces, Fraction(1, 10**digits))
     return tuple(arb(0) if is_real and not low else ball(low).union(ball(high)) for low, high in places)
