@@ -63,7 +63,7 @@ def examples(context: click.Context, *, as_json: bool) -> int:
 def _line(name: str, path: Path, width: int) -> str:
     """Return a line of the list."""
     head = f"{name.ljust(width + 2)}  " if name in FOLDERS else f"  {path.stem.ljust(width)}  "
-    return head + textwrap.shorten(title_of(name, path), terminal_width() - len(head), placeholder=" ...")
+    return textwrap.fill(head + title_of(name, path), terminal_width(), subsequent_indent=" " * len(head))
 
 
 @examples.command("copy")

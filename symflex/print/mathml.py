@@ -202,9 +202,8 @@ def _joined(
 
 def _power(base: str, exponent: str) -> str:
     """Return a power; the exponent of what has an index stands above the index."""
-    if indexed := _INDEXED.fullmatch(base):
-        return with_scripts(indexed[1], indexed[2], exponent)
-    return with_scripts(base, "", exponent)
+    letter, index = found.groups() if (found := _INDEXED.fullmatch(base)) else (base, "")
+    return with_scripts(letter, index, exponent)
 
 
 def _primed(name: str, order: int) -> str:
