@@ -394,8 +394,6 @@ def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:
         ncols=2,
         frameon=False,
         fontsize=7,
-        handlelength=2.2,
-        columnspacing=1.2,
         borderpad=0.0,
         borderaxespad=0.0,
     )

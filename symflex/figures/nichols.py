@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)  # of L/(1 + L), with a contour each
 BESIDE: Final = 10  # least distance of a curve from the border [deg]
 REACH_DB, WIDEST = 40, 1080  # magnitudes [dB] and phases [deg] shown at most, unless others are asked for
-NOTE: Final = 5.5  # type of the contours' numbers [pt]
 
 
 def draw_nichols(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -64,7 +63,7 @@ def _draw_chart(
                 # At the top of closed contours, else at the border.
                 i = places[np.argmax(contour.imag[places] if level > 0 else phase[places])]
                 side = "center" if level > 0 else "right"
-                note = axes.annotate(f"{level} dB", (phase[i], contour.imag[i]), fontsize=NOTE, ha=side)
+                note = axes.annotate(f"{level} dB", (phase[i], contour.imag[i]), fontsize="x-small", ha=side)
                 note.set(color=QUIET, va="center", zorder=1.5, bbox={"fc": "white", "ec": "none", "pad": 0.4})
     for centre in (360 * turn - 180 for turn in turns if left <= 360 * turn - 180 <= right):
         axes.plot([centre], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)

@@ -40,14 +40,13 @@ def draw_sensitivity(loop: AnyLoop, canvas: Canvas) -> Figure:
     lines = [line for one in (canvas.title, said) for line in title_lines(one, width)]
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     frequency, values = _loop_gains(loop, gain, canvas)
-    curves = [("S", 1 / (1 + values)), ("T", values / (1 + values))]
     found = None
     if is_stable and isinstance(loop, Loop) and is_straight(loop):
         with suppress(UncertifiedError):  # curves without marks then
             found = loop_peaks(loop, gain)
     peaks = (found.sensitivity, found.complementary_sensitivity) if found else ()
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
-    for i, (name, curve) in enumerate(curves):
+    for i, (name, curve) in enumerate((("S", 1 / (1 + values)), ("T", values / (1 + values)))):
         label = f"$|{name}|$"
         if peaks and peaks[i].magnitude.is_finite():
             size = float(peaks[i].magnitude.mid())
