@@ -732,8 +732,6 @@ def refused(message: str) -> UsageError:
 def exact(number: float | Fraction) -> Fraction:
     """Return the shortest decimal that prints a number.
 
-    Examples
-    --------
     >>> exact(0.1)
     Fraction(1, 10)
     """
@@ -867,8 +865,7 @@ def share_of(given: Stated, flag: str) -> Fraction:
     value = plain_number(given, ("%",))
     is_percent = isinstance(given, str) and "%" in given
     if not 0 < value < (100 if is_percent else 1):
-        message = f"{flag} takes a share such as '1 %', found '{str(given)[:40]}'"
-        raise refused(message)
+        raise refused(f"{flag} takes a share such as '1 %', found '{str(given)[:40]}'")
     return Fraction(Decimal(str(value))) / (100 if is_percent else 1)
 
 

@@ -25,23 +25,18 @@ from symflex.algebra.ring import Ring
 MOST_EXPONENTIALS = 1500
 """Terms up to which a sum is written out: each is evaluated at every step of every path."""
 
-Gaussian = tuple[int, int]
-"""An integer a + j b."""
-Part = TypeVar("Part", int, Fraction)
-"""The type of a complex number's rational parts."""
+Gaussian = tuple[int, int]  # an integer a + j b
+Part = TypeVar("Part", int, Fraction)  # the type of a complex number's rational parts
 Exponent = tuple[tuple[int, int, int], ...]
 """Positions of arguments, ascending, and what each is multiplied with: a + j b."""
 Monomial = tuple[tuple[int, int], ...]
 """Positions of generators, ascending, and exponents; the first generator is s, or what stands for it."""
 Amplitude = dict[Monomial, Gaussian]
-Multiples = tuple[int, ...]
-"""One integer for each argument."""
+Multiples = tuple[int, ...]  # one integer for each argument
 Polynomial = dict[int, dict[Monomial, int]]
 """Per power of the first generator and monomial of the others, counted from 0, a number."""
-Combination = tuple[tuple[int, acb], ...]
-"""Positions of arguments, and what they are multiplied with."""
-REAL: Exponent = ()
-"""The exponent 0."""
+Combination = tuple[tuple[int, acb], ...]  # positions of arguments, and what they are multiplied with
+REAL: Exponent = ()  # the exponent 0
 
 
 def times(a: tuple[Part, Part], b: tuple[Part, Part]) -> tuple[Part, Part]:

@@ -39,8 +39,6 @@ class Factored:
     leading coefficient and no monomial factor. Exponents are nonzero integers; negative ones
     form the denominator. Products and powers never expand; sums expand only what differs.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "k", "b"))
     >>> k, b, s = (Factored.generator(ring, n) for n in "kbs")
     >>> impedance = k + b * s
@@ -212,8 +210,7 @@ class Factored:
     def _expand_scaled(self, scale: int) -> fmpz_mpoly:
         unit = self.unit * scale
         if unit.denominator != 1 or any(e < 0 for _, e in self.factors):
-            message = "only a polynomial with integer coefficients can be expanded"
-            raise ValueError(message)
+            raise ValueError("only a polynomial with integer coefficients can be expanded")
         terms, most = 1, min(TERM_LIMIT, MEMORY_LIMIT // self.ring.bytes_of(1))
         for factor, exponent in self.factors:
             terms *= comb(len(factor) + exponent - 1, exponent) if len(factor) > 1 else 1
@@ -244,8 +241,6 @@ def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factor
 def common_denominator(ring: Ring, values: Sequence[Factored]) -> Factored:
     """Return the least common multiple of the values' denominators, numbers included.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "k"))
     >>> k = Factored.generator(ring, "k")
     >>> str(common_denominator(ring, [k / 6, k**-2 / 4, k**-1]))
@@ -258,8 +253,6 @@ def common_denominator(ring: Ring, values: Sequence[Factored]) -> Factored:
 def composed(value: Factored, images: Mapping[str, Factored]) -> Factored:
     """Return a value with rational functions of the same ring in place of some generators.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "k"))
     >>> s, k = (Factored.generator(ring, name) for name in ring.names)
     >>> str(composed((s + k) * k, {"k": 1 / s}))
@@ -310,8 +303,6 @@ def residue(value: Factored, point: Mapping[str, int], prime: int = PRIME) -> in
 
     Raises ZeroDivisionError when its denominator is zero there.
 
-    Examples
-    --------
     >>> from symflex.algebra import Factored, Ring
     >>> ring = Ring(("s", "k"))
     >>> k = Factored.generator(ring, "k")
@@ -327,8 +318,7 @@ def residue(value: Factored, point: Mapping[str, int], prime: int = PRIME) -> in
 
 def _power(base: int, exponent: int, prime: int) -> int:
     if exponent < 0 and base % prime == 0:
-        message = "division by zero"
-        raise ZeroDivisionError(message)
+        raise ZeroDivisionError("division by zero")
     return pow(base, exponent, prime)
 
 

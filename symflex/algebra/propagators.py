@@ -22,12 +22,10 @@ from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
 from symflex.algebra.factored import Factored, common_denominator, random_point, residue
 from symflex.algebra.ring import Ring
 
-MULTIPLE_LIMIT = 12
-"""Lengths that are longer sums of base lengths keep kernels of their own."""
+MULTIPLE_LIMIT = 12  # lengths that are longer sums of base lengths keep kernels of their own
 SUM_LIMIT = 7
 """So do lengths of several beams whose sum is more, as 3:7: with a common base formulas are of pages."""
-EXPONENTIAL = -1
-"""The order under which ``exp(-shift*length)`` is listed."""
+EXPONENTIAL = -1  # the order under which exp(-shift*length) is listed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -338,8 +336,7 @@ def _are_apart(coordinates: Sequence[tuple[int, ...]]) -> bool:
     return len(known) > 1 and known.isdisjoint(tuple(map(add, x, y)) for x, y in pairs)
 
 
-SUBSET_LIMIT = 500
-"""Number of subsets of the given lengths that are tried as a base."""
+SUBSET_LIMIT = 500  # number of subsets of the given lengths that are tried as a base
 
 Monomial = tuple[int, ...]
 
@@ -357,8 +354,6 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
 
     None is zero; earlier ones are preferred, and with ``positive`` those of which no coordinate is negative.
 
-    Examples
-    --------
     >>> from symflex.algebra import Factored, Ring
     >>> ring = Ring(("s", "l", "x"))
     >>> l, x = Factored.generator(ring, "l"), Factored.generator(ring, "x")

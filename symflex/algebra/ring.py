@@ -22,13 +22,10 @@ from symflex.errors import BudgetError, Diagnostic
 LAPLACE = "s"
 TERM_LIMIT = 3_000_000
 DEGREE_LIMIT = 20_000
-MEMORY_LIMIT = 100_000_000
-"""Bytes an expansion or elimination may take."""
+MEMORY_LIMIT = 100_000_000  # bytes an expansion or elimination may take
 COEFFICIENT_BYTES = 8
-FEW = 16
-"""How large coefficients may be that do not spoil a count of terms much."""
-MANY = 5_000
-"""Terms that are not counted one by one."""
+FEW = 16  # how large coefficients may be that do not spoil a count of terms much
+MANY = 5_000  # terms that are not counted one by one
 SPARSE_BYTES = 1_000
 """What a term of a sparse polynomial counts for: it takes less memory, but its products take long."""
 
@@ -37,8 +34,6 @@ SPARSE_BYTES = 1_000
 class Ring:
     """Integer polynomials in named generators, lexicographic order, ``s`` first.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "m", "b"))
     >>> ring.generator("m") * ring.generator("s") + ring.generator("b")
     s*m + b
@@ -130,8 +125,6 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
 
     ``None`` when there is no quick one: many coefficients of both signs, or large ones.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "x", "y"))
     >>> s, x, y = ring.context.gens()
     >>> expanded_length(s * x + x * y, (1, 2, 3)), expanded_length(x**60, (1, 2, 3))
@@ -209,8 +202,6 @@ def coefficients_of(
 
     Keys are exponents, in the order in which they first occur.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "m", "b"))
     >>> s, m, b = (ring.generator(n) for n in ring.names)
     >>> coefficients_of(ring, m * s**2 - 3 * b * s + m * b * s, (0, 2))
@@ -241,8 +232,6 @@ def by_powers(ring: Ring, polynomial: fmpz_mpoly, generator: int = 0) -> dict[in
 def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
     """Return the terms in lexicographic order: positions of generators with exponents, and the coefficient.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "m", "b"))
     >>> s, m, b = (ring.generator(n) for n in ring.names)
     >>> terms_of(m * s**2 - 3 * b)
@@ -259,8 +248,6 @@ def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mp
     The number bears the sign; factors have content 1 and positive leading coefficients, and are ordered by
     exponents, then by terms.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> s, k = Ring(("s", "k")).context.gens()
     >>> irreducible_factors((s + 2**70) * (s + 2**70 + 2) * k**2 * -6)
@@ -284,8 +271,6 @@ def square_free_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mp
 
     See :func:`irreducible_factors`; these are in no order.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> s, k = Ring(("s", "k")).context.gens()
     >>> square_free_factors(3 * (s + 1) * (s - k) ** 2)
@@ -304,8 +289,6 @@ class PolynomialMemo(Generic[Made]):
 
     The engine's polynomials have no hash, so the same object is known again, and not an equal one.
 
-    Examples
-    --------
     >>> from symflex.algebra import Ring
     >>> s = Ring(("s",)).generator("s")
     >>> memo = PolynomialMemo(lambda polynomial: [len(polynomial)])

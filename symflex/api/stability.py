@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,14 +11,12 @@ from flint import arb
 
 from symflex.balls import to_mpmath
 from symflex.print.notebook import Printed
+from symflex.print.text import Passage
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import degrees, hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from symflex import loops as stability_room
-    from symflex.print.text import Passage
 
 
 @dataclass(frozen=True)

@@ -48,8 +48,7 @@ HOLE = "?"  # generator that stands for a part of a formula whose right value is
 Key = tuple[tuple[str, Fraction], ...]
 Recipe = tuple[tuple[Key, int], ...]
 """A polynomial in roots, by name and exponent, so that it means the same in a larger field."""
-Multiples = Sequence[tuple[int, int]]
-"""Base arguments by number, each with how many times it is taken."""
+Multiples = Sequence[tuple[int, int]]  # base arguments by number, each with how many times it is taken
 
 
 class UnreadError(Exception):

@@ -57,8 +57,6 @@ def transfer_of(block: PlacedBlock, values: Mapping[str, Factored]) -> Factored:
 
     Raises ZeroDivisionError.
 
-    Examples
-    --------
     >>> from symflex.library.blocks import BLOCKS
     >>> from symflex.model import PlacedBlock
     >>> ring = Ring(("s", "k"))
@@ -207,8 +205,7 @@ class ExactEvaluator:
             case Derivative(name, order):
                 derivative = Variable("field", name, "'" * order)
                 return LinearForm.of((derivative, Factored.number(self.ring, 1)))
-        message = f"unexpected expression {type(expression).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"unexpected expression {type(expression).__name__}")
 
     def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
         is_shared = len(self.scope.meanings.get(expression.name, ())) > 1
@@ -318,8 +315,7 @@ class Opener:
                 self._opened[name] = self._substituted(expression, call)
         opened = self._substituted(call, call)
         if not isinstance(opened, Call):
-            message = "a call stays a call"
-            raise TypeError(message)
+            raise TypeError("a call stays a call")
         return opened
 
     def _substituted(self, expression: Expression, call: Call) -> Expression:
@@ -340,8 +336,6 @@ class Opener:
 def extent(expression: Expression) -> tuple[int, int]:
     """Return how many parts a tree has, and how many levels.
 
-    Examples
-    --------
     >>> extent(Sum((Name("x"), Negative(Name("y")))))
     (4, 3)
     """

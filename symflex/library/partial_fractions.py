@@ -52,8 +52,6 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
 
     A polynomial that is too large to be factored is returned as it is.
 
-    Examples
-    --------
     >>> ring = Ring(("s", "k"))
     >>> k = Factored.generator(ring, "k")
     >>> found = factors([k * (k + 1), k * 0, k * 2 + 1, k * 0])

@@ -7,13 +7,14 @@ its sign; else it is halved. Near 0, where wavenumbers vanish, power series with
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import exp, inf, pi
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
 from symflex.balls import ball, bits_for_digits, narrowed, precision
@@ -23,26 +24,14 @@ from symflex.model.model import IMAGINARY
 from symflex.roots.counting.local_series import SERIES_POINTS, LocalSeries, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.transfer import BoundTransferFunction
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.transfer import BoundTransferFunction
-
-BITS = 96
-"""Of intervals, whose ends are doubles."""
-FIRST_RATIO = 1.25
-"""Of the ends of the first intervals."""
-NARROWEST = 1e-11
-"""Relative width of an interval that is not halved any more."""
-MOST_INTERVALS = 40_000
-"""Of one search, before it is given up."""
-NEWTON_STEPS = 60
-"""Each nearly doubles the digits, so that few are ever taken."""
-STALLED = 0.99
-"""Share of an enclosure that the last step leaves."""
+BITS = 96  # of intervals, whose ends are doubles
+FIRST_RATIO = 1.25  # of the ends of the first intervals
+NARROWEST = 1e-11  # relative width of an interval that is not halved any more
+MOST_INTERVALS = 40_000  # of one search, before it is given up
+NEWTON_STEPS = 60  # each nearly doubles the digits, so that few are ever taken
+STALLED = 0.99  # share of an enclosure that the last step leaves
 
 
 Place = TypeVar("Place")

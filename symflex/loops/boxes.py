@@ -12,54 +12,41 @@ without a root for a box have none for its halves.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite
-from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb
+from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.balls import Value, at_centre, ball, current_bits, precision
 from symflex.budget import spend
 from symflex.expressions import names_among
+from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
 from symflex.roots.functions.kernel_function import KernelFactors
-from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
+from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.of_model import derive_nameless
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.model import ExactValue, Model
-    from symflex.transfer import TransferFunction
-    from symflex.transfer.enclose_kernels import KernelValues
-
-BITS = 64
-"""Precision of values on boxes, which are far wider."""
+BITS = 64  # precision of values on boxes, which are far wider
 LOWEST = 1e-6
 """Radius from which one is sought beyond which no root lies in the right half-plane [rad/s]."""
-OCTAVES = 24
-"""Pieces of the axis at first, each half as high as the next; the lowest begins at 0."""
-
-NEARLY = 1 / 8
-"""Share of a value that a box may leave and this still be as good as 0."""
+OCTAVES = 24  # pieces of the axis at first, each half as high as the next; the lowest begins at 0
+NEARLY = 1 / 8  # share of a value that a box may leave and this still be as good as 0
 
 Ends = tuple[Fraction, Fraction]
-Box = tuple[Ends, ...]
-"""The ends of every parameter, in SI units."""
+Box = tuple[Ends, ...]  # the ends of every parameter, in SI units
 Piece = tuple[Fraction, Fraction]
 """A part of the imaginary axis, from a frequency to another [rad/s]; or of another path."""
 Line = tuple[arb, ...]
 """A value in the middle of a box, and what each parameter adds between there and its upper end."""
-Path = tuple[complex, complex]
-"""Where a straight path is at 0, and how far it goes for every 1."""
+Path = tuple[complex, complex]  # where a straight path is at 0, and how far it goes for every 1
 AXIS: Path = (0j, 1j)
 
 

@@ -13,6 +13,7 @@ boundary is decided but for a strip about a straight line, and halved until stri
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -34,29 +35,20 @@ from symflex.roots.root import count_roots
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
 
 SCHEMA = "symflex.stability_chart/1"
-SHOWN = 12
-"""Regions in print; the others are in the JSON."""
-SEARCH = 0.7
-"""Share of the time for boxes; the rest is for counts of poles."""
-PARTS = 8
-"""Parts of a box in either direction, its cells, that are decided by straight lines."""
-MOST_HALVINGS = 9
-"""Halvings of each range: 4,096 cells along it."""
+SHOWN = 12  # regions in print; the others are in the JSON
+SEARCH = 0.7  # share of the time for boxes; the rest is for counts of poles
+PARTS = 8  # parts of a box in either direction, its cells, that are decided by straight lines
+MOST_HALVINGS = 9  # halvings of each range: 4,096 cells along it
 SLENDER = 8
 """How many times longer a box may be than wide, in parts of the ranges, where its other range is halved."""
 SMALLEST = 5e-4
 """Share of the smallest region in which poles are counted; smaller ones are left undecided."""
-ROUNDING = 1e-12
-"""Far more than doubles round of a few numbers of the size of one."""
-MIXED = -2
-"""Mark of boxes whose cells differ."""
-COUNT_DIGITS = 10
-"""Digits of poles of which only the number is asked for."""
+ROUNDING = 1e-12  # far more than doubles round of a few numbers of the size of one
+MIXED = -2  # mark of boxes whose cells differ
+COUNT_DIGITS = 10  # digits of poles of which only the number is asked for
 Word = Literal["stable", "marginal", "unstable", "undecided"]
 
 

@@ -8,12 +8,13 @@ falls below one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
 from math import inf, pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb, arb
 
@@ -21,11 +22,11 @@ from symflex.balls import ball, precision
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
-from symflex.loops.axis_search import SHRINKINGS
+from symflex.loops.axis_search import SHRINKINGS, OnAxis
 from symflex.loops.distributed import DistributedFactors
 from symflex.loops.locus import closed_loop_roots, is_straight
-from symflex.loops.loop import Loop
-from symflex.loops.loop_function import LoopFunction
+from symflex.loops.loop import GainPolynomial, Loop
+from symflex.loops.loop_function import LoopFunction, LoopValue
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
@@ -43,28 +44,16 @@ from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.loops.axis_search import OnAxis
-    from symflex.loops.loop import GainPolynomial
-    from symflex.loops.loop_function import LoopValue
-
-
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
 BRANCH = "stable gains are searched where the branch point is s = 0, and not where it lies elsewhere"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
-NARROW_BITS = 20
-"""Relative accuracy of a range of gains that is not worth a word."""
-GUARD_DIGITS = 6
-"""Beyond those printed."""
+NARROW_BITS = 20  # relative accuracy of a range of gains that is not worth a word
+GUARD_DIGITS = 6  # beyond those printed
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
 """Of gains between boundaries: the fewest that lie between them."""
-BITS = 128
-"""Of gains."""
-NEXT_TO_ZERO = 2**20
-"""By what the first boundary is divided where poles of a small gain are counted."""
+BITS = 128  # of gains
+NEXT_TO_ZERO = 2**20  # by what the first boundary is divided where poles of a small gain are counted
 Limits = tuple[Fraction | None, Fraction | None]
 AnyFactors = DistributedFactors | NetworkFactors
 
@@ -258,8 +247,7 @@ def _range(loop: AnyLoop, given: Limits | None, *, has_kernels: bool) -> Limits:
     """Return the range of the gain: that given, else of its sign, with kernels up to 100 times its value."""
     low, high = given or (None if loop.gain.assume == "real" else Fraction(0), None)
     if low is not None and high is not None and not low < high:
-        message = f"the range of '{loop.gain.name}' must end above its start"
-        raise UsageError(Diagnostic("SF804", message))
+        raise UsageError(Diagnostic("SF804", f"the range of '{loop.gain.name}' must end above its start"))
     if has_kernels and given is None and loop.nominal:
         reach = abs(loop.nominal) * RANGE_OF_NOMINAL
         low, high = -reach if low is None else low, reach
@@ -540,8 +528,7 @@ def distributed_crossovers(
     return [(omega, ratio) for omega, ratio in crossovers if ratio.is_finite()]
 
 
-MARGIN: Final = 2
-"""Of the gain: 6 dB."""
+MARGIN: Final = 2  # of the gain: 6 dB
 
 
 def allowed_crossover(

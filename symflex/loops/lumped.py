@@ -8,13 +8,14 @@ for every gain; between the real roots of its discriminant their number on the a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial, reduce
 from math import inf, lcm
 from typing import TYPE_CHECKING
 
-from flint import arb, fmpz_mpoly
+from flint import arb, arb_series, fmpz_mpoly
 
 from symflex.algebra import Ring, degree_in, irreducible_factors
 from symflex.balls import bits_for_digits, precision, value_at
@@ -24,21 +25,15 @@ from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.problem import problem_of
+from symflex.transfer import BoundTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import arb_series
-
     from symflex.loops.gain_functions import GainFunctions
     from symflex.loops.loop import GainPolynomial, Loop
-    from symflex.transfer import BoundTransferFunction
 
-W, K = 0, 1
-"""Positions of omega squared and of the gain in the ring of E and O."""
+W, K = 0, 1  # positions of omega squared and of the gain in the ring of E and O
 SPARE_DIGITS = 10
-COUNT_DIGITS = 15
-"""Of squares whose sign alone matters."""
+COUNT_DIGITS = 15  # of squares whose sign alone matters
 
 
 @dataclass(frozen=True)

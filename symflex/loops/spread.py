@@ -15,39 +15,28 @@ point; what holds there is proved as for any one point.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import acb
 
 from symflex.balls import precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
-from symflex.loops.boxes import BITS, CharacteristicFunction
-from symflex.loops.chart import count_at, located_at
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction
+from symflex.loops.chart import Word, count_at, located_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
-from symflex.model import spread_box
-from symflex.options import share_of
+from symflex.model import Model, spread_box
+from symflex.options import StabilityOptions, Stated, share_of
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
+from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.transfer import Given
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.loops.boxes import Box
-    from symflex.loops.chart import Word
-    from symflex.model import Model
-    from symflex.options import StabilityOptions, Stated
-    from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import Given
-
-Point = tuple[Fraction, ...]
-"""A value of every parameter, in SI units."""
-MOST_BOXES = 10_000
-"""Boxes after which it stays undecided: about a minute for lumped loops."""
-FOLLOWED = 4
-"""Modes of a distributed model whose poles are pushed towards the axis."""
+Point = tuple[Fraction, ...]  # a value of every parameter, in SI units
+MOST_BOXES = 10_000  # boxes after which it stays undecided: about a minute for lumped loops
+FOLLOWED = 4  # modes of a distributed model whose poles are pushed towards the axis
 TRIES = frozenset(4**i for i in range(8))
 """After how many boxes a combination is sought again, from where poles may meet the axis."""
 

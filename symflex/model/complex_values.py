@@ -7,11 +7,14 @@ A table of poles has conjugate pairs, and a filter with these poles is real: exa
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
 from operator import add
 from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Ring, by_powers, terms_of
 from symflex.errors import BudgetError
@@ -19,6 +22,7 @@ from symflex.expressions import (
     Attribute,
     Call,
     Equation,
+    Expression,
     Name,
     Negative,
     Product,
@@ -41,11 +45,6 @@ from symflex.model.linearity import EXPONENT_LIMIT, factored_of
 from symflex.model.model import IMAGINARY
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from flint import fmpz_mpoly
-
-    from symflex.expressions import Expression
     from symflex.model.network import Draft
 
 UNIT, ONE = Name(IMAGINARY), Fraction(1)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from symflex.algebra import FUNCTIONS, LAPLACE, Factored
-from symflex.errors import Diagnostic, SpecError, nearest
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Ring
+from symflex.errors import Diagnostic, Span, SpecError, nearest
 from symflex.expressions import (
     Attribute,
     Call,
@@ -28,14 +29,7 @@ from symflex.expressions import (
     names,
     names_among,
 )
-from symflex.model.scope import IN_TIME, outside, without_point
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from symflex.algebra import Ring
-    from symflex.errors import Span
-    from symflex.model.scope import ModelScope
+from symflex.model.scope import IN_TIME, ModelScope, outside, without_point
 
 Degree = Literal["constant", "linear", "unknown"]
 """What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
@@ -172,8 +166,7 @@ class _Degrees:
                 return self._call(expression)
             case Derivative():
                 return self._derivative(expression)
-        message = f"unexpected expression {type(expression).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"unexpected expression {type(expression).__name__}")
 
     def _name(self, expression: Name | Attribute) -> Degree:
         if len(self.problems) >= SHOWN_PROBLEMS:
@@ -292,8 +285,7 @@ def _strongest(degrees: Iterable[Degree]) -> Degree:
 
 
 def _derivative(span: Span | None) -> Diagnostic:
-    message = "only an unknown of [fields] has a derivative along x"
-    return Diagnostic("SF223", message, span, IN_TIME)
+    return Diagnostic("SF223", "only an unknown of [fields] has a derivative along x", span, IN_TIME)
 
 
 def _not_along(call: Call, scope: ModelScope) -> Diagnostic:

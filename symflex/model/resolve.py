@@ -6,12 +6,13 @@ Output: a :class:`Model`, or one :class:`SpecError` with every problem of the te
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, SpecError, UsageError
+from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
 from symflex.expressions import Attribute, Equation, Expression, names, substitute
 from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
@@ -54,6 +55,7 @@ from symflex.model.model import (
     Model,
     ModelParameter,
     NetworkNode,
+    OperatingPoint,
     Output,
     PlacedBlock,
     PlacedElement,
@@ -70,9 +72,9 @@ from symflex.model.network import (
 )
 from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.scope import COORDINATE, ModelScope, build_scope
-from symflex.model.settings import check_names, settled
+from symflex.model.settings import Setting, check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
-from symflex.model.spec import parse_with_recovery
+from symflex.model.spec import Spec, TableValue, parse_with_recovery
 from symflex.model.units import (
     block_unit,
     check_units,
@@ -87,14 +89,6 @@ from symflex.model.units import (
 )
 from symflex.model.unused import unused
 from symflex.model.written_delays import with_written_delays
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
-
-    from symflex.errors import Source, Span
-    from symflex.model.model import OperatingPoint
-    from symflex.model.settings import Setting
-    from symflex.model.spec import Spec, TableValue
 
 Kind = Literal["constant", "real", "varying", "signal"]
 """What an expression may be: constant, that and real, varying along x, or varying in time."""

@@ -84,8 +84,6 @@ def label_of(name: str) -> str:
 
     Greek names print as letters, the parts after underscores as subscripts; words in subscripts are upright.
 
-    Examples
-    --------
     >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x", "Z_ij", "rhoA")))
     \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x} Z_{ij} \mathit{\rho A}
     """
@@ -97,8 +95,6 @@ def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> 
 
     ``named`` are names with their declared labels, which may be empty; labels in ``reserved`` are taken.
 
-    Examples
-    --------
     >>> labels_of([("m_1", ""), ("m1", ""), ("k", "k_t")], {"s": "s"})
     {'s': 's', 'k': 'k_t', 'm_1': 'm_{1}', 'm1': '\\mathtt{m1}'}
     """
@@ -188,8 +184,6 @@ def _typewriter_width(text: str) -> float:
 def read_label(latex: str) -> Label | None:
     r"""Read a declared label; ``None`` when it would break a formula.
 
-    Examples
-    --------
     >>> read_label(r"\omega_{p1}").latex, read_label(r"\hat"), read_label(r"\text{a_b}"), read_label("x^2'")
     ('\\omega_{p1}', None, None, None)
     """
@@ -487,8 +481,6 @@ _SCRIPT_TEXT, _TINY_TEXT = 0.85, 0.7
 def identifier(text: str, style: str = "") -> str:
     """Return a name: one letter italic by itself, several upright, unless a class says otherwise.
 
-    Examples
-    --------
     >>> identifier("m"), identifier("eff"), identifier("R", "rm"), identifier("EI", "it")
     ('<mi>m</mi>', '<mi>eff</mi>', '<mi mathvariant="normal">R</mi>', '<mi class="it">EI</mi>')
     """
@@ -519,8 +511,6 @@ def words(text: str, style: str = "") -> str:
 def row(*parts: str) -> str:
     """Return parts as one; a single element stays as it is.
 
-    Examples
-    --------
     >>> row("<mi>a</mi>"), row("<mi>a</mi>", "<mi>b</mi>")
     ('<mi>a</mi>', '<mrow><mi>a</mi><mi>b</mi></mrow>')
     """

@@ -48,12 +48,10 @@ from symflex.roots.pole_zero_map import WORST_FIRST
 from symflex.sweep.run import end_with_parent
 
 MOST_MODELS: Final = 200
-TICK: Final = 0.5
-"""Seconds between two reports of progress while nothing ends."""
+TICK: Final = 0.5  # seconds between two reports of progress while nothing ends
 CHAPTERS: Final = 0.8
 """Part of the time after which chapters end with what they have, so that there is some for writing."""
-WAITING: Final = 0.9
-"""Part of the time after which those that do not end are no longer waited for."""
+WAITING: Final = 0.9  # part of the time after which those that do not end are no longer waited for
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
 """Endings of the data files that are looked for in folders."""
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
@@ -116,8 +114,6 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
 
     The names are made of letters, digits and underscores, and differ also where capitals count as small.
 
-    Examples
-    --------
     >>> from pathlib import Path
     >>> name_specifications([Path("a/beam.toml"), Path("b/Beam.toml"), Path("2 <x>.toml")])
     {'beam': PosixPath('a/beam.toml'), 'Beam_2': PosixPath('b/Beam.toml'), 'm_2__x_': PosixPath('2 <x>.toml')}

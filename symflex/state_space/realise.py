@@ -136,8 +136,7 @@ def realise_quotient(
     rows = _Rows((y,), (source,), ((y, "signal"),), (row,), ({(0, 0): one},)).with_partial_states(columns)
     solved = solve(rows.rows, [(SIGNAL, 0)])
     if solved is None:
-        message = "a denominator is not zero"
-        raise AssertionError(message)
+        raise AssertionError("a denominator is not zero")
     return _Realisation(model, ring, constants, radicals, rows, solved).state_space((output,), (source,))
 
 
@@ -408,8 +407,7 @@ class _Realisation:
                 for i, part in given.items():
                     flows[i] = combined(flows.get(i, {}), part, value)
             if states or any(flows.values()):
-                message = "the state equations do not satisfy the model's"
-                raise AssertionError(message)
+                raise AssertionError("the state equations do not satisfy the model's")
 
     def _states(
         self, keys: Sequence[tuple[int, int]], direct: Sequence[Mapping[int, Vector]]

@@ -338,8 +338,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
     Raises ModelError: SF910 when the block stands for a distributed system.
     """
     if block.submodel is None or block.tf is None:
-        message = f"block '{block.name}' holds no model"
-        raise ValueError(message)
+        raise ValueError(f"block '{block.name}' holds no model")
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
     if not tf.is_rational or tf.model.root:
         message = (

@@ -54,8 +54,7 @@ UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)
 estimate says little where one member's motion is another's."""
 SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
 SPLIT = "solved as a network: where wavenumbers meet, code of the formula would lose digits"
-NEVER_LARGE = 20
-"""Elements of a lumped model up to which its terms are not estimated."""
+NEVER_LARGE = 20  # elements of a lumped model up to which its terms are not estimated
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:

@@ -16,15 +16,7 @@ from symflex.algebra import Factored
 from symflex.analysis.explanation.coordinates import acting, holds, measured
 from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of, opened
 from symflex.equations import Equations
-from symflex.expressions import (
-    Call,
-    Derivative,
-    Equation,
-    Name,
-    format_expression,
-    is_number,
-    names,
-)
+from symflex.expressions import Call, Derivative, Equation, Name, format_expression, is_number, names
 from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.library.elements.line import Beam
 from symflex.library.elements.rigid import MasslessBeam

@@ -322,8 +322,7 @@ def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...],
     """
     function = bound.enclosed(current_bits())
     if not isinstance(function, EnclosedTransferFunction):
-        message = f"{bound.name} is not rational"
-        raise TypeError(message)
+        raise TypeError(f"{bound.name} is not rational")
     above, below = acb_poly([function.unit]), acb_poly([1])
     for polynomial, exponent in function.factors:
         if exponent > 0:

@@ -34,15 +34,7 @@ from symflex.along.law import BoundLaw
 from symflex.along.matrices import VaryingMatrices
 from symflex.along.minors import MinorSums
 from symflex.analysis.sensitivity.of_equations import SingularMatrix, derivatives, is_fixed_at_zero
-from symflex.balls import (
-    Arithmetic,
-    EvaluationPlan,
-    Value,
-    bits_for_digits,
-    plan,
-    precision,
-    precisions,
-)
+from symflex.balls import Arithmetic, EvaluationPlan, Value, bits_for_digits, plan, precision, precisions
 from symflex.budget import spend
 from symflex.expressions import Call, Expression
 from symflex.loops import pick_gain
@@ -361,11 +353,7 @@ def _is_simple(tangents: Tangents, factor: fmpz_mpoly, s: acb, bits: int) -> boo
 
 
 def sensitivities(
-    model: Model,
-    bound: AnyBoundFunction,
-    located: PoleZeroMap,
-    names: Sequence[str] = (),
-    digits: int = 15,
+    model: Model, bound: AnyBoundFunction, located: PoleZeroMap, names: Sequence[str] = (), digits: int = 15
 ) -> tuple[RootDerivative, ...]:
     """Return how poles and zeros move with the parameters named, or with all; see :func:`.differentiate`.
 
@@ -452,8 +440,6 @@ class TangentPoint:
 class Tangents:
     """Evaluates what a transfer function is made of, to first order.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1

@@ -131,8 +131,6 @@ def sensitivity_formula(
     0 only are left out; of a power, its base is taken. Where nothing is left, no root moves: 0 and 1.
     ``where`` has names that stand for expressions, to be put in.
 
-    Examples
-    --------
     >>> s, m, k = sympy.symbols("s m k")
     >>> sensitivity_formula(s * (m * s**2 + k) ** 2, (), s, k)
     (-1, 2*m*s)

@@ -18,8 +18,7 @@ from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import S, of_powers, powers_of, rebuilt
 from symflex.transfer import ClosedForm, TransferFunction
 
-SMALL = 200
-"""Number of terms up to which every arrangement is tried."""
+SMALL = 200  # number of terms up to which every arrangement is tried
 
 
 def definitions_form(tf: TransferFunction) -> PrintedForm:

@@ -24,12 +24,9 @@ from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_expon
 from symflex.print.forms.notation import Angle, angles_of
 from symflex.transfer import TransferFunction
 
-DOUBLINGS = 8
-"""Halvings that are undone at most."""
-LARGE = 300
-"""Number of terms of a factor from which it is left as it is."""
-MOST = 5
-"""Number of lengths of one wavenumber up to which sums of them are tried."""
+DOUBLINGS = 8  # halvings that are undone at most
+LARGE = 300  # number of terms of a factor from which it is left as it is
+MOST = 5  # number of lengths of one wavenumber up to which sums of them are tried
 HALVES = 4
 """Multiple of an argument up to which its own kernels read as well: those of a beam and of its middle."""
 TWO = 2

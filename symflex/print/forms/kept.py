@@ -20,8 +20,7 @@ from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.expressions import Name
 from symflex.transfer import TransferFunction
 
-REWRITE_LIMIT = 5_000
-"""Number of terms up to which a polynomial is rewritten in definitions."""
+REWRITE_LIMIT = 5_000  # number of terms up to which a polynomial is rewritten in definitions
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,8 +51,6 @@ def latex_expression(expression: Expression, labels: Mapping[str, str], style: S
     Names without a declared label get :func:`~symflex.print.label.label_of`. Raises TypeError for an
     equation or a quantity of an element, which no transfer function contains.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name, number, power, product_of, quotient, sum_of
     >>> s, zeta, omega = Name("s"), Name("zeta_p1"), Name("omega_p1")
     >>> print(latex_expression(sum_of([power(s, 2), product_of([number(2), zeta, omega, s])]), {}))
@@ -159,8 +157,6 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     is used beyond the first's. Each line begins with its indentation, and all but the first with their
     operator.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name
     >>> from symflex.print.latex.expression import Writer
     >>> letters = Sum(tuple(map(Name, "abcdef")))

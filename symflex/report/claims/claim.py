@@ -11,8 +11,7 @@ from symflex.errors import counted
 from symflex.report.document import Aside, Badge, Cell, Run, Section, Table, Tone, Verdict, columns, text
 from symflex.report.facts import ModelFacts
 
-Models = Mapping[str, ModelFacts]
-"""Facts by the name of the model's file, without suffix."""
+Models = Mapping[str, ModelFacts]  # facts by the name of the model's file, without suffix
 
 Predicate = Callable[..., "Finding"]
 """What may be checked, with facts, the names of what is checked, and values by keyword."""
@@ -114,8 +113,6 @@ def publication_of(sources: Iterable[str], known: Iterable[Publication]) -> Publ
 def is_of(source: str, name: str) -> bool:
     """Tell whether a source is a publication, or a model made after it.
 
-    Examples
-    --------
     >>> is_of("after Eppinger & Seering 1988, fig. 1", "Eppinger & Seering 1988")
     True
     """

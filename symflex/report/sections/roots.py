@@ -125,8 +125,6 @@ def _stability(verdict: StabilityVerdict, more: str = "") -> Block:
 def stability_mark(word: str) -> Badge:
     """Return the badge of a verdict: green for what is proved to be stable alone.
 
-    Examples
-    --------
     >>> [stability_mark(word).tone for word in ("stable", "marginal", "unstable", "stability not known")]
     ['good', 'fair', 'bad', 'fair']
     """
@@ -223,8 +221,6 @@ def _together(colocation: DynamicColocation) -> Block:
 def decimal(value: arb) -> str:
     """Return an enclosure with at most ten digits.
 
-    Examples
-    --------
     >>> from flint import arb
     >>> decimal(arb(1) / 3)
     '0.3333333333'

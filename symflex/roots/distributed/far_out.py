@@ -28,14 +28,10 @@ from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 from symflex.transfer.enclose_kernels import KernelValues
 
-BITS = 64
-"""Precision of bounds, which need few digits."""
-SECTORS = 48
-"""Into which the right angle is cut: less than two degrees each."""
-TILTED = SECTORS * 4 // 3
-"""As many from the real axis on make 120 degrees."""
-LARGEST = 1e36
-"""Largest radius, relative to the frequency of about one wave in the longest part."""
+BITS = 64  # precision of bounds, which need few digits
+SECTORS = 48  # into which the right angle is cut: less than two degrees each
+TILTED = SECTORS * 4 // 3  # as many from the real axis on make 120 degrees
+LARGEST = 1e36  # largest radius, relative to the frequency of about one wave in the longest part
 NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 LINEAR, QUADRATIC = 1, 2
@@ -49,8 +45,7 @@ DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, s
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
 NO_LOSS = "waves without enough damping have poles all along the axis"
 
-PHASES = 128
-"""Parts of a turn in which two sums are shown not to vanish together."""
+PHASES = 128  # parts of a turn in which two sums are shown not to vanish together
 
 Terms = dict[Exponent, dict[Fraction, acb]]
 """A sum of exponentials, with amplitudes that are sums of powers of s."""

@@ -7,13 +7,14 @@ at s = 20 + j y is 1 to 17 digits.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb
 
+from symflex.algebra import Factored, KernelTable
 from symflex.algebra.exponential_sum import (
     REAL,
     Amplitude,
@@ -27,12 +28,6 @@ from symflex.algebra.exponential_sum import (
 )
 from symflex.balls import Value, at_centre, raised
 from symflex.transfer.enclose_kernels import KernelValues
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.algebra import Factored, KernelTable
-
 
 Summed = tuple[tuple[Argument, ...], tuple[tuple[ExponentialSum, int], ...]]
 """Arguments of exponentials, and sums of these with their exponents."""

@@ -39,8 +39,7 @@ BRANCH_BITS = 256  # precision of one value that is compared on all branches
 ANYWHERE = (0.7, 1.3)  # real and imaginary part of a frequency like any other
 BRANCHES = (1, 2, 4)
 """Powers in which the choice of a wavenumber may cease to matter; four roots have no other."""
-SINGLE: Final = {"wave": 2, "bending": 4}
-"""Dispersions of one wavenumber, and how many branches it has."""
+SINGLE: Final = {"wave": 2, "bending": 4}  # dispersions of one wavenumber, and how many branches it has
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
 MODAL_WORK = 0.15
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""

@@ -15,15 +15,7 @@ from math import prod
 
 from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import (
-    LAPLACE,
-    NO_KERNELS,
-    Factored,
-    KernelTable,
-    Ring,
-    square_free_factors,
-    terms_of,
-)
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, square_free_factors, terms_of
 from symflex.algebra.dispersion import Kernel
 from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
@@ -41,8 +33,6 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
 
     SF231 when the denominator vanishes: two nodes are one.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''
     ... symflex = 1
@@ -173,8 +163,7 @@ def _value(kernel: Kernel) -> int:
     return int(kernel.function in EVEN)
 
 
-MOST_TERMS = 3000
-"""Terms of a polynomial in exponentials up to which its squares are sought."""
+MOST_TERMS = 3000  # terms of a polynomial in exponentials up to which its squares are sought
 
 
 def without_squares(bound: BoundTransferFunction, part: Factored) -> tuple[BoundTransferFunction, Factored]:
