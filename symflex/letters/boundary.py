@@ -175,7 +175,10 @@ def _rate(ring: Ring, kernel: Kernel, delay: str) -> tuple[Factored, Factored] |
 def _arc(
     tf: TransferFunction, page: FrequencyPage, gain: str, cosine: Factored, sine: Factored
 ) -> tuple[Factored, int, int]:
-    """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``; m is 2 unless a sign is known."""
+    """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``; m is 2 unless a sign is known.
+
+    Without a sine it is ``(1 - x)*pi/2``, x the cosine, 1 or -1: then m is 0.
+    """
     own, more = Signs.of(tf), {LAPLACE, gain}
     signs = Signs(page.ring, own.positive | more, own.nonnegative | more)
     c, s = (
@@ -184,6 +187,8 @@ def _arc(
     )
     if c:
         return sine / cosine, 1 - c, 1
+    if sine.is_zero:
+        return cosine, 1, 0
     return (-cosine / sine, s, 1) if s else (sine / (Factored.number(page.ring, 1) + cosine), 0, 2)
 
 
@@ -191,6 +196,8 @@ def _angle(quarters: int, times: int, tangent: Expression, n: Expression) -> Exp
     """Return an angle and n turns."""
     half = quotient(number(quarters), number(2)) if quarters % 2 else number(quarters // 2)
     turns = product_of([sum_of([product_of([number(2), n]), half]), Name("pi")])
+    if not times:
+        return sum_of([turns, negative(quotient(product_of([tangent, Name("pi")]), number(2)))])
     arc = Call("atan", tangent.operand if isinstance(tangent, Negative) else tangent)
     arcs = product_of([number(0 if tangent == number(0) else times), arc])
     return sum_of([turns, negative(arcs) if isinstance(tangent, Negative) else arcs])
@@ -228,7 +235,8 @@ def _check(
             if angle is not None:
                 quarters, times, delay = angle
                 start, end = (read(delay(number(n)), known.__getitem__).real for n in (0, 1))
-                time = start + (end - start) * ((4 + quarters) * arb.pi() / 2 + times * time.atan())
+                arc = times * time.atan() if times else -time * arb.pi() / 2
+                time = start + (end - start) * ((4 + quarters) * arb.pi() / 2 + arc)
             fixed = ((over[0], partial(arb, gain.real)), (over[1], partial(arb, time)))
             kernels = BoundTransferFunction(
                 tf, numbers, tf.ratio, (), tf.kernels, fixed=fixed

@@ -62,6 +62,10 @@ def on_spring(s, v):
     return v["m"] * s**2 + v["b"] * s + v["k"] + v["K"] * s * exp(-s * (v["T"] * v["a"] + v["T_2"]) / 2)
 
 
+def without_damping(s, v):
+    return s**2 + v["a"] - v["b"] + v["K"] * exp(-s * v["T"])
+
+
 def in_filter(s, v):
     return v["T_1"] * s + 1 + v["K"] * exp(-s * v["T"]) * (1 + exp(-s * v["T_2"]))
 
@@ -93,13 +97,15 @@ SPRING = model_of(
         (machine("m E rho A l K K_d T", ROD, "(K + K_d*s)*exp(-s*T)*tip"), ("K", "K_d"), on_rod),
         (machine("m E rho l K T", BEAM, "K*exp(-s*T)*x"), ("K", "T"), on_beam),
         (SPRING, ("K", "T"), on_spring),
+        # The angle is nothing below a resonance, and half a turn above it.
+        (loop("K T a b", "K*exp(-s*T)/(s^2 + a - b)"), ("K", "T"), without_damping),
         # Neither cosine nor sine of the angle has a sign.
         (loop("K T T_1 T_2", "K*(1 + exp(-s*T_2))*exp(-s*T)/(T_1*s + 1)"), ("K", "T"), in_filter),
     ],
 )
 def test_a_pole_lies_on_the_axis_where_the_boundary_says(model, over, function):
     lines = [str(c).replace("^", "**").split(" = ") for c in model.conditions(over=over).conditions]
-    for omega in (0.3, 1.1, 2.7):
+    for omega in (0.3, 1.1, 2.7, 7.9):
         known = {p.name: 0.5 + 0.1 * i for i, p in enumerate(model.resolved.parameters) if p.name not in over}
         known["omega"] = omega
         known["n"] = 1
