@@ -93,9 +93,8 @@ def test_its_ports_are_documented_and_of_a_known_domain():
 
 def test_its_parameters_and_choices_are_documented_with_the_defaults_they_may_have():
     for kind, element in ELEMENTS.items():
-        assert all(item.doc.startswith(("a ", "an ")) for item in (*element.parameters, *element.choices)), (
-            kind
-        )
+        docs = [item.doc for item in (*element.parameters, *element.choices)]
+        assert all(doc.startswith(("a ", "an ", "Young's ")) for doc in docs), kind
         assert all(choice.default in choice.values for choice in element.choices), kind
         earlier = []
         for parameter in element.parameters:
