@@ -47,7 +47,7 @@ def json_schema() -> Schema:
     >>> branches = json_schema()["properties"]["elements"]["additionalProperties"]["oneOf"]
     >>> spring = next(branch for branch in branches if branch["title"] == "spring")
     >>> spring["required"], spring["properties"]["k"]["description"]
-    (['type', 'between', 'k'], 'a stiffness [N/m]')
+    (['type', 'between', 'k'], 'stiffness [N/m]')
     """
     sections = {
         "symflex": {"const": FORMAT_VERSION, "description": "version of the format"},

@@ -294,14 +294,13 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     lines = aligned(stacked)
     if max(map(len, lines)) <= width:
         return lines
-    return [line for row in rows for line in _root_paragraph(row, width)][:-1]
+    return [line for row in rows for line in _root_paragraph(row)][:-1]
 
 
-def _root_paragraph(row: tuple[str, ...], width: int) -> list[str]:
-    """Return a root whose digits fill lines of their own."""
+def _root_paragraph(row: tuple[str, ...]) -> list[str]:
+    """Return a root whose digits fill lines of their own, unbroken, so that they can be copied."""
     flags, re, im, *rest = row
     shown = zip(TERMINAL_COLUMNS[2:], rest, strict=True)
     about = [f"{column.name} {cell} {column.unit}".rstrip() for column, cell in shown if cell]
     lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, (*about, flags))))
-    parts = ((line, i) for line in lines for i in range(0, len(line), width - 6))
-    return [*((3 if i else 2) * INDENT + line[i : i + width - 6] for line, i in parts), ""]
+    return [*(2 * INDENT + line for line in lines), ""]

@@ -11,7 +11,7 @@ from symflex.codegen.exporters import SAMPLED
 from symflex.codegen.sampled import DifferenceExporter
 from symflex.state_space.sampled import sampling_of
 
-pytestmark = [pytest.mark.needs_tool("cc"), pytest.mark.needs_module("fmpy")]
+pytestmark = pytest.mark.needs_tool("cc")
 
 MODELS = {
     "lag": ("u/(s + 2)", "y"),
@@ -36,6 +36,7 @@ def unit(model, folder, sample="0.1 s"):
 
 
 @pytest.mark.slow
+@pytest.mark.needs_module("fmpy")
 @pytest.mark.parametrize("name", MODELS)
 def test_a_unit_takes_the_steps_of_the_certified_response(name, tmp_path):
     from fmpy import simulate_fmu
@@ -53,6 +54,7 @@ def test_a_unit_takes_the_steps_of_the_certified_response(name, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.needs_module("fmpy")
 def test_two_inputs_add_up_and_states_can_be_restored(tmp_path):
     from fmpy import extract, read_model_description
     from fmpy.fmi3 import FMU3Slave
