@@ -67,7 +67,7 @@ class InputShaper(Printed):
     impulses: tuple[tuple[arb, arb], ...]  # time [s] and amplitude of each
     digits: int
     bits: int  # of the precision all this was computed at
-    note: str = ""  # what was asked for and is not done
+    note: str = ""  # what was requested and is not done
 
     @property
     def title(self) -> str:
@@ -187,7 +187,7 @@ def input_shaper(
         raise UsageError(Diagnostic("SF902", message))
     chosen = tuple(ringing[:modes])
     if not all(root.certified for root in chosen):
-        message = f"modes of {bound.name} cannot be told apart: none of them has a shaper of its own"
+        message = f"modes of {bound.name} cannot be separated: none of them has a shaper of its own"
         raise ModelError(Diagnostic("SF814", message))
     bits = max(root.working_bits() for root in chosen) + bits_for_digits(digits)
     with precision(bits):

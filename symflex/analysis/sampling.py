@@ -170,7 +170,7 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
     try:
         return settled(lambda: _sampled(bound, sampling), 2 * bits_for_digits(FIRST_DIGITS))
     except UndecidedError:
-        message = f"poles of {bound.name} cannot be told apart, so it cannot be sampled"
+        message = f"poles of {bound.name} cannot be separated, so it cannot be sampled"
         raise UncertifiedError(Diagnostic("SF810", message)) from None
 
 

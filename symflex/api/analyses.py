@@ -179,7 +179,7 @@ class Analyses(Plotted):
     ) -> tuple[Root, ...]:
         """Return the poles by natural frequency, both members of each conjugate pair.
 
-        Poles in the right half-plane are always included; those outside the region asked for come last.
+        Poles in the right half-plane are always included; those outside the requested region come last.
         :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether these are all.
 
         Parameters

@@ -338,7 +338,7 @@ def _between(
 def _grouped(
     crossings: Sequence[Crossing], limits: Limits, reasons: list[str]
 ) -> tuple[list[tuple[arb, list[Crossing]]], list[arb | None]]:
-    """Return crossings in a range that cannot be told apart with their gain, ascending, and all ends."""
+    """Return crossings in a range that cannot be separated with their gain, ascending, and all ends."""
     low, high = (None if x is None else _ball(x) for x in limits)
     groups: list[list[Crossing]] = []
     with precision(BITS * 4):
@@ -402,7 +402,7 @@ def _sample(low: arb | None, high: arb | None) -> Fraction:
         value = 2 * end - 1 if end < 0 else end / 2 - 1
     elif start is not None and end is not None:
         if not start < end:
-            message = "two boundaries cannot be told apart"
+            message = "two boundaries cannot be separated"
             raise UncertifiedError(Diagnostic("SF802", message, None, "ask for more --digits"))
         value = 2 * start if low is not None and low > 0 and end > 4 * start else (start + end) / 2
     for bits in SAMPLE_BITS:

@@ -7,7 +7,7 @@ Example: ``m s^2 + b s + k + K k exp(-s T)`` with m = 8, b = 60, k = 20000 and K
 T = 8.55... ms, where a pole meets the axis at 7.96 Hz, and again later.
 
 The values of one parameter are halved until no pole meets the axis for any in a part, or the part is as
-narrow as the digits asked for; see :mod:`symflex.loops.boxes`.
+narrow as the requested digits; see :mod:`symflex.loops.boxes`.
 """
 
 from __future__ import annotations

@@ -326,7 +326,7 @@ class _Pieces:
         return start
 
     def _level(self) -> arb:
-        """Return a magnitude above the best by as little as the digits asked for leave open."""
+        """Return a magnitude above the best by as little as the requested digits leave open."""
         return self.most.max((self.best * (1 + arb(10) ** -(self.digits + 1))).upper())
 
     def _search(self, low: float, high: float) -> arb | None:

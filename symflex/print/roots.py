@@ -226,7 +226,7 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
     tables = [("poles", located.poles, ""), ("zeros", located.zeros, "")]
-    outside = ", in the right half-plane, outside the region asked for"
+    outside = ", in the right half-plane, outside the requested region"
     more = [("poles", located.unstable, outside)]
     for cause, meaning in CAUSES.items():
         more.append(("hidden", tuple(h.root for h in located.hidden if h.cause == cause), f", {meaning}"))
@@ -238,9 +238,9 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):
-        lines.append("  | marks a root on the boundary of the region asked for")
+        lines.append("  | marks a root on the boundary of the requested region")
     if not all(root.certified for root in everything):
-        lines.append("  ? marks roots that could not be told apart, enclosed as one")
+        lines.append("  ? marks roots that could not be separated, enclosed as one")
     return "\n".join(lines)
 
 

@@ -541,7 +541,7 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
 
 
 def _match(poles: Side, zeros: Side) -> list[Root]:
-    """Take out and return what poles and zeros share to more than twice the digits asked for."""
+    """Take out and return what poles and zeros share to more than twice the requested digits."""
     poles.roots, zeros.roots, shared = take_out_shared(poles.roots, zeros.roots, poles.refined, zeros.refined)
     return shared
 

@@ -569,7 +569,7 @@ def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ..
 
 
 def chosen(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
-    """Return the roots in a region in order of natural frequency, mirror images with the modes asked for."""
+    """Return the roots in a region in order of natural frequency, mirror images with the requested modes."""
     ordered = in_order(roots)
     if not isinstance(region, Modes | Mode):
         return _inside(ordered, region.classify(ordered))

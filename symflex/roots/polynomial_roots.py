@@ -148,7 +148,7 @@ def _touching(roots: Sequence[Root]) -> list[tuple[int, ...]]:
 
 
 def _merge(cluster: Sequence[Root]) -> Root:
-    """Return one box for roots that could not be told apart."""
+    """Return one box for roots that could not be separated."""
     if len(cluster) == 1:
         return cluster[0]
     with precision(max(root.working_bits() for root in cluster)):

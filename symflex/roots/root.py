@@ -21,7 +21,7 @@ ROUNDING = 1e-15  # what doubles of enclosures' ends may be off by, relative to 
 NEIGHBOURS = 8  # modes of nearly the same frequency among which images of a root are looked for
 FEWEST_ALONE = 3  # digits below which a number that stands alone says how far it may be off
 HUNDRED = 100  # two digits are fewer
-TOUCHING = "some roots could not be told apart"
+TOUCHING = "some roots could not be separated"
 """Reason why roots that are all enclosed are not all certified."""
 
 
@@ -59,7 +59,7 @@ class Root:
     on_imaginary_axis, is_real : bool
         Proved to have real (imaginary) part exactly zero; a root at 0 is both.
     certified : bool
-        False when the box is proved to hold ``multiplicity`` roots that could not be told apart.
+        False when the box is proved to hold ``multiplicity`` roots that could not be separated.
     on_boundary : bool
         On the boundary of the region searched, or too close to it to be decided.
 

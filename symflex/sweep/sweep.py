@@ -23,7 +23,7 @@ RESERVED = frozenset(
     | {"point_status", "code", "frequency_hz", "damping_ratio", "s", "response"}
     | {name + end for name in MARGINS for end in ("", "_radius")}
 )
-ROOT_STATUS = "0 absent, 1 certified, 2 several that cannot be told apart"
+ROOT_STATUS = "0 absent, 1 certified, 2 several that cannot be separated"
 POINT_STATUS = "0 certified, 1 certified except where roots accumulate, 2 not certified, 3 failed"
 STABILITY = {
     "verdict": "0 not known, 1 unstable, 2 marginal, 3 stable: of all poles, shown or not",
@@ -301,7 +301,7 @@ def _doubts(sweep: Sweep) -> list[str]:
     """Return where roots, or the names of modes, are not separated."""
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
     holding = f"{counted(together, 'enclosure')} {'holds' if together == 1 else 'hold'}"
-    lines = [f"{INDENT}{holding} roots that cannot be told apart"] if together else []
+    lines = [f"{INDENT}{holding} roots that cannot be separated"] if together else []
     return lines + [f"{INDENT}{text}" for text in _links(sweep)]
 
 

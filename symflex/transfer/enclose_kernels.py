@@ -52,7 +52,7 @@ class KernelValues:
     ) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
-        Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
+        Where the roots of a dispersion can be separated, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
         ball that holds ``s``. Their square roots are by default those of :func:`square_root`.
         """
@@ -334,7 +334,7 @@ LITTLE = 7 / 8  # boxes that Newton's operator makes no smaller than this share 
 
 
 def characteristic_roots(coefficients: Sequence[Value], *, even: bool = False) -> tuple[Value, ...] | None:
-    """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart.
+    """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be separated.
 
     ``c_0`` comes first. With ``even`` odd coefficients are zero, and roots come in pairs x, -x, one after the
     other.

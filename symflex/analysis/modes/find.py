@@ -343,7 +343,7 @@ def _independent(basis: tuple[tuple[acb, ...], ...], places: Sequence[int]) -> l
 
 
 def _is_accurate(shape: EnclosedModeShape, digits: int) -> bool:
-    """Tell whether motions, also at the far ends of distributed parts, have the digits asked for."""
+    """Tell whether motions, also at the far ends of distributed parts, have the requested digits."""
     groups: dict[tuple[str, str], list[acb]] = {}
     for motion in shape.motions:
         groups.setdefault((motion.unit, motion.variable.kind), []).append(motion.value)

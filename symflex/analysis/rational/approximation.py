@@ -432,7 +432,7 @@ def _doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64
 
 SCHEMA = "symflex.rational/1"
 INDENT = "  "
-ESTIMATE = "some poles or zeros could not be told apart, or are not proved"
+ESTIMATE = "some poles or zeros could not be separated, or are not proved"
 DIGITS = 10
 JSON_DIGITS = 17  # so many give a double back exactly
 

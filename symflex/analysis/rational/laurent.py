@@ -59,7 +59,7 @@ from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 from symflex.transfer.double_value import DOUBLE_BITS
 from symflex.transfer.enclose_kernels import KernelValues
 
-FINER = (1, 2, 4)  # times the digits asked for, to which the determinants of a network are known
+FINER = (1, 2, 4)  # times the requested digits, to which the determinants of a network are known
 FIRST_BITS = 192
 LAST_BITS = 12288  # precision of the first attempt, and where doubling it ends: six times
 DETECTION_BITS = 768
@@ -226,7 +226,7 @@ def expand_at_pole(
     """
     name = bound.bound.name if isinstance(bound, NetworkSides) else bound.name
     if not root.certified:
-        message = f"poles of {name} that cannot be told apart have no residues of their own"
+        message = f"poles of {name} that cannot be separated have no residues of their own"
         raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may separate them"))
     sides = _network_sides(bound, digits) if isinstance(bound, NetworkSides) else _sides(bound, root, digits)
     for bits, (above, below) in sides:

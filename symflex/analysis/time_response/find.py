@@ -229,7 +229,7 @@ def _answer(asked: Asked) -> Sampled:
         if answer.reason:
             refused.setdefault(answer.reason, []).append(way.name)
         spend()
-    message = f"poles of {asked.bound.name} cannot be told apart: its response is not known"
+    message = f"poles of {asked.bound.name} cannot be separated: its response is not known"
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
 
 
@@ -252,7 +252,7 @@ def _by_settling(asked: Asked) -> Plan | Refused:
         return Refused("delayed terms do not fall off at high frequencies")
     goal = asked.digits + EFFORT.guard_digits
     find = partial(settled, asked.bound, asked.quotient, asked.integrations, goal)
-    return partial(_closely, asked, find, "the poles right of a line are not told apart")
+    return partial(_closely, asked, find, "the poles right of a line are not separated")
 
 
 def _by_wave_echoes(asked: Asked) -> Plan | Refused:
@@ -424,4 +424,4 @@ def _of_lumped(asked: Asked) -> Sampled | Refused:
         )
         if wanted > EFFORT.most_digits:
             break
-    return Refused("poles cannot be told apart")
+    return Refused("poles cannot be separated")

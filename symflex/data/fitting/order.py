@@ -393,7 +393,7 @@ def too_few(problem: FitProblem, count: int, reached: int) -> str:
     low, high = (value / (2 * np.pi) for value in problem.band)
     over = " over the base" if problem.has_base else ""
     band = f"between {low:.4g} and {high:.4g} Hz"
-    return f"{count} resonances are asked for, and the best fit has {reached}{over} {band}"
+    return f"{count} resonances were requested, and the best fit has {reached}{over} {band}"
 
 
 def _nothing(problem: FitProblem) -> Candidate:

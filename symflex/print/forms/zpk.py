@@ -36,7 +36,7 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
         message = f"not all roots of {tf.name} were found: {located.certificate.reason}"
         raise BudgetError(Diagnostic("SF506", message, None, "allow more time, or ask for another form"))
     if any(not root.certified for root in (*located.zeros, *located.poles)):
-        message = f"some roots of {tf.name} could not be told apart, so their factors are not known"
+        message = f"some roots of {tf.name} could not be separated, so their factors are not known"
         hint = (
             "'symflex roots' encloses them together; constants may satisfy a relation: write them without it"
         )

@@ -296,7 +296,7 @@ class Side:
         images = mirror_images(located, even=function.is_central, real=function.is_real)
         distinct: list[Root] = []
         for root in self._proved(images):
-            # What could not be told apart may have been met more than once.
+            # What could not be separated may have been met more than once.
             if root.certified or not any(overlap(root, other) for other in distinct if not other.certified):
                 distinct.append(root)
         self._located = [*self._origin, *distinct]

@@ -53,7 +53,7 @@ ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be co
 NOT_COUNTED = "the roots could not be counted"
 REACHED = "poles are known up to {:.4g} Hz only"
 ZERO = "the transfer function is zero: its modes, which are all hidden, were not searched"
-TOO_FEW = "the part that could be searched has fewer modes than asked for"
+TOO_FEW = "the part that could be searched has fewer modes than requested"
 UNDECIDED_AT_REST = "the multiplicity of the root at 0 could not be determined"
 
 

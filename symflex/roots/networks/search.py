@@ -3,7 +3,7 @@
     counts        0 below 50 rad/s, 2 below 100, 1 below 70.7: one eigenvalue on either side
     halving       until an interval with one eigenvalue is a thousandth of it
     secants       of the determinant, or of the receptance where a motion is held
-    counts again  at both ends of an interval as narrow as the digits asked for
+    counts again  at both ends of an interval as narrow as the requested digits
 
 What is proved is the counts alone: whatever secants do, no eigenvalue is missed and none found twice.
 """

@@ -67,7 +67,7 @@ def prove_simple(
     By default it is the factor with the nearest root. Even functions have roots that mirror each other in the
     imaginary axis. ``first_bits`` is the precision of the first steps: next to other roots, few bits may lead
     astray. The multiplicity is the factor's exponent; where other factors have roots in the same box that
-    cannot be told apart, it is the sum of all exponents, and the root is not ``certified``.
+    cannot be separated, it is the sum of all exponents, and the root is not ``certified``.
     """
     is_even = function.is_even if even is None else even
     wanted = bits_for_digits(digits + 2) + GUARD_BITS

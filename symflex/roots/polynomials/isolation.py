@@ -45,7 +45,7 @@ def isolations(
 
     The polynomial in s, or in z = s^2, is of positive degree and without the root 0. Yielded are discs of all
     roots, at last with so many correct digits in each nonzero component of the roots s, or at the bound on
-    precision; a ``count`` above one marks roots that could not be told apart within that bound. The next one
+    precision; a ``count`` above one marks roots that could not be separated within that bound. The next one
     of the ``proposers`` is asked when a guess does not certify.
 
     SF404 when the bound on precision is reached without isolating discs, SF506 when the time is over.

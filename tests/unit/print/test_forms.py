@@ -227,7 +227,7 @@ outputs = { y = "w^2*u/(s^2 + 2*sqrt(2)*w*s + 2*w^2)", z = "w^2*u/(s^2 + 2*exp(1
 """
     assert printed(tf_of(text, "y", "u"), "zpk", 6) == ("1", "(s + 1.41421)^2")
     # e^2 is exp(2), and exp(1) twice: that relation is not known.
-    with pytest.raises(UncertifiedError, match="could not be told apart") as caught:
+    with pytest.raises(UncertifiedError, match="could not be separated") as caught:
         print_form(tf_of(text, "z", "u"), "zpk")
     assert caught.value.diagnostics[0].code == "SF404"
 

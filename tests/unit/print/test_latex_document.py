@@ -82,9 +82,9 @@ def test_a_map_that_cannot_be_found_is_told_and_left_out(model, monkeypatch):
     from symflex.errors import Diagnostic, UncertifiedError
 
     def refuse(*_, **__):
-        raise UncertifiedError(Diagnostic("SF405", "poles cannot be told apart"))
+        raise UncertifiedError(Diagnostic("SF405", "poles cannot be separated"))
 
     monkeypatch.setattr(latex, "locate", refuse)
     made = LatexExporter().export(model, pipeline.derive_all(model))
-    assert made.warnings == ("poles and zeros of X/F are left out: poles cannot be told apart",)
+    assert made.warnings == ("poles and zeros of X/F are left out: poles cannot be separated",)
     assert "Poles" not in made.text

@@ -567,7 +567,7 @@ def test_roots_that_are_not_told_apart_are_enclosed_together_and_not_certified()
     ):
         shown = locate(bound(text), region, 12)
         assert not shown.certificate.certified
-        assert "could not be told apart" in shown.certificate.reason
+        assert "could not be separated" in shown.certificate.reason
         assert shown.certificate.counted == shown.certificate.found
         poles = [r for r in shown.poles if not r.is_zero and not r.im < 0]
         values = [complex(r.re.mid(), r.im.mid()) for r in poles]

@@ -80,7 +80,7 @@ def test_a_root_that_is_missing_or_not_told_apart_is_no_certificate():
         assert shown.certificate == Certificate("polynomial", 3, 2, why), which
         assert shown.verdict.reason == why, which
         found = mapped(*blurred)[0].certificate
-        why = "some roots could not be told apart"
+        why = "some roots could not be separated"
         assert (found.certified, found.counted, found.found, found.reason) == (False, 3, 3, why), which
 
 

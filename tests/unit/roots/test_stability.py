@@ -1,4 +1,4 @@
-"""Verdicts on models whose poles in the right half-plane are known, wherever the region asked for lies."""
+"""Verdicts on models whose poles in the right half-plane are known, wherever the requested region lies."""
 
 from __future__ import annotations
 
@@ -227,7 +227,7 @@ def test_poles_right_of_the_axis_outside_of_what_is_asked_for_are_a_part_of_thei
         shown = locate(bound(LUMPED), region)
         assert not any(p.re > 0 for p in shown.poles), region
         assert [complex(p) for p in shown.unstable] == [0.5 + 100j, 0.5 - 100j], region
-        assert "in the right half-plane, outside the region asked for" in roots_text(shown, 15), region
+        assert "in the right half-plane, outside the requested region" in roots_text(shown, 15), region
 
 
 def test_whatever_is_asked_for_the_unstable_poles_of_a_delay_are_those_of_lambert():

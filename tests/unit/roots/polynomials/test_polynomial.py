@@ -1,4 +1,4 @@
-"""From discs of s or of s^2 to roots, and what may be said of roots that could not be told apart."""
+"""From discs of s or of s^2 to roots, and what may be said of roots that could not be separated."""
 
 from fractions import Fraction
 from itertools import permutations, product
