@@ -1,4 +1,4 @@
-"""The page that moves: drawing, formula, sliders, plots and modes of models in one HTML file.
+"""The interactive page: drawing, formula, sliders, plots and modes of models in one HTML file.
 
 Input: models, and which of their transfer functions are shown.
 Output: the file's text. It holds one script and one style sheet, and allows nothing else by their hashes::
