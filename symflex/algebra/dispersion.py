@@ -52,10 +52,7 @@ class SingularStart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Dispersion:
-    """The characteristic polynomial of a set of field equations, and what its roots are called.
-
-    Two of them are the same if they are one object; as such they may be keys, as lengths may.
-    """
+    """The characteristic polynomial of field equations, and names of its roots; equal if one object."""
 
     name: str  # the field, element or block it was first needed for
     # ``exponential``: no roots but the shift; ``wave``: ``gamma^2 = -c_0``; ``bending``: ``4 mu^4 = c_0``,
@@ -126,10 +123,7 @@ class Dispersion:
         )
 
     def roots(self, c: Sequence[Value], square_root: Callable[[Value], Value]) -> dict[str, Value]:
-        """Return the wavenumbers by their names, given ``c_0, ...``, numbers or series.
-
-        Every branch of the square root serves, because functions are symmetric in them.
-        """
+        """Return the wavenumbers by name on any branch, given ``c_0, ...``, numbers or series."""
         wavenumbers: tuple[Value, ...] = ()
         match self.kind:
             case "wave":
@@ -161,10 +155,7 @@ class Kernel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KernelTable:
-    """All dispersions and kernels of one ring, in the order of their generators.
-
-    The wavenumbers' generators stand before the kernels' in the ring, both after everything else.
-    """
+    """All dispersions and kernels of one ring: wavenumbers stand before kernels, all else before both."""
 
     dispersions: tuple[Dispersion, ...] = ()
     kernels: tuple[Kernel, ...] = ()
@@ -175,10 +166,7 @@ class KernelTable:
     def without_tapers(
         self, what: str, hint: str = "poles, zeros and frequency responses are available"
     ) -> None:
-        """Return if no coefficient varies along x.
-
-        Raises ModelError: SF910 when one does, saying that ``what`` is not available then.
-        """
+        """Return if no coefficient varies along x; else SF910: ``what`` is not available."""
         tapered = next((d for d in self.dispersions if d.matrix), None)
         if tapered is not None:
             message = f"{what} not available yet where coefficients vary along x, as in '{tapered.name}'"

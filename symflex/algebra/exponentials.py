@@ -216,11 +216,7 @@ def split_content(ring: Ring, polynomial: fmpz_mpoly, free: int) -> tuple[fmpz_m
 
 
 def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Factored | None:
-    """Return a polynomial in normal form with an angle's kernels standing for n times its argument.
-
-    It is of degree one at most in the odd kernel; ``None`` when it is not a polynomial in kernels of the
-    multiple.
-    """
+    """Return a polynomial of kernels in normal form with those of n times the angle; ``None`` if not one."""
     even, odd = ring.index[angle.even.generator], ring.index[angle.odd.generator]
     parts = coefficients_of(ring, polynomial, (even, odd))
     highest = max((k + o for k, o in parts), default=0)

@@ -64,10 +64,7 @@ class ModalSum:
 
 
 def mode_values(roots: Any, length: Any) -> tuple[Any, Any]:  # noqa: ANN401
-    """Return the exponents of all roots at a length, and per root x^k/chi'(x) for k below their number.
-
-    They may be numbers, arrays or balls.
-    """
+    """Return exponents of all roots at a length, and x^k/chi'(x) per root: numbers, arrays or balls."""
     powers = []
     for i, x in enumerate(roots):
         slope: Any = 1.0
@@ -82,11 +79,7 @@ def mode_values(roots: Any, length: Any) -> tuple[Any, Any]:  # noqa: ANN401
 
 
 def modal_amplitudes(modes: Any, coefficients: Any, frames: Any) -> list[tuple[Any, Any]]:  # noqa: ANN401
-    """Return the amplitude and the exponent of every exponential in a sum.
-
-    Mode m is a pair: the exponents of its roots, and per root the values of
-    x^k/chi'(x) for k = 0, 1, ... They may be numbers, arrays or balls.
-    """
+    """Return amplitude and exponent of every exponential in a sum, given :func:`mode_values` of modes."""
     amplitudes = []
     for slots, terms, keys in frames:
         # One slot after the other; keys are sorted, so that what they begin with is summed once.

@@ -52,10 +52,7 @@ class NormalForm:
                 yield i, self.ring.constant(int(rest[:-1]))
 
     def reduce(self, polynomial: fmpz_mpoly, *, pairs: bool = True) -> Factored:
-        """Return a polynomial in normal form; its denominators come from the dispersion relations.
-
-        Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
-        """
+        """Return a polynomial in normal form, without ``pairs`` but for relations between two wavenumbers."""
         polynomial = self._without_determinants(self.without_odd_squares(polynomial))
         result = Factored.number(self.ring, 1)
         for dispersion in self.table.dispersions:

@@ -79,11 +79,7 @@ class Propagation:
         }
 
     def fundamental(self, dispersion: int, length: Factored, multiplicity: int = 1) -> tuple[Factored, ...]:
-        """Return ``h, h', ..., h^(n-1)`` of a dispersion at a length, over ``ring``.
-
-        With a multiplicity, those of the power of its characteristic polynomial. Of a varying one, the
-        entries of the fundamental matrix, row by row.
-        """
+        """Return ``h, h', ...`` of a dispersion, or power, at a length; entries by rows if it varies."""
         law = self.table.dispersions[dispersion]
         if law.kind == "varying":
             return self._entries(dispersion, length)
@@ -126,10 +122,7 @@ class Propagation:
 
 
 def reachable(law: Dispersion) -> list[set[int]]:
-    """Return, per state, the states that it depends on, itself if its slope does so: along x.
-
-    An entry of the fundamental matrix is 0 elsewhere, or 1 on the diagonal.
-    """
+    """Return the states that each depends on: along x, other entries are 0, or 1 on the diagonal."""
     n = law.order
     reach = [{j for j in range(n) if not law.matrix[i][j].is_zero} for i in range(n)]
     for _ in range(n):

@@ -142,10 +142,7 @@ class Radicals:
     # ------------------------------------------------------------------------------------- normal form
 
     def tidy(self, value: Factored) -> Factored:
-        """Return a product without squares of roots, factors in normal form only where that is shorter.
-
-        So roots stay as they were written: ``sqrt(6)``, and not ``sqrt(2)*sqrt(3)``.
-        """
+        """Return a product without squares of roots, in normal form only if shorter: ``sqrt(6)`` stays."""
         written, result = self._as_written, Factored.number(self.ring, value.unit)
         if not any(degree_in(f, i) for f, _ in value.factors for i in self.radicands):
             return value
@@ -460,10 +457,7 @@ class Radicals:
     # ----------------------------------------------------------------------------------------- a prime
 
     def point(self, seed: int = 0) -> Point | None:
-        """Return a prime and a random number for every generator that satisfy all relations.
-
-        ``None`` when none is found.
-        """
+        """Return a prime and random numbers for generators that satisfy all relations, else ``None``."""
         if not self:
             return PRIME, dict(zip(self.ring.names, self._numbers(Random(20 + seed), PRIME), strict=True))
         if seed not in self._points:

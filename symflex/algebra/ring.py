@@ -99,11 +99,7 @@ class Ring:
         term_limit: int = TERM_LIMIT,
         memory_limit: int = MEMORY_LIMIT,
     ) -> fmpz_mpoly:
-        """Replace every generator of ``polynomial``'s ring by its image in this ring.
-
-        Raises BudgetError: SF501 when the result could exceed the limits, terms and bytes; SF502 in a sparse
-        ring.
-        """
+        """Replace every generator of ``polynomial``'s ring by its image; SF501 or SF502 beyond limits."""
         if self.is_sparse:
             message = f"products are not expanded with {len(self.names)} names"
             raise BudgetError(Diagnostic("SF502", message, None, "ask for the nested form"))
@@ -144,10 +140,7 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
 
 
 def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int) -> None:
-    """Refuse a substitution whose result could have more than so many terms.
-
-    See :meth:`Ring.compose`. Raises BudgetError: SF501, before any work is done.
-    """
+    """Refuse a substitution that could have more than so many terms with SF501; see :meth:`Ring.compose`."""
     lengths = [len(image) for image in images]
     degrees = [int(image.total_degree()) if len(image) else 0 for image in images]
     small_degree = polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT

@@ -99,10 +99,7 @@ class StraightLine:
         power: Callable[[Any, int], Any] = pow,
         known: dict[int, Any] | None = None,
     ) -> dict[int, Any]:
-        """Return the values of steps in some arithmetic, in order; what is not given is done by operators.
-
-        ``name`` is given the position of a generator; ``known`` are values of earlier steps.
-        """
+        """Return values of steps in some arithmetic, ``name`` giving generators', ``known`` first ones."""
         values = {} if known is None else known
         for kind, i, args, gone in operations:
             if kind == _MULTIPLY and product is None:
@@ -339,10 +336,7 @@ class Workbench:
         return self._make(_MULTIPLY, kept, key) if known is None else known
 
     def divide(self, x: int, y: int) -> int:
-        """Return a quotient.
-
-        Raises ZeroDivisionError when the divisor is zero.
-        """
+        """Return a quotient; ZeroDivisionError when the divisor is zero."""
         if x == ZERO or y == ONE:
             return x
         if x == y:

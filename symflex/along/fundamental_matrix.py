@@ -364,10 +364,7 @@ def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> M
 
 
 def _stepped(system: VaryingSystem, step: Leg, discs: Sequence[Growth], terms: int) -> Matrix:
-    """Return the fundamental matrix of a step, given how solutions grow for some sizes of u.
-
-    It is exact where abs(u) is at most the last of them.
-    """
+    """Return the fundamental matrix of a step, for abs(u) up to the last size, given growth at some sizes."""
     n, bits = system.size, current_bits()
     share = abs(step.length) / step.radius
     doublings = -log2(float(share.upper()))
@@ -460,10 +457,7 @@ def _by_recurrence(
 
 
 def _to_unit_length(part: RationalPart, length: arb) -> tuple[list[Number], list[list[Number]], Number]:
-    """Return a quotient on a step of length 1: numerator, divisors less those of their start, and a factor.
-
-    Divisors have the signs with which a recurrence takes them; what they divide comes first.
-    """
+    """Return a quotient on a step of length 1: numerator, a recurrence's divisors but their start, factor."""
 
     def coefficients(polynomial: Polynomial) -> list[Number]:
         own: Sequence[Number] = polynomial.coeffs()
@@ -510,10 +504,7 @@ def _reached(
 def _by_quadrature(
     series: Sequence[Coefficients], n: int, length: arb, needed: Sequence[int], counts: Sequence[int]
 ) -> list[Column]:
-    """Return the fundamental matrix of a step from power series of the coefficients, order by order in u.
-
-    At order 0 slopes follow from one another.
-    """
+    """Return the fundamental matrix of a step from power series of the coefficients, by orders in u."""
     order = sequence_of(series[0], n)
     rows = [
         [[(q, k, a) for (row, k), a in c.items() if row == i] for q, c in enumerate(series)] for i in range(n)

@@ -111,10 +111,7 @@ def growth_along(system: VaryingSystem, largest: arb) -> float:
 
 
 def growth_on(system: VaryingSystem, leg: Leg, reach: arb) -> Growth:
-    """Return how solutions grow from the start of a leg, all around it up to its radius.
-
-    Raises SingularCoefficientError where they have no bound.
-    """
+    """Return how solutions grow from the start of a leg, all around it up to its radius, if bounded."""
     square = arb(0, leg.radius)
     bounds = system.bounds(acb(leg.start + square, square), reach)
     weights = _levelled(bounds, leg.radius, system.size, ())
@@ -164,10 +161,7 @@ def least_growth(system: VaryingSystem, order: int, largest: arb) -> float:
 
 
 def _levelled(sizes: Mapping[Place, arb], way: arb, count: int, start: Sequence[arb]) -> Weights:
-    """Return weights with which the rows of sizes have sums that are alike.
-
-    The largest sum is then hardly larger than the largest eigenvalue, which none is below (Perron 1907).
-    """
+    """Return weights that level the sums of rows: the largest is then near an eigenvalue (Perron 1907)."""
     rows: dict[int, list[tuple[int, float]]] = {}
     for (i, j), x in sizes.items():
         if 0 < (size := float((x * way).upper())) < inf:
@@ -208,10 +202,7 @@ def _weights(system: VaryingSystem, middle: acb, reach: arb) -> Weights:
 
 
 def balanced(sizes: Mapping[Place, float], count: int, rounds: int, enough: float = 0) -> list[float]:
-    """Return w so that rows and columns of ``sizes[i, j] + w_j - w_i`` are alike (Osborne 1960).
-
-    It is found in so many rounds, or fewer where one changes w by less than ``enough``.
-    """
+    """Return w so that rows and columns of ``sizes[i, j] + w_j - w_i`` are alike (Osborne 1960)."""
     exponents = [0.0] * count
     for _ in range(rounds):
         before = list(exponents)

@@ -62,10 +62,7 @@ class PartedLaw:
 
     @cached_property
     def summands(self) -> Mapping[Place, tuple[Summand, ...]]:
-        """The entries of A that are not zero, in parts.
-
-        Raises ModelError: SF910 where a coefficient is divided by what holds s and x together.
-        """
+        """The entries of A that are not zero, in parts; SF910 where s and x are divided by together."""
         rows = enumerate(self.law.matrix)
         return {(i, j): tuple(self._parted(x)) for i, row in rows for j, x in enumerate(row) if not x.is_zero}
 
@@ -189,10 +186,7 @@ class BoundLaw(PartedLaw):
         return divisor
 
     def expanded(self, largest: arb, bits: int) -> PowerExpansion:
-        """Return the fundamental matrix in powers of u, for abs(u) up to the largest.
-
-        Raises ModelError: SF250 where a coefficient is not analytic.
-        """
+        """Return the fundamental matrix in powers of u, for abs(u) up to the largest; else SF250."""
         try:
             with precision(bits):
                 return expand(_InPowers(self, self.step), largest, bits)

@@ -107,10 +107,7 @@ class VaryingMatrices:
         )
 
     def expect(self, modes: int, size: float = 0.0) -> None:
-        """Tell that values are wanted for abs(s) up to a size, and at so many modes.
-
-        One expansion then serves for all. A mode more takes half a wave more.
-        """
+        """Tell that values are wanted for abs(s) up to a size and so many modes, so one expansion serves."""
         waves = pi * (modes + BESIDE_MODES) if modes else 0.0
         low, high = -HIGHEST_OCTAVE * PARTS, HIGHEST_OCTAVE * PARTS
         while waves and high - low > 1:

@@ -138,10 +138,7 @@ def follow_phase(
 
 
 def _turned_by_roots(roots: PoleZeroMap, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
-    """Return how far the argument of an undamped function turns from the first frequency on.
-
-    The result is ``None`` if it is not proved that all roots between the frequencies are known.
-    """
+    """Return how far an undamped argument turns from the first frequency; ``None`` if roots may lack."""
     region, certificate = roots.region, roots.certificate
     if not (isinstance(region, Band) and certificate.certified and omega.size) or roots.excluded:
         return None

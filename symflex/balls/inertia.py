@@ -62,10 +62,7 @@ def elimination_order(size: int, pairs: Iterable[tuple[int, int]]) -> tuple[int,
 
 
 def pivots(rows: Rows, order: Sequence[int], borders: Sequence[int] = ()) -> Pivots:
-    """Eliminate the unknowns in about this order; ``rows`` is used up.
-
-    UndecidedError where no usable pivot is left, as at an eigenvalue.
-    """
+    """Eliminate the unknowns in about this order, using up ``rows``; UndecidedError at an eigenvalue."""
     negative = 0
     determinant: arb | None = None
     waiting: list[int] = []

@@ -26,10 +26,7 @@ Point = tuple["Mapping[str, int]", int]  # a number for every generator, and the
 
 
 def compare(expression: Expression, read: int | None, leaf: Callable[[Expression], int], prime: int) -> None:
-    """Compare what was read of an expression, as a number, with its tree; names and calls are leaves.
-
-    Nothing is compared where either has no value at the point. Raises InternalError: SF991.
-    """
+    """Compare what was read of an expression with its tree, unless either has no value; SF991 otherwise."""
     try:
         written = None if read is None else _number(expression, leaf, prime)
     except (KeyError, ZeroDivisionError):

@@ -338,10 +338,7 @@ class _Assembly:
         )
 
     def _cleared(self) -> Factored:
-        """Return the product of the denominators in rows of line elements and conditions.
-
-        Other rows may read a point between the ends: there, those that hold a wavenumber are no dynamics.
-        """
+        """Return the product of denominators of line elements and conditions: others are no dynamics."""
         transmissions = {} if self.distributed is None else self.distributed.transmissions
         waves = set() if self.distributed is None else {*self.distributed.propagation.table.wavenumbers}
         product = Factored.number(self.ring, 1)
@@ -462,10 +459,7 @@ class _Assembly:
         return delayed
 
     def _ordered_blocks(self) -> list[PlacedBlock]:
-        """Return the blocks so that each uses only earlier ones, directly or through definitions.
-
-        Raises ModelError: SF215 when blocks refer to each other in a circle.
-        """
+        """Return the blocks so that each uses only earlier ones; SF215 when they go in a circle."""
         by_name = {b.name: b for b in self.model.blocks}
         expressions = {d.name: [d.expression] for d in self.model.definitions}
         expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}

@@ -154,10 +154,7 @@ class AlongPoint:
 
 
 def guess(value: Factored, numbers: Mapping[str, ExactValue | None]) -> float:
-    """Return about what a value is, where a parameter has none with one in its place.
-
-    It tells which of two points along x comes first.
-    """
+    """Return about what a value is, to tell which of two points along x comes first."""
     doubles = {n: float(v.rational) * pi**v.pi_power for n, v in numbers.items() if v is not None} | {
         "pi": pi
     }
@@ -210,10 +207,7 @@ class Distributed:
         return AlongPoint(name, *own, at, at, call.name, call.order, call.argument)
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
-        """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
-
-        ``states`` are those of line elements at their first ends.
-        """
+        """Return an unknown, quantity or derivative at a call's point, given states at first ends."""
         owner, dot, _ = call.name.partition(".")
         at, inputs = self.evaluator.constant(call.argument), tuple[Variable, ...]()
         if dot:
@@ -326,10 +320,7 @@ class _Demands:
                 self.demands[number][1].append(part.scaled(length))
 
     def _multiple(self, key: tuple[str, ...], law: Dispersion) -> tuple[int, Factored] | None:
-        """Return the number of a law, and the factor by which the wavenumbers of another exceed its own.
-
-        So layers that a wave crosses in equal times have equal kernels.
-        """
+        """Return the number of a law, and the factor by which the wavenumbers of another exceed its own."""
         n = law.order
         if key in self.keys or self.settled is None or law.kind not in WAVENUMBER_NAMES:
             return None
@@ -571,10 +562,7 @@ def transfer_matrix(medium: Medium, length: Factored, propagation: Propagation) 
 
 
 def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[list[Factored]]:
-    """Return, per load, the state at a distance from the start that a unit of it causes from rest.
-
-    ``integral of h`` follows from the integral of the characteristic equation.
-    """
+    """Return, per load, the state at a distance from the start that a unit of it causes from rest."""
     zero = Factored.number(propagation.ring, 0)
     one = zero + 1
     columns = [[zero] * len(medium.system.states) for _ in medium.system.loads]
@@ -606,10 +594,7 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
 
 
 def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> FieldEquation:
-    """Return the coefficients of an equation, linear in unknowns, their derivatives and loads.
-
-    The evaluator's scope is that within the field.
-    """
+    """Return coefficients of an equation linear in unknowns, derivatives and loads, in a field's scope."""
 
     def leaf(node: Expression) -> int:
         match node:

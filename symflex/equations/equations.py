@@ -21,10 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ConstantFunction:
-    """A generator that stands for an elementary function of constants.
-
-    ``generator`` is its name in the ring, the expression's own text: ``sqrt(k*m)``.
-    """
+    """A generator for an elementary function of constants, named by its own text: ``sqrt(k*m)``."""
 
     generator: str
     expression: Call
@@ -102,10 +99,7 @@ def radicals_of(
     parameters: Sequence[ModelParameter],
     value: Callable[[str], Factored] | None = None,
 ) -> Radicals:
-    """Return the relations over a ring of the roots that are among its generators.
-
-    ``value`` is what a parameter's name stands for, by default the generator of that name.
-    """
+    """Return relations of the roots among a ring's generators, given ``value`` for a parameter's name."""
     roots = [c.expression for c in constants if c.expression.name == "sqrt"]
     if not any(p.name == COORDINATE for p in parameters):
         roots = [c for c in roots if not varies_along_x(c)]

@@ -114,11 +114,7 @@ class ExactEvaluator:
         return replace(self, scope=self.scope.varying())
 
     def constant(self, expression: Expression) -> Factored:
-        """Return the value of an expression without unknowns.
-
-        Raises ModelError: SF224 when it divides by zero; BudgetError: SF501 when it would expand beyond the
-        limits.
-        """
+        """Return the value of an expression without unknowns; SF224 division by zero, SF501 too large."""
         if not self.is_constant:
             return self._of_constants.constant(expression)
         value = self.value(expression)
@@ -302,10 +298,7 @@ class Opener:
     _opened: dict[str, Expression] = field(default_factory=dict, repr=False)
 
     def open(self, call: Call) -> Call:
-        """Return a function call whose argument contains no definition.
-
-        Raises ModelError: SF103 when the opened argument would be unreasonably large.
-        """
+        """Return a function call whose argument contains no definition; SF103 if that is too large."""
         used = set(names_among(call, self.definitions))
         for name in reversed(tuple(self.definitions)):
             if name in used and name not in self._opened:

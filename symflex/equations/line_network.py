@@ -160,10 +160,7 @@ def line_network(equations: Equations) -> LineNetwork:
 
 
 def _turned(number: int, continuum: Continuum) -> tuple[Continuum, list[tuple[Variable, LinearForm]]]:
-    """Return a member at an angle in its own axes, where stretching is another part than bending.
-
-    It comes with the unknowns more, its states in these axes, and what they are equal to.
-    """
+    """Return a member at an angle in its own axes, with its states there and what these are equal to."""
     axes, matrix = continuum.system.axes, continuum.system.matrix
     if axes is None or len(coupled_states(len(matrix), _places(matrix))) > 1:
         return continuum, []

@@ -67,10 +67,7 @@ def vanishing_order(value: Factored, h: fmpz_mpoly) -> tuple[int, Factored]:
 def singular_start(
     matrix: Matrix, way: Factored, variable: str, at_start: Callable[[Factored], Factored]
 ) -> SingularStart | None:
-    """Return the solutions that are finite where the way from the start is zero, None if all are.
-
-    ``at_start`` gives an analytic coefficient's value there. Raises UnsolvedEndError: what is in the way.
-    """
+    """Return solutions that are finite at a start of given coefficients, None if all; UnsolvedEndError."""
     size, i = range(len(matrix)), way.ring.index[variable]
     (h,) = (f for f, _ in way.factors if degree_in(f, i))
     places = {(i, j): vanishing_order(x, h) for i, row in enumerate(matrix) for j, x in enumerate(row)}
@@ -139,10 +136,7 @@ def _values(first: Sequence[Sequence[Factored]], powers: Sequence[int]) -> Matri
 
 
 def triangular_order(first: Sequence[Sequence[Factored]]) -> list[int]:
-    """Return the states so that each row holds only those before it, and the diagonal.
-
-    Raises UnsolvedEndError where they go in circles.
-    """
+    """Return states so that each row holds only those before it, and the diagonal; UnsolvedEndError."""
     found: list[int] = []
     size = range(len(first))
     while len(found) < len(first):

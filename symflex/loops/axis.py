@@ -110,10 +110,7 @@ def _refined(
     ball: arb,
     digits: int,
 ) -> arb:
-    """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
-
-    The precision rises with what is known.
-    """
+    """Return a narrower enclosure of the only root in an interval on which the function is monotonous."""
     wanted = bits_for_digits(digits) + 16
 
     def newton(ball: arb) -> arb:

@@ -47,10 +47,7 @@ class Tracer:
     def steps(
         self, point: Point, free: int, reach: float = 0.0, rise: float = 0.0
     ) -> tuple[list[arb], arb, arb] | None:
-        """Return slopes of the boundary, and the steps to it of one parameter and of the frequency.
-
-        The slopes are those of all within ``reach`` of the parameter and ``rise`` of the frequency.
-        """
+        """Return the slopes within ``reach`` and ``rise``, and the steps of parameter and frequency."""
         spend()
         ends = []
         for k, (low, high) in enumerate(self.ranges):

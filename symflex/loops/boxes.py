@@ -153,10 +153,7 @@ class CharacteristicFunction:
         return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights), lines=lines)
 
     def halves(self, box: OpenBox) -> list[OpenBox]:
-        """Return two parts of a box, parted along the parameter that contributes most to what is open.
-
-        Without an end of the poles that is one of the highest power of s.
-        """
+        """Return two parts of a box, parted along the parameter that contributes most to what is open."""
         spend()
         sizes = box.weights or [
             float((high - low) / (abs(low) + abs(high))) * (1 + (name in self.leading))
@@ -314,10 +311,7 @@ class FirstOrder:
         return [(at_centre(value), _slope(value)) for value in values]
 
     def at(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, list[acb]]]:
-        """Return values of some factors at the middle of the box, and their slopes in every parameter.
-
-        Wavenumbers are of one branch: that of ``near``, generators about s.
-        """
+        """Return values at the middle of the box and slopes in every parameter, on the branch of ``near``."""
         near = near or self.generators(s)
         wide, middle, *others = self._evaluators
         centre, points = middle.at(s, near), [(each, each.at(acb_series([s, 0], 2), near)) for each in others]

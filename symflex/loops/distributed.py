@@ -58,10 +58,7 @@ NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 
 @dataclass
 class DistributedFactors(AxisSearch):
-    """The factors of a characteristic function that contain kernels, together.
-
-    ``reasons`` say why something is not certified.
-    """
+    """The factors with kernels of a characteristic function; ``reasons`` say what is not certified."""
 
     bound: BoundTransferFunction  # carries ring and kernels
     gain: str  # its name
@@ -138,10 +135,7 @@ class DistributedFactors(AxisSearch):
 
     @cached_property
     def radius(self) -> tuple[float, bool]:
-        """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right.
-
-        Where it is not, ``reasons`` says why.
-        """
+        """How far poles are searched [rad/s], and if none lies beyond on the right; see ``reasons``."""
         if self.is_cut:
             self.reasons.append("the data end there")
             return self._without_end, False
@@ -171,10 +165,7 @@ class DistributedFactors(AxisSearch):
 
     @property
     def axis_end(self) -> float:
-        """How far crossings of the axis are searched [rad/s]: to the largest circle on which is counted.
-
-        0 where a passive loop has none.
-        """
+        """How far crossings are searched [rad/s], to the largest circle of counts; 0 of a passive loop."""
         end, is_proved = self.radius
         if is_proved and self.is_endless:
             return 0.0
@@ -327,10 +318,7 @@ class DistributedFactors(AxisSearch):
     def in_one_function(
         self, factor: GainPolynomial, *, is_monic: bool = False
     ) -> tuple[GainValue, list[tuple[arb, arb]], DistributedFactors] | None:
-        """Return f, its values on pieces of the range, and ``A + f B``, if f moves all poles of a factor.
-
-        A is all that is free of the gain if the loop ``is_monic``.
-        """
+        """Return f, its values on pieces, and ``A + f B``, if f moves all poles; A is all else if monic."""
         function, tree = self._parts(factor), self._tree(factor)
         basis, shares = independent(function.parts)
         if len(basis) != 2 or (is_monic and any(shares[0][1:])):  # noqa: PLR2004 (A and B)

@@ -479,10 +479,7 @@ class LoopGain:
 
 
 def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
-    """Return the frequencies [rad/s] at which ``abs(A) = abs(K B)``, and B/A there.
-
-    ``A(s) A(-s) - K^2 B(s) B(-s)`` is even in s; its roots on the imaginary axis are these frequencies.
-    """
+    """Return the frequencies [rad/s], roots of ``A(s) A(-s) - K^2 B(s) B(-s)``, and B/A there."""
     context = function.bound.ratio.ring.context
     mirrored = [-context.gen(0), *context.gens()[1:]]
     a, b = (f * f.compose(*mirrored, ctx=context) for f in (function.a, function.b))

@@ -140,10 +140,7 @@ class LoopFunction:
         return LoopValue(*a, *b), LoopValue(*a_mid, *b_mid)
 
     def parts_around(self, s: acb, bits: int) -> tuple[Sequence[tuple[acb, acb]], Sequence[tuple[acb, acb]]]:
-        """Return values and slopes in s on a ball, and those in its middle.
-
-        The first values are enclosures by the mean value theorem where these are narrower.
-        """
+        """Return values, by the mean value theorem if narrower, and slopes on a ball, and in its middle."""
         with precision(bits):
             middle = s.mid()
             sums = self.evaluator(bits)

@@ -172,10 +172,7 @@ class LumpedFactor:
         *,
         is_symmetric: bool = False,
     ) -> list[Crossing]:
-        """Return where a polynomial in the gain and functions of it vanishes, and two others with it.
-
-        At such a gain these have a root in common, which need not be a positive w.
-        """
+        """Return the gains at which a polynomial vanishes and two others share a root, positive or not."""
         lowest = min(both, key=lambda f: degree_in(f, W) or inf)
         crossings = []
         for gain in self._gains(polynomial, 2 * digits + SPARE_DIGITS):
@@ -262,10 +259,7 @@ class LumpedFactor:
         return [root for root in find_polynomial_roots(problem, digits) if root.is_real]
 
     def count(self, gain: Fraction, within: float = inf) -> PoleCount:
-        """Return how many poles lie in the right half-plane and on the axis for a gain that is no crossing.
-
-        They are those within an abs(s) [rad/s]. SF802 when a root cannot be told from one on the axis.
-        """
+        """Return how many poles within an abs(s) [rad/s] are on the right and on the axis; else SF802."""
         roots = [root for root in self.roots(gain) if not abs(root.enclosure()) > within]
         times = self.factor.multiplicity
         axis = sum(root.multiplicity for root in roots if root.on_imaginary_axis)

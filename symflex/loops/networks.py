@@ -99,10 +99,7 @@ class NetworkLoop:
         return DiscSearch(self.cramer, DIGITS, (False, False)).radius_of(4 * self.modes) / WIDER
 
     def in_disc(self, radius: float) -> LoopInDisc:
-        """Return A and B in a disc about 0 [rad/s].
-
-        UndecidedError, EssentialSingularityError where they are not enclosed there.
-        """
+        """Return A and B in a disc about 0 [rad/s], if they are enclosed there."""
         return LoopInDisc(*DiscSearch(self.cramer, DIGITS, (False, False)).series(radius))
 
 

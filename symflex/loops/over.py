@@ -122,10 +122,7 @@ def _sweep(name: str) -> str:
 
 
 def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) -> Ends:
-    """Return the range of a parameter: the one asked for, the declared one, or one about its value.
-
-    It begins at 0 for a parameter of signals and blocks alone.
-    """
+    """Return a parameter's range, asked for, declared, or about its value; from 0 if of signals alone."""
     name = parameter.name
     of_all = given.limits if len(given.over) == 1 else None
     stated = {n: (low, high) for n, low, high in given.ranges}.get(name, of_all)
@@ -295,10 +292,7 @@ def _boundaries(
 
 
 def _frequencies(gaps: Sequence[OpenBox], digits: int, *, is_real: bool) -> tuple[arb, ...]:
-    """Return where on the axis poles may be [rad/s], as one what the digits do not separate.
-
-    A real pole meets the axis at 0 exactly.
-    """
+    """Return where on the axis poles may be [rad/s], apart in the digits; of a real pole that is 0."""
     pieces = (piece for gap in gaps for own in gap.pieces for piece in own)
     places = _joined(pieces, Fraction(1, 10**digits))
     return tuple(arb(0) if is_real and not low else ball(low).union(ball(high)) for low, high in places)

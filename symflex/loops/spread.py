@@ -189,10 +189,7 @@ def middle_of(box: Box) -> Point:
 
 
 def reach(function: CharacteristicFunction, s: complex, box: Box) -> tuple[complex, list[complex]]:
-    """Return how far a root near s moves within a box to first order, and each parameter's part of it.
-
-    Real and imaginary part of the first are sums of sizes.
-    """
+    """Return sizes of the step of a root near s within a box to first order, and each parameter's part."""
     with precision(BITS):
         about, every = function.expanded(tuple((x, x) for x in middle_of(box))), range(len(function.factors))
         slopes = [complex(slope.mid()) or 1e-300 for _, slope in about.around(acb(s), every)]

@@ -62,10 +62,7 @@ class GainTree:
         return [w[0] for w in around], [w[0] for w in centre], [w[1] for w in around]
 
     def sums(self, place: PartsAlong) -> tuple[acb, acb]:
-        """Return a sum on this piece, and what the gain adds to it: both by the mean value theorem.
-
-        Slopes are added up before they are multiplied with widths, as they may cancel.
-        """
+        """Return a sum on this piece and what the gain adds to it, slopes being added up first."""
         around, centre, slope = self.values
         across = _sum(slope, place.middle) * (self.gain - self.gain.mid())
         total = _sum(centre, place.middle) + across

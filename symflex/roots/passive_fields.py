@@ -100,10 +100,7 @@ class _Fields:
                     yield _Paired(field, states, pairs)
 
     def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Sequence[Pair]) -> bool:
-        """Tell whether what is stored and lost along a field is not negative, and zero only at rest.
-
-        If fields have to be damped, the damping alone is zero only at rest.
-        """
+        """Tell whether what is stored and lost along a field is positive but at rest."""
         resting = set[int]()
         for q, p, sign in pairs:
             give = matrix[q][p] * sign
@@ -196,10 +193,7 @@ class _Fields:
         )
 
     def _eliminated(self, forces: set[Variable]) -> dict[Variable, Terms] | None:
-        """Return what conditions say of states, in terms of those that stay free: forces follow first.
-
-        None where a state is multiplied by what may vanish at some s in the right half-plane.
-        """
+        """Return what conditions say of states by those that stay free; None with unstable divisors."""
         known: dict[Variable, Terms] = {}
         for row in self.equations.rows:
             parts = free_terms(row.form, known)
@@ -281,11 +275,7 @@ class _Fields:
 
 
 def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]] | None]]:
-    """Yield equations of a field and their states by its own, with forces for slopes and as they are.
-
-    Forces come first: where fields meet, it is their work that is the same on both sides. The third of each
-    are the pairs, None where these are to be found by trial.
-    """
+    """Yield equations of a field with their states, with forces first and as they are, and the pairs."""
     matrix = [list(row) for row in field.system.matrix]
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + int(i == j) for j in range(n)] for i in range(n)]

@@ -220,10 +220,7 @@ def _dynamic(model: Model) -> dict[str, Expression]:
 
 
 def _observed(model: Model, output: Output | None) -> Model:
-    """Return a model with an output as a signal where it may have poles of its own.
-
-    What is passive says nothing of these.
-    """
+    """Return a model with an output as a signal, whose own poles passivity says nothing of."""
     if output is None:
         return model
     behind = {LAPLACE, *(b.name for b in model.blocks), *_dynamic(model)}
@@ -300,10 +297,7 @@ class _Structure:
     pressed: Container[str]  # names of beams that are in the equations as if pulled
 
     def closed_at(self, places: Sequence[_Acting]) -> EnergyProof | None:
-        """Return how loops are closed by what acts at one end each, or between two, and if all rests then.
-
-        None where that is not proved to be passive for all K > 0.
-        """
+        """Return how loops are closed by what acts at one end or between two, None if that is not passive."""
         laws = [law for number, at in enumerate(places) if (law := self._law(number, at)) is not None]
         if len(laws) < len(places):
             return None
@@ -502,10 +496,7 @@ class _Structure:
         return not any(j for _, j in powers) and _is_stable({i - order: c for (i, _), c in powers.items()})
 
     def _turn(self, coefficient: Factored) -> complex:
-        """Return 1, -1, 1j or -1j: the side of a coefficient in the complex plane; 0 where it has none.
-
-        It is there for every K > 0 and every s = j omega with omega > 0.
-        """
+        """Return the side of a coefficient, 1, -1, 1j or -1j, for s = j omega and K > 0; 0 without one."""
         even, odd = set[int](), set[int]()
         for (of_s, _), c in (self._powers(coefficient) or {}).items():
             sign = 1 if c > 0 else -1 if c < 0 else 0
@@ -553,10 +544,7 @@ def _is_stable(coefficients: Mapping[int, arb]) -> bool:
 
 
 def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
-    """Tell whether a member is a beam whose states all grow once they are positive, as a tension lets them.
-
-    On the axis ``(EI y'')' = V + N y'`` and ``V' = rho A omega^2 y``, with V minus the force across.
-    """
+    """Tell whether a member is a beam whose states all grow once they are positive, as under tension."""
     return (
         isinstance(use.element, Beam)
         and dict(use.choices).get("theory") == "euler-bernoulli"

@@ -586,11 +586,7 @@ def chosen(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
 def take_out_shared(
     poles: Sequence[Root], zeros: Sequence[Root], *closer: Callable[[Root], Root]
 ) -> tuple[list[Root], list[Root], list[Root]]:
-    """Return poles and zeros without what both share, and that: modes without a visible common factor.
-
-    A pole and a zero are the same if they still overlap to twice the digits, which ``closer`` returns of
-    poles and of zeros.
-    """
+    """Return poles and zeros without those that still overlap to twice the digits, and these."""
     of_pole, of_zero = closer
 
     def coincide(pole: Root, zero: Root) -> bool:

@@ -148,10 +148,7 @@ def _outermost(region: Region) -> float:
 
 
 def on_sheet(roots: Sequence[Root], bound: BoundTransferFunction) -> tuple[Sequence[Root], bool]:
-    """Return the roots s of those r on the principal sheet, and whether others may be; all without a root.
-
-    Those on the branch cut itself count as on the principal sheet, once.
-    """
+    """Return the roots s of those r on the principal sheet or its cut, and whether others may be."""
     order = bound.sheets
     if order == 1:
         return roots, False

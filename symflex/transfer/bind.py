@@ -173,10 +173,7 @@ def _vanishing(what: str) -> ModelError:
 
 
 def _compared(bound: BoundTransferFunction) -> BoundTransferFunction:
-    """Return a function once it agrees with the equations at its values.
-
-    Raises InternalError: SF991 it does not.
-    """
+    """Return a function once it agrees with the equations at its values; else InternalError SF991."""
     if bound.source.solve is not None:
         compare(bound.source.solve, [agreement(bound)], dict(bound.values))
     return bound
@@ -199,10 +196,7 @@ def _substitution(tf: TransferFunction, values: Sequence[tuple[str, ExactValue]]
 
 
 def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
-    """Return the parameters whose values make a formula 0/0 at every s, none where it is not.
-
-    Two wavenumbers are equal then, or a difference of some is what it divides by.
-    """
+    """Return parameters whose values make a formula 0/0 at every s, as where wavenumbers are equal."""
     zeros: list[fmpz_mpoly] = []
     for law in tf.kernels.dispersions:
         c = law.characteristic
@@ -222,10 +216,7 @@ def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
 
 
 def _in_step(tf: TransferFunction, images: _Substitution) -> list[str]:
-    """Return the parameters of waves that these values alone make rational multiples of one another.
-
-    Their kernels then have factors in common.
-    """
+    """Return parameters of waves that their values make rational multiples, whose kernels share factors."""
     laws = tf.kernels.dispersions
     if any(law.kind != "wave" for law in laws):
         return []
@@ -237,10 +228,7 @@ def _in_step(tf: TransferFunction, images: _Substitution) -> list[str]:
 def _derived_with_numbers(
     tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...], names: Collection[str]
 ) -> BoundTransferFunction:
-    """Return a function derived with the values of some parameters from the start.
-
-    No term of a large function is made, and wavenumbers that are equal are seen to be.
-    """
+    """Return a function derived with the values of some parameters, so that equal waves are seen."""
     symbolic = [p.name for p in tf.model.parameters if p.name not in names]
     numeric = with_numbers(tf.model, symbolic, dict(values), in_kernels=True)
     derived = derive(assemble(numeric, nested_transfer), tf.output.name, tf.input.name)
@@ -254,10 +242,7 @@ def _derived_with_numbers(
 def bind_polynomials(
     tf: TransferFunction, bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly]
 ) -> tuple[Factored, ...]:
-    """Return polynomials over a transfer function's ring with the values a bound one has.
-
-    Such are the coefficients of a gain in its denominator.
-    """
+    """Return polynomials over a ring, such as coefficients of a gain, with a bound function's values."""
     ring, values = bound.ratio.ring, dict(bound.values)
     images = _Substitution(ring, tf.ratio.ring, values, radicals_at(tf, ring, values))
     return tuple(images.apply(polynomial) for polynomial in polynomials)
@@ -309,10 +294,7 @@ class _Substitution:
         return self.radicals.reduced(self._clear(collected, pi))
 
     def apply_factored(self, value: Factored) -> Factored:
-        """Return a rational function over s, pi and functions of constants.
-
-        Raises ModelError: SF231 when its denominator vanishes for these values.
-        """
+        """Return a rational function over s, pi and functions of constants; SF231 where it divides by 0."""
         result = Factored.number(self.ring, value.unit)
         for factor, exponent in value.factors:
             image = self.apply(factor)

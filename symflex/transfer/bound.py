@@ -218,10 +218,7 @@ class BoundTransferFunction:
         return VaryingMatrices(minors, dict(self.constants), self.along, values)
 
     def expect(self, modes: int, size: float = 0.0) -> None:
-        """Tell that values are wanted for abs(s) up to a size [rad/s], and at so many modes.
-
-        Members whose coefficients vary along x are expanded once then, and not again for every larger s.
-        """
+        """Tell that values are wanted for abs(s) up to a size [rad/s], so that tapers are expanded once."""
         if self._matrices is not None:
             self._matrices.expect(modes, size)
 
@@ -280,10 +277,7 @@ class BoundTransferFunction:
         return BoundRoot(later(root.slope, values)(), later(root.shift, values)(), root.order)
 
     def kernel_values(self, *, is_along: bool = True) -> KernelValues:
-        """Return the evaluator of the ring of kernels, with the constants at the current precision.
-
-        Unless ``is_along`` entries of fundamental matrices are given to it.
-        """
+        """Return the evaluator of kernels at the current precision, given entries if ``is_along``."""
         from symflex.transfer.enclose_kernels import KernelValues  # only with beams
 
         constants = {name: evaluate() for name, evaluate in self.constants}

@@ -91,11 +91,7 @@ class DirectSolve:
         )
 
     def at(self, point: Point, pairs: Sequence[tuple[str, str]]) -> Solution:
-        """Return the values at a point at the current precision.
-
-        Raises SingularPointError: no pivot is proved to differ from zero, or a function of constants has no
-        value there.
-        """
+        """Return the values at a point at the current precision; SingularPointError if that is singular."""
         spend()
         equations, values = self.equations, self._generators(point)
         columns = {v: i for i, v in enumerate(equations.unknowns)}
@@ -242,10 +238,7 @@ def carried(
     along: Mapping[str, Call],
     point: Point,
 ) -> acb_mat:
-    """Return what takes states over a length, where each column says what a state adds to the slopes of all.
-
-    ``reach`` is where x begins, and the length; ``along`` are the functions of x among the generators.
-    """
+    """Return what takes states over ``reach``, given what each adds to all slopes, ``along`` x or not."""
     size, length = len(columns), number(reach[1])
     entries = {
         (i, j): value

@@ -252,10 +252,7 @@ class KernelReduction:
         return tuple(factors)
 
     def _shortest(self, value: Factored) -> Factored:
-        """Return a value with every factor in normal form, or with pairs of wavenumbers left as they are.
-
-        With the parameters the wavenumbers determine expressed by them both are unique; fewer terms decide.
-        """
+        """Return a value in normal form, or with its pairs of wavenumbers left, whichever is shorter."""
         pairs = any(d.kind == "pair" for d in self.table.dispersions)
 
         def shortest(factor: fmpz_mpoly) -> Factored:
@@ -317,11 +314,7 @@ class KernelReduction:
         return result
 
     def _divided(self, divisor: Factored, times: Factored, whole: Factored, factor: fmpz_mpoly) -> Factored:
-        """Return a factor with a divisor set apart; ``whole`` is the divisor by ``times``.
-
-        A power of s may be left below: at s = 0 all wavenumbers may vanish, and a factor less than their
-        product.
-        """
+        """Return a factor with the divisor ``whole/times`` set apart; a power of s may be left below."""
         multiplied = prod((f**e for f, e in times.factors), start=factor)
         rest = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / whole
         s = self.ring.context.gen(0)
@@ -458,10 +451,7 @@ def opened(num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, 
 
 
 def _with_fewer_waves(value: Factored, table: KernelTable) -> Factored:
-    """Return a product with factors such as ``c - lambda_1^2`` and ``c - lambda_2^2`` multiplied out.
-
-    Their product is one of s and parameters, which may be common to numerator and denominator.
-    """
+    """Return a product with factors such as ``c - lambda_i^2`` multiplied out, to one of s."""
     ring, normal = value.ring, NormalForm(value.ring, table)
     waves, kernels = frozenset(table.wavenumbers), frozenset(k.generator for k in table.kernels)
     used = [(f, e, ring.used_in([f])) for f, e in value.factors]
@@ -541,10 +531,7 @@ def _solve_relations(
 def _solve_in_many_ways(
     ring: Ring, table: KernelTable, parameters: Sequence[str]
 ) -> list[tuple[tuple[str, Factored], ...]]:
-    """Return solutions of the relations that start from different parameters.
-
-    Some have poles where wavenumbers vanish, and others have not.
-    """
+    """Return solutions from different parameters; some have no poles where waves vanish."""
     if not any(d.kind == "pair" for d in table.dispersions):
         return []
     solutions: dict[tuple[str, ...], tuple[tuple[str, Factored], ...]] = {}

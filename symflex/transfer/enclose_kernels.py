@@ -52,7 +52,7 @@ class KernelValues:
     ) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
-        Where the roots of a dispersion can be separated, they stand for its fundamental functions. It is a
+        Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
         ball that holds ``s``. Their square roots are by default those of :func:`square_root`.
         """
@@ -210,10 +210,7 @@ def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] 
 
 
 def _squares(c: Sequence[Value], *near: acb) -> tuple[Value, Value]:
-    """Return the squares of a pair of wavenumbers, the smaller one from their product if that is sharper.
-
-    Their difference cancels where one is far larger, as at high frequencies of beams with rotary inertia.
-    """
+    """Return the squares of a pair, the smaller one from their product if that is sharper."""
     middle = -c[2] / 2
     root = square_root(middle * middle - c[0])
     if near:
@@ -334,11 +331,7 @@ LITTLE = 7 / 8  # boxes that Newton's operator makes no smaller than this share 
 
 
 def characteristic_roots(coefficients: Sequence[Value], *, even: bool = False) -> tuple[Value, ...] | None:
-    """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be separated.
-
-    ``c_0`` comes first. With ``even`` odd coefficients are zero, and roots come in pairs x, -x, one after the
-    other.
-    """
+    """Return all roots of ``x^n + ... + c_0``, in pairs if ``even``; ``None`` if not separated."""
     roots = _roots(coefficients[:: 2 if even else 1])
     if roots is None:
         return None

@@ -82,10 +82,7 @@ class EquationsAt:
         return EquationsAt, (self.equations, self.values)
 
     def on(self, s: Arithmetic, along: str = "") -> NamedValues:
-        """Return the values on a ball of s [rad/s]; to first order ``along`` ``"s"`` or a parameter.
-
-        Members that taper have no derivatives.
-        """
+        """Return the values on a ball of s [rad/s], to first order ``along`` ``"s"`` or a parameter."""
         return NamedValues(self, acb_series([s, 1], 2) if along == LAPLACE else s, along)
 
     def entries(self, output: str = "", source: str = "") -> list[dict[int, Factored]]:

@@ -96,10 +96,7 @@ class Opening:
     _known: list[tuple[fmpz_mpoly, Factored]] = field(default_factory=list)
 
     def __call__(self, closed: fmpz_mpoly) -> Factored:
-        """Return a closed polynomial over the plain ring.
-
-        Raises BudgetError: SF501 when it would be too large.
-        """
+        """Return a closed polynomial over the plain ring; SF501 when it would be too large."""
         for known, opened in self._known:
             if known == closed:
                 return opened

@@ -82,10 +82,7 @@ class _Naming:
 
 
 def named_coefficients(equations: Equations) -> tuple[Model, tuple[str, ...]]:
-    """Return the model with definitions for the coefficients of its laws, and their names.
-
-    Line elements and fields of one law share names.
-    """
+    """Return the model with definitions for coefficients of its laws, shared where laws are."""
     model, laws = equations.model, _laws(equations)
     varying = varying_constants(model.definitions, model.blocks)
     constants = {"pi", *(p.name for p in model.parameters), *(d.name for d in model.definitions)}
@@ -98,10 +95,7 @@ def named_coefficients(equations: Equations) -> tuple[Model, tuple[str, ...]]:
 
 
 def in_order_of_use(model: Model) -> tuple[str, ...]:
-    """Return the parameters in the order in which distributed parts use them, and then the others.
-
-    Which of several is expressed by a wavenumber does not depend on the order of declarations.
-    """
+    """Return parameters in order of use along x, then others, whatever order they are declared in."""
     lines = [use for use in model.elements if isinstance(use.element, LineElement)]
     used = [dict(use.values).get(p.name) for use in lines for p in use.element.parameters]
     used += [side for field in model.fields for e in field.equations for side in (e.left, e.right)]

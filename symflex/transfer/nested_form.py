@@ -287,10 +287,7 @@ class BoundNested:
         return double_value(lambda bits: partial(self.solved, bits=bits), s, 1)
 
     def each(self, points: Sequence[complex]) -> list[complex]:
-        """Return the values at many complex frequencies [rad/s]; see :meth:`__call__`.
-
-        All ask for about as many bits as the last, in long chains for more.
-        """
+        """Return values at frequencies [rad/s], in long chains with the bits that the last one took."""
         bits = self._bits_at(points[-1]) if points else FIRST_BITS
         return [self(s, bits) for s in points]
 

@@ -76,10 +76,7 @@ def assemble(model: Model) -> Equations:
 
 
 def assemble_for_checks(model: Model) -> Equations:
-    """Return the model's equations for what needs no closed form.
-
-    They are sparse where distributed members are many, as kernels take the ordinary ring long.
-    """
+    """Return the equations for what needs no closed form, sparse where members are many."""
     return assemble_sparse(model) if model.is_distributed and _may_be_large(model) else assemble(model)
 
 

@@ -121,10 +121,7 @@ class TransferFunction:
 
     @cached_property
     def ratio(self) -> Factored:
-        """Numerator over denominator, expanded in s and the parameters.
-
-        Raises BudgetError: SF501 when it would be too large.
-        """
+        """Numerator over denominator, expanded in s and the parameters; SF501 when it would be too large."""
         if self.reduced is not None:
             return self.reduced
         if self.closed is None:
@@ -253,10 +250,7 @@ class TransferFunction:
 
     @property
     def order(self) -> tuple[int, int]:
-        """Degrees in s of numerator and denominator.
-
-        Those of a large function are found with random numbers in place of everything but s.
-        """
+        """Degrees in s of numerator and denominator, of large ones with random numbers for all but s."""
         if self._large is not None and self._large.order is not None:
             return self._large.order
         return degree(self.ratio.numerator()), degree(self.ratio.denominator())

@@ -51,10 +51,7 @@ class MeasuredCoordinate:
 
 
 def acting(model: Model, source: Input) -> Coordinates:
-    """Return where a force, torque or current acts; nothing for other inputs.
-
-    A free signal acts where it is all that drives a source.
-    """
+    """Return where a force, torque or current acts, or the only signal that drives it; else nothing."""
     kind = INPUT_KINDS.get(source.kind)
     if kind is not None and not kind.is_imposed:
         return _at(model, source.nodes, kind.domain)

@@ -89,21 +89,14 @@ def mode_shape(bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS)
 def mode_shapes(
     bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS
 ) -> tuple[EnclosedModeShape, ...]:
-    """Return all independent shapes of the pole that a mode belongs to; see :func:`mode_shape`.
-
-    More than one are a basis: in each, one of as many places is 1 and the others are at rest.
-    """
+    """Return a basis of the shapes of the pole that a mode belongs to; see :func:`mode_shape`."""
     return _shapes(bound, which, digits)[0]
 
 
 def lowest_modes(
     bound: AnyBoundFunction, count: int, band: Band | None = None
 ) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
-    """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
-
-    Those of poles in the right half-plane follow, wherever they lie. Whether the model is stable comes with
-    them.
-    """
+    """Return the lowest modes but those at 0, or a band's, then unstable ones, and whether it is stable."""
     search = _ModeSearch(bound)
     located = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
     candidates = [(root, False) for root in located.all_poles] + [(h.root, True) for h in located.hidden]

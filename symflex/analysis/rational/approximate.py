@@ -189,10 +189,7 @@ def approximate(
 
 
 def _bands(kept: KeptRoots, band: tuple[float, float] | None) -> tuple[float, float, tuple[float, float]]:
-    """Return where the error is sampled, and the band it is stated for [Hz].
-
-    Samples end at the first pole left out, where an undamped G is infinite and R is not.
-    """
+    """Return where the error is sampled, up to the first pole left out, and its band [Hz]."""
     bottom, top = default_band(kept.found)
     low = bottom * 10 / 10**SCANNED_DECADES
     high = kept.omitted_hz or top
@@ -209,10 +206,7 @@ Form = Callable[["AnyBoundFunction", KeptRoots, int], Approximant]
 
 
 def product_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approximant:
-    """Return the product over the poles and zeros that are kept, right to the leading order at s = 0.
-
-    SF405 when the behaviour near s = 0 cannot be determined.
-    """
+    """Return the product over kept poles and zeros, right to the leading order at s = 0; SF405 if unknown."""
     start = expand_at_zero(bound, -(10**6), digits)
     order = _order_at_zero(kept.zeros) - _order_at_zero(kept.poles)
     if order != start.order:
@@ -316,10 +310,7 @@ def _taylor(pole: acb, power: int, i: int) -> acb:
 
 
 def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...], tuple[mpmath.mpf, ...]]:
-    """Return numerator and denominator of a rational transfer function, the latter beginning with 1.
-
-    They are those of the function itself, to the working precision.
-    """
+    """Return numerator and denominator of a rational transfer function, the latter beginning with 1."""
     function = bound.enclosed(current_bits())
     if not isinstance(function, EnclosedTransferFunction):
         raise TypeError(f"{bound.name} is not rational")

@@ -91,10 +91,7 @@ class LaurentSeries:
 
 
 def limit_at_zero(bound: AnyBoundFunction) -> arb:
-    """Return the limit for s -> 0 from the right, to double precision; it is infinite at a pole.
-
-    SF405 when it cannot be decided.
-    """
+    """Return the limit for s -> 0 from the right, infinite at a pole; SF405 when it is not decided."""
     value = acb(0) if bound.is_zero else bound.enclosed(FIRST_BITS)(acb(0))
     if not (bound.is_reduced or value.is_finite()):
         value = bound.solved(acb(0), FIRST_BITS)
@@ -295,10 +292,7 @@ def _is_unseen(coefficients: Sequence[acb], above: Taylor, below: Taylor, pole: 
 
 
 def _refined(below: Taylor, root: Root, order: int) -> acb:
-    """Return a smaller ball around a root of the denominator, by interval Newton steps (Moore 1966).
-
-    At a root of order k the Taylor coefficient number k - 1, as a function of s, has a simple one.
-    """
+    """Return a smaller ball about a root of order k, simple in coefficient k - 1 (interval Newton)."""
 
     def newton(ball: acb) -> acb:
         middle = ball.mid()
@@ -319,10 +313,7 @@ def _on_axis(root: Root, ball: acb) -> acb:
 def principal_part(
     above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int = 0
 ) -> list[acb] | None:
-    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``.
-
-    So many zeros are ``extra``, on top of as many poles.
-    """
+    """Return coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``; ``extra`` zeros, and poles."""
     count = 2 * multiplicity + extra
     num, den = above(pole, count), below(pole, count)
     if num is None or den is None:
@@ -345,10 +336,7 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
 
 
 def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[Taylor, Taylor] | None:
-    """Return the Taylor coefficients of both sides next to a pole where wavenumbers vanish or meet.
-
-    Numerator and denominator are as smooth in s there as anywhere: values on a circle tell them.
-    """
+    """Return Taylor coefficients next to a pole where wavenumbers vanish or meet, by values on a circle."""
     if bound.is_rational:
         return None
     sides = [KernelFunction(bound, value) for value in (bound.num, bound.den)]

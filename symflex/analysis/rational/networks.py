@@ -58,10 +58,7 @@ class NetworkSides:
             raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes")) from error
 
     def taylor(self, digits: int) -> tuple[Taylor, Taylor]:
-        """Return the Taylor coefficients of numerator and denominator at points of the disc.
-
-        SF405 where they are not enclosed there.
-        """
+        """Return the Taylor coefficients of both sides at points of the disc, if enclosed; else SF405."""
         if digits not in self._known:
             with self._enclosed():
                 search, radius = self._search(digits)

@@ -286,10 +286,7 @@ class RootBranch:
     root: acb  # holds one root of it [rad/s]
 
     def refined(self, bits: int) -> RootBranch | None:
-        """Return the branch with the root to about so many bits, ``None`` when it holds no root after all.
-
-        Interval Newton steps ``m - f(m)/f'(X)`` (Moore 1966), which keep every root of X.
-        """
+        """Return the branch with the root to about so many bits (Moore 1966), ``None`` if it holds none."""
         with precision(bits):
             root = self.root
             for _ in range(bits.bit_length()):
@@ -355,10 +352,7 @@ def _is_simple(tangents: Tangents, factor: fmpz_mpoly, s: acb, bits: int) -> boo
 def sensitivities(
     model: Model, bound: AnyBoundFunction, located: PoleZeroMap, names: Sequence[str] = (), digits: int = 15
 ) -> tuple[RootDerivative, ...]:
-    """Return how poles and zeros move with the parameters named, or with all; see :func:`.differentiate`.
-
-    SF902 for a parameter the model does not have.
-    """
+    """Return how poles and zeros move with parameters, by default all; SF902 for an unknown name."""
     check_causal(model, "a sensitivity")
     for name in names:
         pick_gain(model.parameters, name)

@@ -91,10 +91,7 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
 def _parts(
     bound: AnyBoundFunction, integrations: int, count: int
 ) -> tuple[list[tuple[Annulus, list[ExponentialTerm]]], tuple[PrincipalPart, ...]]:
-    """Return the rings around poles close to one another, with their sums, and the residues at the others.
-
-    Zeros matter in residues alone; to find them takes as long as to find the poles.
-    """
+    """Return rings around poles close to one another, with their sums, and residues at the others."""
     located = locate(bound, Modes(count), EFFORT.pole_digits, with_zeros=False).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     rings = _rings(bound, poles, integrations)
@@ -103,10 +100,7 @@ def _parts(
 
 
 def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -> arb:
-    """Return what a response begins with, as far as the transfer function at a large s shows it.
-
-    It is known to something ``small``, or to as many digits.
-    """
+    """Return what a response begins with, from values at a large s, to something ``small`` or the digits."""
     # Between many members exponentials take each other out, and so far out these are large.
     for bits in precisions(BITS, EFFORT.begun_bits):
         spend()

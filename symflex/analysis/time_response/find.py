@@ -150,10 +150,7 @@ def responses_by_default(
     digits: int = 12,
     shaper: InputShaper | None = None,
 ) -> list[EnclosedResponse]:
-    """Return responses at evenly spaced times, where nobody says up to which.
-
-    That is until the slowest motion has died away. Raises as :func:`time_response` does.
-    """
+    """Return responses until the slowest motion has died away, where nobody says up to when."""
     for bound in bounds:
         check_causal(bound.source.model, "a response in time")
     times = SampleTimes.evenly(Fraction(max(map(default_until, bounds))), points)

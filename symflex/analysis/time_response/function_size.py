@@ -153,10 +153,7 @@ class SizeOfExponentials:
             return ring, terms, missing.upper()
 
     def _expanded(self, number: int, s: acb, largest: Exponent) -> acb:
-        """Return one sum over an exponential from its series in a ball's middle, its last term on the ball.
-
-        Where terms cancel, their balls do not, and it would take a thousand times as many small ones.
-        """
+        """Return one sum over an exponential from its series in a ball's middle, the last term on it."""
         middle, last = s.mid(), EFFORT.series_terms - 1
         near = self.values.at(acb_series([s, acb(1)], EFFORT.series_terms))
         at_middle = self.values.at(acb_series([middle, acb(1)], EFFORT.series_terms), near)
@@ -182,10 +179,7 @@ class ModesBound(ABC):
 
     @abstractmethod
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
-        """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
-
-        The input is an impulse, integrated so often. The result is None if nothing is proved.
-        """
+        """Return what poles beyond ln(abs(s)) ``reached`` add at most to an impulse integrated so often."""
 
     @property
     def least(self) -> float:
@@ -239,10 +233,7 @@ class Annulus:
     width: arb
 
     def piece(self, start: float, angle: float, edge: float) -> acb:
-        """Return a ball around a part of the upper half of an edge, the inner one at -1, the outer one at 1.
-
-        From 0 to 1 the angle grows from the right end to the left one.
-        """
+        """Return a part of the upper half of the inner edge, -1, or the outer, 1, from right to left."""
         turn = arb(start + angle / 2, angle / 2) * arb.pi()
         return self.centre + self.radius * acb(self.width.log() * edge, turn).exp()
 

@@ -95,10 +95,7 @@ class AxisFactor:
         return total, slope
 
     def keeps_away_from_zero(self, theta: arb, least: arb) -> bool:
-        """Tell whether there is no zero at ``t + j y/r``, for all t beyond one with this theta, and all y.
-
-        Then the values over ``t^degree e^(turns abs(y))`` keep away from 0, too.
-        """
+        """Tell whether there is no zero at ``t + j y/r``, for all t beyond one with this theta, and all y."""
         for i in range(EFFORT.depths):
             v = (arb(i).union(arb(i + 1))) / EFFORT.depths  # exp(-abs(y))
             if self._across(theta, v, least).contains(0):
@@ -231,10 +228,7 @@ class LosslessModes(ModesBound):
         return any(all(f.keeps_away_from_zero(theta, least) for f in self.poles) for theta in places)
 
     def _largest(self, factor: AxisFactor, least: arb) -> tuple[arb, int] | None:
-        """Return how large a residue may be over powers of t, and at how many places in a turn it may be one.
-
-        The result is None if the slope may vanish, or another factor that has poles.
-        """
+        """Return how large a residue is over powers of t, and at how many places; None if not bounded."""
         cell = 2 * arb.pi() / EFFORT.cells
         largest, signs = arb(0), []
         for k in range(EFFORT.cells):

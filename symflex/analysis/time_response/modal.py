@@ -61,10 +61,7 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
 def proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int, most: int | None = None
 ) -> PartialSum | None:
-    """Return a sum over modes with a rigorous bound of those left out; None if there is none.
-
-    At most so many modes are summed, where so many digits would need more.
-    """
+    """Return a sum over at most so many modes with a bound of those left out; None if there is none."""
     for find in BOUNDS.values():
         bounding = find(bound, integrations)
         if not isinstance(bounding, Refused):
@@ -120,10 +117,7 @@ class BoundedModes:
         self.is_exhausted = False  # whether a search for more modes ended by itself
 
     def summed(self, count: int) -> PartialSum | None:
-        """Return the sum over so many modes, None if it is not proved.
-
-        Where they are hard to find, fewer are taken; where the bound holds farther out only, more.
-        """
+        """Return the sum over so many modes, fewer if hard to find, more if bounds start late; else None."""
         try:
             return self._summed(count)
         except BudgetError as error:

@@ -227,10 +227,7 @@ def _right_of(
 
 
 def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
-    """Return the integral of abs(H/s) along a line over pi, and how many poles are right of it.
-
-    The result is None if a pole is too close to the line.
-    """
+    """Return the integral of abs(H/s) along a line over pi, and the poles right of it, None if too close."""
     radius = (1 + rate).mid()
     while not loop.far(loop.below, rate, radius) < radius / 2:
         radius = radius * 2
@@ -271,10 +268,7 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
 def pieces_of(
     quotient: DelayedQuotient, until: arb, digits: int
 ) -> list[tuple[arb, tuple[ExponentialTerm, ...]]] | None:
-    """Return a step response as pieces up to a time [s]: when each begins, and its terms from then on.
-
-    The result is None if poles are not separated. Raises TooManyEchoesError.
-    """
+    """Return a step response's pieces, start and terms, up to a time [s]; None if poles stay close."""
     loop = _Loop(quotient, digits)
     below = acb_poly(loop.leading)
     pieces: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []

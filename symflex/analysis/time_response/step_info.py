@@ -71,10 +71,7 @@ ZERO: Final = arb(0)
 
 @dataclass(frozen=True, slots=True)
 class StepInfo:
-    """Properties of a step response that comes to rest, each a ball; None if it is not found.
-
-    Times are in seconds, values in the output's unit.
-    """
+    """Balls of a settled step response in seconds and the output's unit; None what is not found."""
 
     final: arb  # the value it tends to
     peak: arb | None  # the largest value in the direction of the final one; None if it exceeds that nowhere
@@ -199,10 +196,7 @@ def _resting(terms: Sequence[ExponentialTerm]) -> arb | None:
 
 
 def _pieces(terms: Sequence[ExponentialTerm], count: int, rest: arb, fade: arb) -> list[Piece]:
-    """Return a response with so many terms at a time, those that are the largest then.
-
-    Each piece begins at twice the time of the one before; ``rest`` falls like ``exp(-fade t)``.
-    """
+    """Return a response by its largest terms, in pieces of doubled times, beside ``exp(-fade t)``."""
     lasting = sorted((-1 / t.rate.real for t in terms), key=arb.mid)  # time constants
     starts = [each.mid() for each in lasting[-1:]]
     while starts and starts[-1] > lasting[0] and len(starts) < MOST_PIECES:
@@ -429,10 +423,7 @@ class NormalisedResponse:
         return None if self.is_lost else earliest.union(latest)
 
     def crossing(self, level: float, sign: int, until: arb, *, is_last: bool) -> arb | None:
-        """Return the first or last time at which the most, or least, that it may be passes a level.
-
-        The result is None if it does not; None, and ``is_lost``, too, where that cannot be decided.
-        """
+        """Return when its least or most passes a level first or last; None if never, or ``is_lost``."""
         shortest = until * arb(2) ** -HALVINGS
         pending = self.parts(until)[:: 1 if is_last else -1]
         before: bool | None = None  # whether it is above the level next to what is looked at now

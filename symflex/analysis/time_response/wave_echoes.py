@@ -50,10 +50,7 @@ class WaveQuotient:
     sums: tuple[tuple[ExponentialSum, int], ...]  # factors and their exponents
 
     def echoed(self, integrations: int, times: SampleTimes, digits: int) -> Sampled:
-        """Return the response with a radius of 10 to minus ``digits``, more or less.
-
-        Raises TooManyEchoesError where that takes too long, or nothing is proved.
-        """
+        """Return the response with a radius of about 10 to minus ``digits``; else TooManyEchoesError."""
         with precision(EFFORT.wave_bits):
             seconds = times.enclosed()
             last = seconds[-1].upper()
@@ -115,10 +112,7 @@ class WaveQuotient:
     def _sizes(
         self, radius: arb, origin: _AtInfinity, lead: acb
     ) -> tuple[dict[Delay, arb], dict[Delay, arb]] | None:
-        """Return how large what begins and what follows are at most outside a circle.
-
-        They are None if not analytic there: where a root, or D_0, may turn about 0 on the circle.
-        """
+        """Return how large what begins and what follows are outside a circle; None if not analytic there."""
         above: dict[Delay, arb] = {}
         below: dict[Delay, arb] = {}
         for k in reversed(range(EFFORT.wave_arcs)):
@@ -277,10 +271,7 @@ class _BranchError(Exception):
 
 
 def _may_turn(value: acb) -> bool:
-    """Tell whether a ball touches the real numbers that are not positive.
-
-    What does not on a circle does not within, where it is analytic: it would turn about them.
-    """
+    """Tell whether a ball touches the real numbers that are not positive, about which it may turn."""
     return not (value.real > 0 or value.imag > 0 or value.imag < 0)
 
 

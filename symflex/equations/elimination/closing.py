@@ -90,10 +90,7 @@ class Closure:
 
 @dataclass(frozen=True)
 class ClosedSystem:
-    """The equations as sparse rows over the closed ring.
-
-    ``rows`` have one column per unknown and then one per input; ``outputs`` likewise.
-    """
+    """The equations as sparse rows over the closed ring: a column per unknown, then one per input."""
 
     closure: Closure
     unknowns: tuple[Variable, ...]
@@ -149,10 +146,7 @@ def close(equations: Equations) -> ClosedSystem:
 
 @dataclass(frozen=True)
 class ReducedSystem:
-    """What remains: square rows over ``columns`` (unknowns), borders over the inputs, and the outputs.
-
-    ``kept`` are the positions of the remaining rows in the original system.
-    """
+    """What remains: square rows over ``columns``, borders over the inputs, and the outputs."""
 
     rows: tuple[SparseRow, ...]
     outputs: tuple[SparseRow, ...]

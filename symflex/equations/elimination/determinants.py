@@ -73,10 +73,7 @@ class Determinants:
         return Determinants(equations, system, reduced, minors, den)
 
     def num(self, output: str, source: str) -> fmpz_mpoly:
-        """Return the determinant bordered by an output and an input, over the closed ring.
-
-        Over :attr:`den` it is ``output/input`` times the output's divisor.
-        """
+        """Return the determinant bordered by an output and an input: over :attr:`den` their quotient."""
         # Cramer: det [C D; A B] over det A, up to the sign of moving the border from last row to first.
         minor = self.minors.bordered(self.reduced.outputs[self.position(output)], self.border(source))
         return -minor if len(self.reduced.columns) & 1 else minor
@@ -113,10 +110,7 @@ Value = TypeVar("Value")
 
 @dataclass
 class LaplaceExpansion(ABC, Generic[Entry, Value]):
-    """Values of all minors of some rows, each found once from smaller ones.
-
-    Raises BudgetError: SF502 when the expansion exceeds its limits.
-    """
+    """Values of all minors of some rows, each found once from smaller ones, within limits: else SF502."""
 
     rows: tuple[Mapping[int, Entry], ...]  # sparse rows, in the order of expansion
     _known: dict[int, Value] = field(default_factory=dict)
@@ -216,10 +210,7 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
 
 @dataclass
 class DegreeBounds(LaplaceExpansion[int, int]):
-    """What the degrees of minors can be at most: those of entries add in products, the larger one is a sum's.
-
-    A minor that is zero for its pattern alone has degree -1.
-    """
+    """What the degrees of minors can be at most, -1 where they are zero for their pattern alone."""
 
     def _one(self) -> int:
         return 0
@@ -238,11 +229,7 @@ def _too_large(message: str, hint: str = "split the model or give it fewer nodes
 
 
 def expansion_order(rows: tuple[SparseRow, ...], columns: tuple[int, ...]) -> tuple[int, ...]:
-    """Return an order of the rows that touches new columns as late as possible.
-
-    Rows that reach few columns not yet seen come first, which keeps the number of different
-    column sets, and so of minors, small.
-    """
+    """Return an order of the rows that touches new columns late, which keeps minors few and small."""
     wanted = set(columns)
     patterns = [frozenset(c for c in row if c in wanted) for row in rows]
     users: dict[int, list[int]] = {}

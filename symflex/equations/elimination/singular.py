@@ -31,11 +31,7 @@ SHOWN = 6
 
 
 def explain_singular(equations: Equations) -> ModelError:
-    """Return the error that names the unknowns left open and the rows that repeat others.
-
-    The null spaces are taken at a random point of a prime field, where a nonzero entry proves that the
-    unknown (or row) takes part in the dependence.
-    """
+    """Return the error that names unknowns left open and rows that repeat others, by a random point."""
     matrix = _at_random_point(equations)
     size = len(equations.unknowns)
     free = _support(matrix, size)

@@ -63,10 +63,7 @@ class Elimination:
 
 @dataclass(frozen=True, slots=True)
 class Waves:
-    """Fundamental functions of one dispersion at one length, which are generators of a program.
-
-    Their arguments are steps of the same program, and come before them.
-    """
+    """Fundamental functions of one dispersion at one length, whose arguments are earlier steps."""
 
     # Position of every generator with the order of the derivative, or ``EXPONENTIAL``.
     generators: tuple[tuple[int, int], ...]

@@ -318,10 +318,7 @@ class AxisNewton:
             self._goal = arb(10) ** -(digits + 2)
 
     def frequency(self, source: AxisFunction, guess: float) -> arb | None:
-        """Return abs(s) of the root next to t, proved to be the only one in a small interval.
-
-        ``None`` where that is not proved.
-        """
+        """Return abs(s) of the root next to t, proved to be alone in a small interval, else ``None``."""
         t, known = self._approached(source, guess)
         while known >= LEAST_BITS:
             spend()

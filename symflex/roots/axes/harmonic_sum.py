@@ -107,10 +107,7 @@ class ArcSum:
         return min((_reach(abs(size.linear), abs(size.square)) for size in self._sizes), default=inf)
 
     def turn(self, radius: arb) -> arb:
-        """Return how far the argument turns on the arc of a radius: proved.
-
-        RootOnPathError where a root lies on the arc, or too close to it.
-        """
+        """Return how far the argument turns on the arc of a radius: proved, or RootOnPathError."""
         if self._power is not None:
             return self._power * arb.pi() / 4
         return _Arc(self.terms, self._sizes, radius).turn_between(0.0, 1.0)
@@ -216,10 +213,7 @@ class _Arc:
         return bool(total < OUTWEIGHED * own)
 
     def _turn(self, start: float, end: float, largest: int, turned: arb) -> arb:
-        """Return how far the argument turns where the sum over one exponential has turned about so far.
-
-        What that leaves of their ratio keeps to the right of 0.
-        """
+        """Return how far the argument turns where the sum over one exponential turns about so far."""
         term, here, there = self._terms[largest], self._point(start), self._point(end)
         ratio = self._ratio_at(end, largest) / self._ratio_at(start, largest) / acb(0, turned).exp()
         exponent = term.linear * (there - here) + term.square * (there * there - here * here)
@@ -292,10 +286,7 @@ class LosslessFunction:
     enclosures: Enclosures  # what terms are made of
 
     def on_axis(self, number: int, axis: int) -> AxisFunction | None:
-        """Return one factor, divided by what grows fastest, as a real function on an axis.
-
-        ``None`` if it is not real there.
-        """
+        """Return one factor over what grows fastest, as a real function on an axis; ``None`` if not real."""
         degrees = self.enclosures.degrees
         waves = self.factors[number][0].turned(UNITS[axis], degrees).waves(len(degrees))
         if waves is None:
@@ -312,10 +303,7 @@ class LosslessFunction:
         return float(square), float(linear)
 
     def turn(self, z: float) -> arb:
-        """Return how far arg of the function turns from s = exp(z) to j exp(z), on an arc about 0: proved.
-
-        RootOnPathError where a root lies on the arc, or too close to it.
-        """
+        """Return how far arg of the function turns from s = exp(z) to j exp(z) about 0: proved."""
         with precision(FLOAT_BITS):
             radius = (arb(z) / 2).exp()
             return sum((exponent * terms.turn(radius) for terms, exponent in self._sums), arb(0))
@@ -357,10 +345,7 @@ def _arc_term(exponent: Exponent, amplitude: Amplitude, numbers: Enclosures) -> 
 
 
 def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction | None:
-    """Return a function as one of x, ``None`` where there is damping, delays or waves of another law.
-
-    ``bits`` are the precision of its numbers; up to this it can be evaluated.
-    """
+    """Return a function as one of x, with numbers of so many bits; ``None`` with damping or several laws."""
     exponentials = function.exponentials
     if exponentials is None:
         return None

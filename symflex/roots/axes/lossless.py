@@ -108,10 +108,7 @@ class LosslessSearch:
         return self._factors_on(REAL) + self._factors_on(IMAGINARY)
 
     def count(self, z: float) -> int:
-        """Return the number of roots with ln(abs(s)) below ``z``, without those at 0: proved.
-
-        RootOnPathError where a root lies on the circle, or too close to it.
-        """
+        """Return the number of roots with ln(abs(s)) below ``z`` but for those at 0: proved."""
         turn = self.function.turn(z)
         with precision(COUNT_BITS):
             quarters = turn / (arb.pi() / 2)

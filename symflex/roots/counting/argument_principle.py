@@ -84,10 +84,7 @@ class CertifiedWinding(Winding[E_co]):
         self._series = SeriesSteps(function)
 
     def count(self, cell: Cell) -> int:
-        """Return the number of roots in a cell, with multiplicity: proved.
-
-        RootOnPathError where a root lies on the cell's boundary, or too close to it.
-        """
+        """Return the number of roots in a cell, with multiplicity: proved, or RootOnPathError."""
         smallest = max(SMALLEST, 1e-9 * cell.size)
         with precision(BITS):
             total = sum((self.certified_turn(start, end, smallest) for start, end in cell.edges), arb(0))
@@ -124,10 +121,7 @@ class CertifiedWinding(Winding[E_co]):
             return _whole(turn / _angle(left))
 
     def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:
-        """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z.
-
-        RootOnPathError when steps would become smaller than ``smallest``.
-        """
+        """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z."""
         if (end, start) in self._turns:
             return -self._turns[end, start]
         if (start, end) not in self._turns:

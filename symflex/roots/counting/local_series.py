@@ -46,10 +46,7 @@ class LocalSeries:
     bound: arb  # at least abs(F) on that disc's circle
 
     def count(self, radius: arb) -> int | None:
-        """Return how many roots are closer to the centre than an exact radius [rad/s] below the reach.
-
-        ``None`` where no term outweighs all others.
-        """
+        """Return how many roots are closer to the centre than a radius [rad/s]; ``None`` if not known."""
         share = radius / self.reach
         if not share < 1:
             return None
@@ -63,10 +60,7 @@ class LocalSeries:
         return largest if sizes[largest] > others else None
 
     def around(self, centre: acb, radius: arb) -> tuple[tuple[acb, ...], arb] | None:
-        """Return a polynomial's coefficients about another point, and what it may miss closer than a radius.
-
-        ``None`` where the radius goes beyond the reach.
-        """
+        """Return coefficients about another point, and what they miss in a radius, ``None`` beyond reach."""
         off = centre - self.centre
         share = (off.abs_upper() + radius).upper() / self.reach
         if not share < 1:

@@ -117,10 +117,7 @@ class Winding(Generic[F_co]):
         self._edges: dict[tuple[complex, complex], float] = {}
 
     def spend(self) -> None:
-        """Go on if the work and the time allow it.
-
-        SF505 when the search has become too long and no time was given, SF506 when that is over.
-        """
+        """Go on if the work and the time allow it; else SF505, or SF506 if a time was given."""
         spend()
         if not entered_budget().is_timed and self.function.work > WORK_LIMIT:
             raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
@@ -180,10 +177,7 @@ class Winding(Generic[F_co]):
         return z
 
     def turn(self, start: complex, end: complex, smallest: float = SMALLEST_STEP) -> float:
-        """Return the change of the argument [rad] from ``start`` straight to ``end``.
-
-        RootOnPathError when steps would become smaller than ``smallest``.
-        """
+        """Return the change of the argument [rad] from ``start`` straight to ``end``."""
         if (end, start) in self._edges:
             return -self._edges[end, start]
         if (start, end) not in self._edges:
@@ -204,10 +198,7 @@ class Winding(Generic[F_co]):
         return self._edges[start, end]
 
     def count(self, cell: Cell) -> int:
-        """Return the number of roots in a cell, with multiplicity.
-
-        RootOnPathError where a root lies on the cell's boundary, or too close to it.
-        """
+        """Return the number of roots in a cell, with multiplicity; else RootOnPathError."""
         smallest = max(SMALLEST_STEP, 1e-7 * cell.size)
         turns = sum(self.turn(start, end, smallest) for start, end in cell.edges) / (2 * pi)
         if abs(turns - round(turns)) > NEARLY_WHOLE:

@@ -53,10 +53,7 @@ Terms = dict[Exponent, dict[Fraction, acb]]
 
 @dataclass(frozen=True, slots=True)
 class _Power:
-    """``s^power`` times a number.
-
-    A delay's exponent never grows in the right half-plane, which rounding at a right angle would hide.
-    """
+    """``s^power`` times a number; a delay's exponent never grows on the right, which rounding would hide."""
 
     power: Fraction
     unit: acb
@@ -211,10 +208,7 @@ def _over(
 
 
 def _faded(exponent: Exponent, arguments: Sequence[_Power], radius: arb) -> tuple[arb, arb] | None:
-    """Return an exponential's size at a radius, and the slope of its logarithm over that of abs(s), at most.
-
-    None where it may grow.
-    """
+    """Return an exponential's size and the slope of its logarithm over ln(abs(s)); None if it may grow."""
     total, slope = arb(0), arb(0)
     rates: dict[Fraction, arb] = {}
     for i, a, b in exponent:
@@ -276,10 +270,7 @@ class _SumFarOut:
     sheets: int = 1  # q of a function of ``s^(1/q)``, in whose sectors lower powers than that decay
 
     def dominant_terms(self, radius: float) -> tuple[list[_Power], list[_Dominant]] | None:
-        """Return the arguments, and per sector the term that outweighs all others from a radius on.
-
-        None where there is no such term in one of them; where there are, there is no root.
-        """
+        """Return, per sector, the term that outweighs all others from a radius on, else None."""
         powers = self.powers(radius)
         if powers is None:
             return None
@@ -384,10 +375,7 @@ class _SumFarOut:
 
 
 def _turned(arguments: Sequence[_Power], sector: int) -> list[_Power]:
-    """Return powers of s as powers of abs(s), in one sector from the real axis on.
-
-    Amplitudes need not be turned: what has the same power of s turns alike, and only sizes are compared.
-    """
+    """Return powers of s as powers of abs(s) in one sector; what has the same power turns alike."""
     step = arb.pi() / (2 * SECTORS)
     turn = acb(0, (step * sector).union(step * (sector + 1)))
     return [
@@ -477,10 +465,7 @@ def axis_tail(bound: BoundTransferFunction, part: Factored, start: float) -> flo
 
 
 def _is_mirrored(bound: BoundTransferFunction, factor: fmpz_mpoly) -> bool:
-    """Tell whether a polynomial in kernels stays the same, but for a unit, if a wavenumber turns.
-
-    On the axis each is real or conjugate to what it then is: ``-k``, or ``-j mu`` in bending.
-    """
+    """Tell whether a polynomial in kernels stays the same, but for a unit, if a wavenumber turns."""
     index, kernels = bound.ratio.ring.index, bound.kernels.kernels
     terms = dict(terms_of(factor))
     for name in bound.kernels.wavenumbers:
@@ -604,10 +589,7 @@ def _fastest(
     sizes: Sequence[_Power],
     radius: float,
 ) -> tuple[list[tuple[dict[int, int], acb]], arb] | None:
-    """Return how large those terms are, by their phases, that grow the fastest, and all others at most.
-
-    All are divided by these and their highest power; None where others grow as fast.
-    """
+    """Return sizes of the terms that grow fastest, by phase, and of the others; None without such terms."""
 
     def rate(growth: Exponent) -> float:
         each = (sizes[i].unit.real * g * arb(radius) ** ball(sizes[i].power) for i, g, _ in growth)

@@ -63,10 +63,7 @@ class Count:
         return self.left if self.winding.function.is_paired else inf
 
     def within(self, z: float) -> int:
-        """Return how many roots lie within exp(z), those at 0 included.
-
-        RootOnPathError where a root lies on the circle, or too close to it.
-        """
+        """Return how many roots lie within exp(z), those at 0 included; else RootOnPathError."""
         if self.lossless is not None:
             return self.lossless.count(z) + self.order
         return self.winding.count_within(z, self.left)
@@ -185,10 +182,7 @@ def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
 
 
 def parts(domain: Cell, left: float, holes: Sequence[Cell]) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
-    """Return the cells that were searched, and the holes in them, mirror images included.
-
-    ``left`` is that of :func:`is_whole_ring`.
-    """
+    """Return the cells that were searched, and the holes in them, mirror images included."""
     if is_whole_ring(domain, left, holes):
         cell = Cell(domain.low, domain.high, -pi, pi)
         met = [h for h in holes if h.low < cell.high and h.high > cell.low]
@@ -238,10 +232,7 @@ def _is_between(cell: Cell, root: Root) -> bool | None:
 
 
 def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:
-    """Return ln(abs(s)) and arg(s) between which a band or rectangle lies, folded into the upper half-plane.
-
-    Roots of even functions mirror each other in the imaginary axis too. TypeError for any other region.
-    """
+    """Return the ln(abs(s)) and arg(s) that bound a band or rectangle in the upper half-plane."""
     match region:
         case Band(low, high):
             return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi

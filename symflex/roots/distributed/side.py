@@ -229,10 +229,7 @@ class Side:
         return None
 
     def _is_sparse(self, high: float) -> bool:
-        """Tell whether a whole disc contains so few roots that it is searched rather than a part of it.
-
-        Close to 0, where functions with kernels are differences of large terms, paths are hard to follow.
-        """
+        """Tell whether a whole disc has so few roots that it is searched rather than a part of it."""
         try:
             return self._count.within(high + WIDER) <= FEW * self.function.power
         except RootOnPathError:

@@ -93,7 +93,4 @@ class Entire(Followed, Protocol):
         """Tell whether the function has no pole on a ball."""
 
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
-        """Return how far the argument may turn on a ball, and its turn from a point to another.
-
-        ``None`` of what is no sum of exponentials.
-        """
+        """Return how far the argument may turn on a ball, and its turn between points, else ``None``."""

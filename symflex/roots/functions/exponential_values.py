@@ -36,10 +36,7 @@ Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]
 
 
 def exponential_sums(value: Factored, table: KernelTable) -> Summed | None:
-    """Return the arguments of exponentials, and the factors of a product as sums of these.
-
-    None where a wavenumber has no formula, or for long sums.
-    """
+    """Return arguments of exponentials, and factors as sums of these; None without formula, or if long."""
     arguments = arguments_of(table)
     if arguments is None:
         return None
@@ -104,10 +101,7 @@ class ExponentialValues:
         return tuple(self.evaluator.value(a.length, values) for a in self.arguments)
 
     def at(self, s: Value, near: Place | None = None) -> Place:
-        """Return what sums are made of at a point or on a ball, or as series about these.
-
-        Near a ball that holds s, wavenumbers take the same branch as there.
-        """
+        """Return what sums are made of at a point or ball, or as series, on the branch of ``near``."""
         values = self.evaluator.generators_at(s, None if near is None else near.values)
         arguments = []
         for argument, length in zip(self.arguments, self.lengths, strict=True):

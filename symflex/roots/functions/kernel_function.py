@@ -181,10 +181,7 @@ class KernelFunction:
             return self._factors(s, bits)
 
     def enclosed_about(self, ball: acb, centre: acb, bits: int) -> list[FactorBall]:
-        """Return balls around values at an exact point, and around derivatives on a ball that holds it.
-
-        Both are of the same branch of the wavenumbers.
-        """
+        """Return balls around values at a point, and derivatives on a ball that holds it: one branch."""
         self._spend(bits)
         with precision(bits):
             values = self._evaluator(bits)
@@ -452,10 +449,7 @@ def _spectral_size(coefficients: Sequence[acb]) -> acb:
 
 
 def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
-    """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels.
-
-    Exponential kernels by themselves have no roots and are left out of both, as is what does not depend on s.
-    """
+    """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels."""
     ring = value.ring
     varying = [0] + [
         ring.index[name]
@@ -484,10 +478,7 @@ ROOM = 1.5
 
 
 def deviation(values: acb) -> float:
-    """Return how far the argument may turn from the middle of a ball of values [rad].
-
-    Half a turn and more stands for what may wind about 0; infinite where nothing is known.
-    """
+    """Return how far the argument may turn from the middle of a ball [rad], infinite if not known."""
     if not values.is_finite():
         return inf
     middle = values.mid()

@@ -72,10 +72,7 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
 
 
 def _without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction:
-    """Return the function with numbers for waves that do not depend on s: of members without mass.
-
-    What flows one way, as in a heat exchanger, keeps its delay.
-    """
+    """Return the function with numbers for waves of massless members; what flows one way keeps its delay."""
     ring, table = bound.ratio.ring, bound.kernels
     still = [
         law for law in table.dispersions if law.characteristic and not any(map(_has_s, law.characteristic))

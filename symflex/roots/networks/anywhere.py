@@ -44,10 +44,7 @@ class DiscRoots:
 def roots_in_disc(
     cramer: CramerEquations, region: Region, digits: int, *, symmetric: tuple[bool, bool]
 ) -> DiscRoots:
-    """Return all roots in a disc that contains what the region asks for.
-
-    UndecidedError where they are not all proved; EssentialSingularityError where roots accumulate.
-    """
+    """Return all roots in a disc that contains what the region asks for; UndecidedError if not proved."""
     search = DiscSearch(cramer, digits, symmetric, most_zeros=most_zeros(cramer))
     match region:
         case Band(_, high):

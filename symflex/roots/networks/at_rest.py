@@ -51,11 +51,7 @@ def _place_constants(cramer: CramerEquations, point: dict[str, int]) -> bool:
 
 
 def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
-    """Return to which order the determinant of the first rows and columns vanishes at s = 0.
-
-    ``least`` is about what it is. ``None`` where that cannot be told: members on a foundation have waves
-    at rest.
-    """
+    """Return the order of a determinant at s = 0, about ``least``; ``None`` with waves at rest."""
     field = TaylorField(SPARE_TERMS + 2 * least, PRIME)
     values = _series(cramer, field)
     if values is None:

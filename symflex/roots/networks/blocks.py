@@ -87,10 +87,7 @@ def _is_of_member(cramer: CramerEquations, rows: Sequence[int], columns: Sequenc
 
 
 def _degree(cramer: CramerEquations, value: Factored, *, is_alone: bool) -> int | None:
-    """Return the degree of an entry in s, or ``None`` of one that is no polynomial.
-
-    Delays alone in a block are left out, as they vanish nowhere.
-    """
+    """Return the degree of an entry in s, but for delays alone; ``None`` of one that is no polynomial."""
     names = value.ring.names
     delays = {n for n, waves in cramer.numeric.waves_of.items() if waves.orders[n] == EXPONENTIAL}
     total = 0

@@ -50,10 +50,7 @@ class Counter:
         return elimination_order(network.size, pairs)
 
     def sample(self, value: arb, bits: int) -> NetworkSample:
-        """Return the network at an exact real lambda, computed with at least so many bits.
-
-        UndecidedError at an eigenvalue, or too close to one.
-        """
+        """Return the network at an exact real lambda, with at least so many bits; else UndecidedError."""
         return settled(lambda: self.level(current_bits()).sample(value), bits)
 
     def level(self, bits: int) -> Level:
@@ -130,10 +127,7 @@ def _turn(direction: Sequence[arb]) -> arb_mat | None:
 
 
 def add_member(rows: Rows, ends: Sequence[int | None], blocks: Sequence[Sequence[Sequence[arb]]]) -> None:
-    """Add the stiffness of a member to the rows of what moves its ends.
-
-    ``blocks`` are those at the start, across and at the end.
-    """
+    """Add the stiffness of a member, at the start, across and at the end, to what moves its ends."""
     half = len(ends) // 2
     for first, second, block in zip((0, 0, half), (0, half, half), blocks, strict=True):
         for a in range(half):

@@ -92,10 +92,7 @@ class CramerEquations:
     # -------------------------------------------------------------------------------- values at points
 
     def at(self, s: acb, bits: int) -> CramerValue:
-        """Return numerator and denominator at an exact s, computed with at least so many bits.
-
-        UndecidedError where the equations are singular.
-        """
+        """Return numerator and denominator at an exact s, with at least so many bits, else UndecidedError."""
         return settled(lambda: self._at(s), max(bits, self._least_bits))
 
     def _at(self, s: acb) -> CramerValue:
@@ -116,10 +113,7 @@ class CramerEquations:
         return [{j: number(c) for j, c in row.items()} for row in self.entries]
 
     def _eliminated(self, rows: list[dict[int, acb]], size: int) -> tuple[acb, acb]:
-        """Return the determinant of so many rows and columns, and what is left of the entry after the last.
-
-        It goes by the pivots that served last, else by others.
-        """
+        """Return the determinant of so many rows and columns, and what is left of the entry after them."""
         order, bits = self._orders.get(size, (None, 0))
         if order is not None:
             try:
@@ -146,10 +140,7 @@ class CramerEquations:
     # -------------------------------------------------------------------------------- bounds in discs
 
     def bounds(self, radius: float) -> tuple[float, float]:
-        """Return ln of bounds on abs(den) and abs(num) for abs(s) up to a radius [rad/s].
-
-        EssentialSingularityError where a denominator may vanish there.
-        """
+        """Return ln of bounds on abs(den) and abs(num) for abs(s) up to a radius [rad/s], if they exist."""
         with precision(64):
             bound = Majorants(self.numeric, arb(radius))
             sizes = [{j: bound(c) for j, c in row.items()} for row in self.entries]
@@ -213,11 +204,7 @@ def _log(value: arb) -> float:
 
 
 def _hadamard(rows: Sequence[Mapping[int, arb]], size: int) -> float:
-    """Return ln of a bound on a determinant from bounds on its entries.
-
-    Columns are scaled so that the product of the rows' lengths is about as small as it gets: any scaling
-    gives a bound.
-    """
+    """Return ln of a bound on a determinant from bounds on its entries, whose columns are scaled first."""
     places = [
         (i, j, _log(x)) for i, row in enumerate(rows) for j, x in row.items() if j < size and not x == 0
     ]

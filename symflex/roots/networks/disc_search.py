@@ -122,10 +122,7 @@ class DiscSearch:
     _lost: int = 0  # bits that elimination lost where it lost most
 
     def radius_of(self, count: int) -> float:
-        """Return the radius [rad/s] of a disc that contains about so many roots of either function.
-
-        Less where roots accumulate before, and where one has many more than the other.
-        """
+        """Return the radius [rad/s] of a disc with about so many roots, less where roots accumulate."""
         high = 1.0
         while high > SMALLEST and self._holds(high, count):
             high /= 4
@@ -215,10 +212,7 @@ class DiscSearch:
         raise UndecidedError
 
     def series(self, radius: float) -> tuple[DiscSeries, DiscSeries]:
-        """Return denominator and numerator in a disc about 0, whose roots nobody asks for.
-
-        EssentialSingularityError where roots accumulate in it.
-        """
+        """Return denominator and numerator in a disc about 0, whose roots nobody asks for."""
         return next(self._sampled(radius))
 
     def _sides(self, radius: float) -> tuple[DiscSide, DiscSide]:
@@ -299,10 +293,7 @@ class DiscSearch:
 
 
 def enclosed_roots(series: DiscSeries, at_zero: int, *, is_even: bool = False) -> list[tuple[acb, int]]:
-    """Return boxes about the roots in the disc but for those at 0, and how many each holds: proved.
-
-    One of those that mirror each other. They may be fewer than the disc contains.
-    """
+    """Return boxes about roots but 0, one of those that mirror each other, with counts: proved."""
     boxes: list[tuple[acb, int]] = []
     left: list[acb] = []
     for guess in series.approximate(at_zero, is_even=is_even):
@@ -372,10 +363,7 @@ def circle_values(
 
 
 def _parities(right: CramerValue, left: CramerValue) -> tuple[int, int] | None:
-    """Return 1 for an even function and -1 for an odd one, from values at r and -r: they are either.
-
-    ``None`` where values do not tell.
-    """
+    """Return 1 for an even function, -1 for an odd one, by values at r and -r; ``None`` if not known."""
     signs = []
     for a, b in ((right.den, left.den), (right.num, left.num)):
         if a.overlaps(b) == a.overlaps(-b):

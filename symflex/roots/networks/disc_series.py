@@ -53,10 +53,7 @@ class DiscSeries:
     def of(
         values: Sequence[acb], radius: arb, log_bound: float, ratio: float, bits: int, *, is_real: bool = True
     ) -> DiscSeries:
-        """Return the series from values at ``radius*exp(2 pi j k/n)``.
-
-        ``log_bound`` is ln of a bound on abs(f) within ratio times the radius.
-        """
+        """Return the series from values at ``radius*exp(2 pi j k/n)``, with ln of a bound on abs(f)."""
         n = len(values)
         with precision(bits):
             most, shrink = arb(log_bound).exp(), 1 / arb(ratio)
@@ -200,10 +197,7 @@ class DiscSeries:
         return next((k for k, c in enumerate(coefficients) if not c.contains(0)), len(coefficients))
 
     def approximate(self, at_zero: int, *, is_even: bool = False) -> list[acb]:
-        """Return approximations of the roots in the disc but for those at 0, from the inside outwards.
-
-        An even function's are sought in x squared. Empty where they are not told apart.
-        """
+        """Return approximations of roots but 0, from inside outwards; none where they are not separated."""
         with precision(self.bits):
             first, *others = (c.mid() for c in self.polynomial.coeffs()[at_zero :: 1 + is_even])
             # So slight a change splits roots that coincide exactly: none but simple ones are found.

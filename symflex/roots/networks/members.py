@@ -65,10 +65,7 @@ class MemberBalls:
     _pieces: dict[int, tuple[int, tuple[int, ...]]] = field(default_factory=dict, repr=False)
 
     def stiffness(self, value: arb) -> Stiffness:
-        """Return the dynamic stiffness at a real ``lambda`` [rad^2/s^2].
-
-        UndecidedError where the sign of a pivot is not decided, as at a frequency of the member itself.
-        """
+        """Return the stiffness at a real ``lambda`` [rad^2/s^2]; UndecidedError next to its frequency."""
         halvings, weights = self.cut(float(abs(value).upper()))
         n = len(self.constant)
         k = n // 2

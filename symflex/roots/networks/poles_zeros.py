@@ -114,10 +114,7 @@ class _Sought:
         return self.located(CRAMER, ((), (), ()), judge([], said), reasons=[reason], code=code)
 
     def without_losses(self, search: _NetworkSearch) -> PoleZeroMap:
-        """Count the poles, and the zeros where the output is what the input drives.
-
-        Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
-        """
+        """Count the poles, and the zeros if the output is what the input drives; else find all in a disc."""
         in_disc = None if search.network.is_colocated else self.in_disc(search.cramer)
         if in_disc is not None and in_disc.certificate.reason in (None, TOUCHING):
             return in_disc

@@ -62,11 +62,7 @@ class EigenvalueSearch:
     near_zero: arb = field(default_factory=arb)  # lambda below which these lie
 
     def count(self, sample: NetworkSample) -> int:
-        """Return the number of eigenvalues below, but for a constant; UndecidedError at one.
-
-        At an eigenvalue of the network held elsewhere, nothing is told either: what lies in an interval is
-        compared.
-        """
+        """Return the number of eigenvalues below, but for a constant; UndecidedError at one."""
         if not all(r > 0 or r < 0 for r in sample.receptances):
             raise UndecidedError
         if self.border is None:
@@ -109,10 +105,7 @@ class EigenvalueSearch:
         return sample
 
     def start(self, known: Callable[[int], int | None]) -> NetworkSample:
-        """Count the eigenvalues at 0 and about it; return a sample just above.
-
-        ``known`` returns how many are 0, given how many are about it; ``None`` where that is not told.
-        """
+        """Count the eigenvalues about 0, ``known`` of them at 0, and return a sample just above."""
         small = arb(LOWEST)
         for _ in range(ROUNDS_AT_REST):
             above, below = self.at(small, small), self.at(-small, small)

@@ -115,10 +115,7 @@ class LevelPolynomial:
         return centre, shifted
 
     def surround(self, centre: acb, count: int) -> Disc | None:
-        """Return a disc proved by Pellet's test to hold exactly ``count`` roots about a centre.
-
-        Source: Pellet (1881): abs(a_k) r^k > sum over i != k of abs(a_i) r^i.
-        """
+        """Return a disc proved by Pellet's test (1881) to hold exactly ``count`` roots about a centre."""
         centred = self._centred(centre, count)
         if centred is None:
             return None
@@ -143,11 +140,7 @@ def with_mirrors(discs: Sequence[Disc]) -> list[Disc]:
 
 
 def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
-    """Return the pairs of discs that are not proved disjoint.
-
-    Double precision clears the pairs that are far apart, with a margin that covers its rounding; balls
-    decide the others at the current precision.
-    """
+    """Return the pairs of discs that are not proved disjoint: by doubles if far apart, else by balls."""
     x = np.array([float(d.centre.real.mid()) for d in discs])
     y = np.array([float(d.centre.imag.mid()) for d in discs])
     r = np.array([float(d.radius.mid()) for d in discs]) * (1 + 1e-10)
