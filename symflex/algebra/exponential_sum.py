@@ -22,19 +22,15 @@ from symflex.algebra.dispersion import Kernel, KernelTable
 from symflex.algebra.factored import Factored
 from symflex.algebra.ring import Ring
 
-MOST_EXPONENTIALS = 1500
-"""Terms up to which a sum is written out: each is evaluated at every step of every path."""
+MOST_EXPONENTIALS = 1500  # of a sum that is written out: each is evaluated at every step of every path
 
 Gaussian = tuple[int, int]  # an integer a + j b
 Part = TypeVar("Part", int, Fraction)  # the type of a complex number's rational parts
-Exponent = tuple[tuple[int, int, int], ...]
-"""Positions of arguments, ascending, and what each is multiplied with: a + j b."""
-Monomial = tuple[tuple[int, int], ...]
-"""Positions of generators, ascending, and exponents; the first generator is s, or what stands for it."""
+Exponent = tuple[tuple[int, int, int], ...]  # positions of arguments, ascending, and their factors a + j b
+Monomial = tuple[tuple[int, int], ...]  # positions of generators, ascending, with exponents; s comes first
 Amplitude = dict[Monomial, Gaussian]
 Multiples = tuple[int, ...]  # one integer for each argument
-Polynomial = dict[int, dict[Monomial, int]]
-"""Per power of the first generator and monomial of the others, counted from 0, a number."""
+Polynomial = dict[int, dict[Monomial, int]]  # a number per power of the first generator and monomial
 Combination = tuple[tuple[int, acb], ...]  # positions of arguments, and what they are multiplied with
 REAL: Exponent = ()  # the exponent 0
 

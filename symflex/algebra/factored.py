@@ -288,8 +288,7 @@ def _merge(
     return tuple((f, e) for f, e in merged if e)
 
 
-PRIME = 2**61 - 1
-"""A Mersenne prime; a nonzero polynomial of degree d vanishes at a random point with odds d/PRIME."""
+PRIME = 2**61 - 1  # Mersenne's; a polynomial of degree d vanishes at a random point with odds d/PRIME
 
 
 def random_point(names: Sequence[str]) -> dict[str, int]:

@@ -31,8 +31,7 @@ from typing import Any
 
 import numpy as np
 
-Values = Any
-"""A number, an array of numbers, or a list of these: what numpy calculates with, one way for all."""
+Values = Any  # a number, an array of numbers, or a list of these: what numpy calculates with
 
 
 def network_value(entries: list[Values], network: Values, output: int, source: int) -> Values:

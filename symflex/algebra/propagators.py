@@ -23,8 +23,7 @@ from symflex.algebra.factored import Factored, common_denominator, random_point,
 from symflex.algebra.ring import Ring
 
 MULTIPLE_LIMIT = 12  # lengths that are longer sums of base lengths keep kernels of their own
-SUM_LIMIT = 7
-"""So do lengths of several beams whose sum is more, as 3:7: with a common base formulas are of pages."""
+SUM_LIMIT = 7  # lengths whose sum is more, as 3:7, have no common base either: formulas would be pages
 EXPONENTIAL = -1  # the order under which exp(-shift*length) is listed
 
 

@@ -26,10 +26,8 @@ from symflex.algebra.factored import PRIME, Factored, residue
 from symflex.algebra.ring import Ring, by_powers, coefficients_of, degree_in
 from symflex.budget import spend
 
-TRIES = 2_000
-"""Primes, and numbers in place of parameters, that are tried until all radicands are squares."""
-SQUARES_SEEN = 40
-"""Points at which a radicand is a square until it is taken for one: it is none with odds ``2^-40``."""
+TRIES = 2_000  # primes, and numbers for parameters, that are tried until all radicands are squares
+SQUARES_SEEN = 40  # points at which a radicand is a square until it is taken for one: odds 2^-40
 
 NEW = -1  # stands for the position of a root that is no generator
 

@@ -26,8 +26,7 @@ MEMORY_LIMIT = 100_000_000  # bytes an expansion or elimination may take
 COEFFICIENT_BYTES = 8
 FEW = 16  # how large coefficients may be that do not spoil a count of terms much
 MANY = 5_000  # terms that are not counted one by one
-SPARSE_BYTES = 1_000
-"""What a term of a sparse polynomial counts for: it takes less memory, but its products take long."""
+SPARSE_BYTES = 1_000  # what a sparse term counts for: less memory, but its products take long
 
 
 @dataclass(frozen=True)

@@ -48,15 +48,11 @@ Matrix = list[list[Polynomial]]  # entries as polynomials in u
 GUARD = 32  # bits beyond those asked for: products of a few dozen steps round a few hundred times
 BEYOND = 32  # polynomials in u are bounded on a disc so many times larger than what they are used on
 FEWEST_BITS = 30  # precision of orders in u that hardly matter
-ASIDE = 1 / 16
-"""Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
-CUTS = 4
-"""Parts of an octave: a quarter more in abs(u) costs some two bits, far fewer than are kept to spare."""
+ASIDE = 1 / 16  # share of abs(u) by which a polynomial's error is bounded beyond it, for derivatives
+CUTS = 4  # parts of an octave: a quarter more in abs(u) costs two bits, far fewer than there are to spare
 HIGHEST_CUT = 1000  # power of two of abs(u) beyond which bounds come near the end of doubles
-WIDE = 2.0**-30
-"""Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
-TINY = 2.0**-200
-"""Share of the largest abs(u), of which a smaller one is not distinguished where much is left to spare."""
+WIDE = 2.0**-30  # relative radius of balls about whose middle a polynomial is expanded
+TINY = 2.0**-200  # share of the largest abs(u) below which sizes are not distinguished
 MOST_MEMORY = 4e9  # bytes of all steps: a library that asks for more than there is ends the process
 SMALL = 2.0**-10  # share of what a value moves by on a ball, that may be left out of its series
 

@@ -25,33 +25,25 @@ from symflex.balls import precision
 
 Weights = tuple[arb, ...]  # powers of two by which states are scaled
 
-BALANCINGS = 60
-"""Rounds of balancing the states: of four in a circle each leaves half of what is out of balance."""
+BALANCINGS = 60  # rounds of balancing the states: of four in a circle each leaves half of what is off
 BALANCED = 0.1  # bits by which rows and columns may differ
 SHARE = 4  # the radius on which coefficients are bounded, over the length of a step
-FIRST_SHARE = 6
-"""The same of a first step from a start where they have poles; solutions are bounded on half of it."""
+FIRST_SHARE = 6  # the same from a start where they have poles; half of it has bounded solutions
 SHORTEST = 1e-5  # share of the whole below which the radius of a step means that there is a singularity
 ROUNDING = 2.0**-50  # rounding of a position in doubles: a singularity at an end is met then, too
-MOST_STEPS = 1000
-"""Ten times those of a thousand modes, and more than coefficients need that anyone means."""
+MOST_STEPS = 1000  # ten times those of a thousand modes, and more than any coefficients need
 HALVINGS = 40  # halvings of an interval in which a singularity lies: it is located to six digits
 LAST = 1.2  # a step may be so much longer than others if it is the last
-RADII = tuple(4.0 * 0.8**k for k in range(80))
-"""Radii that are tried about a point, in lengths of the whole; the least is 1e-7 of it."""
-BOUNDED = 4
-"""Parts of a step on each of which coefficients are bounded: on the whole they would be a quarter larger."""
+RADII = tuple(4.0 * 0.8**k for k in range(80))  # tried about a point, in lengths of the whole, to 1e-7
+BOUNDED = 4  # parts of a step on each of which coefficients are bounded: on all a quarter larger
 SAMPLES = 8  # points at which the growth along x is sampled where about what it is suffices
-MOST_TERMS = 1500
-"""Terms of the power series about a singular start: three times those of a hanging string's tenth mode."""
+MOST_TERMS = 1500  # of the power series about a singular start: 3 times a hanging string's 10th mode
 MOST_HALVINGS = 40  # halvings of the first step from a singular start
 BOUND_BITS = 64  # precision of bounds, which are added up and rounded up
 BITS_OF_E = 1.4426950408889634
-DIRECTIONS = (-1, 1, 1j)
-"""Directions of u in which solutions may grow least: as waves, decaying, and between."""
+DIRECTIONS = (-1, 1, 1j)  # of u in which solutions may grow least: as waves, decaying, and between
 HIGHEST = 1000.0  # power of two near the end of doubles
-APART = 300.0
-"""Bits by which weights differ at most: states that do not act on each other have none in common."""
+APART = 300.0  # bits by which weights differ at most: states without a common action have no ratio
 
 
 class SingularCoefficientError(ValueError):

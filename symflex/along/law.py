@@ -35,13 +35,11 @@ from symflex.model.linearity import integer_exponent
 ELSEWHERE = acb(0.7, 1.3)  # a frequency like any other, at which coefficients have no pole in s
 TINY = 2.0**-30
 FEW_BITS = 30
-LINEAR = 2
-"""Powers of s less a pole's middle that are kept: what the next ones give is far smaller than its radius."""
+LINEAR = 2  # powers of s less a pole's middle that are kept: the next ones give far less than its radius
 LEAST = 2.0**-20  # relative radius on which an expansion is used at least, so that slopes are bounded
 ROOM = 2.0  # how much wider than a ball of s it may be within the disc on which an expansion is used
 Ends = tuple[arb, arb]
-Along = Any
-"""A value along x: a real power series about a point, or a complex ball. Their arithmetic is one."""
+Along = Any  # a value along x: a real power series, or a complex ball. Their arithmetic is one
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -27,10 +27,8 @@ if TYPE_CHECKING:
     from symflex.along.minors import Minor, MinorSums
 
 BUCKET = 64  # bits are rounded up to a multiple of this, so that few matrices are expanded
-FEWEST_BITS = 192
-"""Least precision of an expansion, which roots to 30 digits need; half of it saves a third of the time."""
-LOW = 8.0
-"""Power of e by which waves grow below which no expansion is made for a smaller s alone: some three modes."""
+FEWEST_BITS = 192  # least precision of an expansion, for roots of 30 digits; half saves a third of the time
+LOW = 8.0  # power of e of waves below which no expansion is made for a smaller s alone: some three modes
 BESIDE_MODES = 1  # half waves that motion of a body as a whole, and masses at ends, may take besides
 BEYOND_MODES = 1.2  # how far beyond the last root circles are drawn on which roots are counted [in s]
 FURTHER = 1.5
@@ -40,8 +38,7 @@ Each one that is made after others goes further by this once more, up to ``FURTH
 nobody announced is followed with few of them.
 """
 FURTHEST = 3
-HIGHEST_OCTAVE = 400
-"""Nobody asks for a frequency [rad/s] beyond this power of two, or below its inverse."""
+HIGHEST_OCTAVE = 400  # nobody asks for a frequency [rad/s] beyond this power of two, or its inverse
 PARTS = 4  # parts of an octave on which waves grow about equally far
 MORE_ORDERS = 6  # powers of s less the middle of a wide ball that are kept beyond those asked for
 NOWHERE = acb("nan", "nan")

@@ -21,8 +21,7 @@ from flint import acb, acb_poly, arb, arb_poly
 Place = tuple[int, int]  # row and column
 Polynomial = arb_poly | acb_poly
 Number = arb | acb
-Coefficients = dict[Place, Polynomial]
-"""Entries of a matrix that are not zero, as polynomials in x less the point of expansion."""
+Coefficients = dict[Place, Polynomial]  # entries that are not zero, in x less the expansion's point
 Lines = tuple[int, ...]  # rows or columns of a minor
 
 

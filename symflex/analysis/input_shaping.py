@@ -35,8 +35,7 @@ from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.shape/1"
 TOLERANCE = 0.05  # residual vibration V that an EI shaper allows: the usual one in its literature
-MORE_DIGITS = 24
-"""Digits of poles beyond those printed: responses to long inputs lose a few to each other."""
+MORE_DIGITS = 24  # digits of poles beyond those printed: responses to long inputs lose a few
 MORE_MODES = 8  # searched beyond those asked for, as some may not oscillate
 MOST_IMPULSES = 2187  # most impulses: those of seven modes with three each
 TEXT_DIGITS = 10
@@ -53,8 +52,7 @@ SHAPERS: Mapping[str, Callable[[arb], tuple[arb, ...]]] = {
     "zv": lambda k: (arb(1), k),
     "zvd": lambda k: (arb(1), 2 * k, k * k),
     "ei": _ei,
-}
-"""The sizes of the impulses of each kind beside one another, from K; half a period lies between two."""
+}  # sizes of impulses, half a period apart, of each kind, from K
 
 
 @dataclass(frozen=True, eq=False)

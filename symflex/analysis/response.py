@@ -97,8 +97,7 @@ def _phase_of(roots: Iterable[Root], omega: npt.NDArray[np.float64]) -> npt.NDAr
 
 
 LONGEST_STEP = 0.1
-SMALLEST_STEP = 1e-9
-"""Smallest step in ln(s): if a ball along it still contains zero, a root lies on the axis."""
+SMALLEST_STEP = 1e-9  # smallest step in ln(s): if a ball along it contains zero, a root lies on the axis
 DETOUR = 4.0  # width of the way around a root, in lengths of the step that meets it
 STEEPEST = 1e11  # slope of ln G over ln(s) from which on a frequency is as good as a root
 SHORTEST_SHARE = 1e-6
@@ -434,14 +433,11 @@ WIDEST_ANGLE = 0.94 * pi / 2
 POINTS_PER_DECADE = 6
 COARSE_STEPS = 3
 DEFAULT_BAND_HZ = (0.1, 10.0)
-WITHOUT_ROOTS = ("SF404", "SF505")
-"""Codes of searches that end without roots; where the time is over, that is said instead."""
-FOLLOWING_ERROR = 0.02
-"""Largest deviation of a squared value from its neighbours' product: a tenth of a decibel, half a degree."""
+WITHOUT_ROOTS = ("SF404", "SF505")  # searches without roots; where the time is over, that is said
+FOLLOWING_ERROR = 0.02  # of a squared value from its neighbours' product: 0.1 dB, half a degree
 FOLLOWING_ROUNDS = 12
 MOST_POINTS = 20_000
-BEYOND_LAST_POLE = 1.3
-"""A distributed system has further poles just above the last one found; no band ends nearer to a root."""
+BEYOND_LAST_POLE = 1.3  # further poles of a distributed system lie just above the last one found
 
 
 def default_band(*maps: PoleZeroMap) -> tuple[float, float]:

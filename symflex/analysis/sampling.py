@@ -52,12 +52,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 FIRST_DIGITS, LAST_DIGITS = 60, 4000
-TRIED_AT = acb(1.2345, 0.5432)
-"""The point at which a function of z is compared: a pole there is a rare accident."""
-GOOD_BITS = 110
-"""Precision of every coefficient: twice a double's, and room for what measures rounding to it."""
-NOTHING_BITS = 180
-"""A coefficient this many bits smaller than the largest counts as zero if its sign cannot be decided."""
+TRIED_AT = acb(1.2345, 0.5432)  # where a function of z is compared: a pole there is a rare accident
+GOOD_BITS = 110  # precision of every coefficient: twice a double's, and room to measure rounding to it
+NOTHING_BITS = 180  # a coefficient so many bits below the largest counts as zero if its sign stays open
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,8 +336,7 @@ MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found]]
     "zoh": _held,
     "tustin": _tustin,
     "matched": _matched,
-}
-"""One for every method of :class:`Sampling`."""
+}  # one for every method of :class:`Sampling`
 
 
 def delay_of(bound: BoundTransferFunction, sampling: Sampling) -> Fraction:

@@ -24,8 +24,7 @@ from flint import acb
 from symflex.balls.precision import UndecidedError
 from symflex.balls.values import balancing, binary_exponent
 
-THRESHOLD = -4
-"""log2 of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
+THRESHOLD = -4  # log2 of what a pivot must have of its column's largest entry
 CANDIDATES = 4  # columns with fewest entries that are looked at for a pivot
 PASSES = 4  # passes of balancing; units make rows differ by far more than any further pass would change
 ZERO, ONE = acb(0), acb(1)

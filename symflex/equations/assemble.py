@@ -72,8 +72,7 @@ if TYPE_CHECKING:
 
 Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 PI = "pi"
-GENERATOR_LIMIT = 1_000
-"""Names over a dense ring, whose monomials hold an exponent for each; a round number, not a measured one."""
+GENERATOR_LIMIT = 1_000  # names over a dense ring, with an exponent each per monomial; a round number
 UNKNOWN_LIMIT = 2_500
 """Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix, which
 is 50 MB of doubles."""

@@ -51,8 +51,7 @@ from symflex.model import ExactValue, FieldProblem, Model, PlacedElement
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import named_brackets
 
-POLYNOMIAL = -1
-"""The dispersion of field equations all of whose exponents are zero: their solutions need no kernel."""
+POLYNOMIAL = -1  # the dispersion of field equations whose exponents are zero: solutions need no kernel
 
 
 @dataclass(frozen=True, slots=True, eq=False)

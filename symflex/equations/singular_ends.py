@@ -25,8 +25,7 @@ from symflex.algebra.dispersion import SingularStart
 if TYPE_CHECKING:
     from symflex.library.partial_fractions import Matrix
 
-POWER_LIMIT = 64
-"""States that need a higher power of h meet an irregular point: powers would grow without end."""
+POWER_LIMIT = 64  # powers of h beyond which a point is irregular: they would grow without end
 
 
 BRACKETS = "write the equation with brackets, as (E*I*w'')'', so that forces and moments are its states"

@@ -136,8 +136,7 @@ def joined(intervals: list[arb]) -> tuple[arb, ...]:
 
 
 ORIGIN_BITS = 320
-SHARES = (1, 0.7, 0.5)
-"""Shares of a radius: functions are expanded about 0 up to the first for which they are bounded."""
+SHARES = (1, 0.7, 0.5)  # shares of a radius: functions are expanded about 0 up to the first that bounds them
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,7 @@ BITS = 128  # precision of gains and their limits
 SHRINKINGS = 30  # halvings of a disc about 0
 NOT_PROVED_AT_ZERO = "the motion of poles next to s = 0 is not proved"
 WIDER = 16.0  # by how much a disc about 0 is widened
-NEXT_TO_ZERO = 1e-6
-"""Share of the frequency of one wave at which the search for crossings begins, if 0 stays open."""
+NEXT_TO_ZERO = 1e-6  # share of the frequency of one wave at which crossings are sought if 0 stays open
 
 
 class OnAxis(Protocol):

@@ -26,10 +26,8 @@ from symflex.transfer import TransferFunction
 Point = tuple[float, float, float]  # two parameters in parts of their ranges, and a frequency [rad/s]
 LONGEST, SHORTEST = 1 / 64, 1e-6  # steps along a curve, in parts of the ranges
 BEND = 0.1  # part of a step by which a curve may leave its tangent
-NEWTON_STEPS, CONVERGED = 6, 1e-12
-"""Newton steps to a curve, and how long the last may be, in parts of the range and of the frequency."""
-RADIUS, ROOM = 1e-9, 100
-"""About a point, in parts of the range: there a root is certified; the frequency's radius may be wider."""
+NEWTON_STEPS, CONVERGED = 6, 1e-12  # Newton steps to a curve; the last step, in parts of the ranges
+RADIUS, ROOM = 1e-9, 100  # where a root is certified about a point, in parts of a range; of the frequency
 MOST_POINTS = 2000
 ALIKE = 0.05  # part by which frequencies of one curve at one place may differ
 

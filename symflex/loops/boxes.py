@@ -35,17 +35,14 @@ from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.of_model import derive_nameless
 
 BITS = 64  # precision of values on boxes, which are far wider
-LOWEST = 1e-6
-"""Radius from which one is sought beyond which no root lies in the right half-plane [rad/s]."""
+LOWEST = 1e-6  # radius from which one is sought beyond which no root is on the right [rad/s]
 OCTAVES = 24  # pieces of the axis at first, each half as high as the next; the lowest begins at 0
 NEARLY = 1 / 8  # share of a value that a box may leave and this still be as good as 0
 
 Ends = tuple[Fraction, Fraction]
 Box = tuple[Ends, ...]  # the ends of every parameter, in SI units
-Piece = tuple[Fraction, Fraction]
-"""A part of the imaginary axis, from a frequency to another [rad/s]; or of another path."""
-Line = tuple[arb, ...]
-"""A value in the middle of a box, and what each parameter adds between there and its upper end."""
+Piece = tuple[Fraction, Fraction]  # a part of the imaginary axis, in frequencies [rad/s]; or of another path
+Line = tuple[arb, ...]  # a value in the middle of a box, and what each parameter adds up to its upper end
 Path = tuple[complex, complex]  # where a straight path is at 0, and how far it goes for every 1
 AXIS: Path = (0j, 1j)
 

@@ -42,10 +42,8 @@ SHOWN = 12  # regions in print; the others are in the JSON
 SEARCH = 0.7  # share of the time for boxes; the rest is for counts of poles
 PARTS = 8  # parts of a box in either direction, its cells, that are decided by straight lines
 MOST_HALVINGS = 9  # halvings of each range: 4,096 cells along it
-SLENDER = 8
-"""How many times longer a box may be than wide, in parts of the ranges, where its other range is halved."""
-SMALLEST = 5e-4
-"""Share of the smallest region in which poles are counted; smaller ones are left undecided."""
+SLENDER = 8  # how many times longer than wide a box may be, in parts of ranges, until its length is halved
+SMALLEST = 5e-4  # share of the smallest region in which poles are counted; others stay undecided
 ROUNDING = 1e-12  # far more than doubles round of a few numbers of the size of one
 MIXED = -2  # mark of boxes whose cells differ
 COUNT_DIGITS = 10  # digits of poles of which only the number is asked for

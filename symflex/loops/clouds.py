@@ -38,10 +38,8 @@ if TYPE_CHECKING:
 
     Sides = tuple[float, float, float, float]
 
-LARGER = (1.05, 1.2, 1.5, 2.0, 3.0)
-"""Sizes of rectangles that are tried, times that to first order."""
-MOST_PARTS = 60
-"""Boxes of parameters on one edge after which a rectangle is not proved."""
+LARGER = (1.05, 1.2, 1.5, 2.0, 3.0)  # sizes of rectangles that are tried, times that to first order
+MOST_PARTS = 60  # boxes of parameters on one edge after which a rectangle is not proved
 PIECE = (Fraction(1), Fraction(2))
 
 

@@ -43,17 +43,14 @@ from symflex.transfer.enclose import first_order
 GainValue = Callable[[arb], arb_series]
 
 BITS = 128  # precision of gains and their limits
-OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)
-"""What is said where delayed terms leave poles without a bound."""
+OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)  # what is said where delayed terms leave poles without a bound
 HALVINGS = 12  # halvings of a range: its end is then known to a few hundredths of the nominal gain
 SLIVER = 40  # halvings of a range: what is left may be missing at an end of it
 WITHOUT_WAVES = 1e-6  # a frequency [rad/s] from which a radius is sought for polynomials in a root of s
 WAVES = 30.0  # largest argument of a kernel up to which poles are counted where no end is known
-ARCS, SHORTEST = 64, 1e-5
-"""Parts of a quarter of a circle, at first and at least, on which no pole is shown to lie."""
+ARCS, SHORTEST = 64, 1e-5  # parts of a quarter of a circle, at first and at least, shown free of poles
 COUNT_DIGITS = 12  # digits of poles of which only the side of the axis is asked for
-NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
-"""By which the outer circle is moved when it meets a pole [in ln]."""
+NUDGES = (0.0, 0.0137, 0.0291, 0.0531)  # shifts of the outer circle when it meets a pole [in ln]
 
 
 @dataclass

@@ -33,8 +33,7 @@ MOST_INTERVALS = 4_000
 """Intervals in each part of a range, whose ends have that ratio, so that none is a short number; what is left
 is undecided."""
 ZERO = Fraction(0)
-RANGE_OF_NOMINAL = 100
-"""How many times the nominal gain is examined where there may be boundaries without end."""
+RANGE_OF_NOMINAL = 100  # times of the nominal gain examined if there may be boundaries without end
 INSIDE = 16  # gains that are tried where the declared one is not in the range
 SHORT = 10**6  # denominator of an end of the domain that is a short number
 EDGE_BITS = 128

@@ -35,16 +35,13 @@ STEPS = 120  # gains in all, close at the beginning: a step is then 10 % longer 
 FIRST_SHARE = 1e-5  # the first step, of the whole range
 NEWTON_STEPS = 25
 CONVERGED = 1e-12
-FAREST = 0.05
-"""How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
+FAREST = 0.05  # how far a pole may move in a step, relative to its size or that of the largest at first
 BEND = 0.2  # how far a curve may turn from step to step [rad]
 SHORTEST = 0.004  # steps shorter than this, relative to the same, may turn as they will
 HALVINGS = 9
-WIDER = (1.4, 1.15, 1.02)
-"""Than all poles that are marked, a disc in which those of a network are followed."""
+WIDER = (1.4, 1.15, 1.02)  # than all poles marked, a disc in which those of a network are followed
 TURNS = (0.3, 1.9, 3.4, 5.0)
-PARTING = (2e-2, 6e-4, 2e-5)
-"""How far away poles that part are sought, relative to the largest at the first gain; double ones nearer."""
+PARTING = (2e-2, 6e-4, 2e-5)  # how far away poles that part are sought, relative to the largest at first
 TOUCHING = 1e-7
 ORIGIN_BITS = 256
 ENDS_AGREE = 1e-6

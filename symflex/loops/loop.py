@@ -23,8 +23,7 @@ from symflex.model import Model, ModelParameter
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.bind import values_for
 
-TRIALS = ("1", "2", "0.37")
-"""Values of a gain without one, for which the other parameters are bound; one is not a singular case."""
+TRIALS = ("1", "2", "0.37")  # values of a gain without one, to bind other parameters; one is not singular
 NO_LOOP = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
 """Hint where a parameter moves no pole."""
 

@@ -48,8 +48,7 @@ DEFAULT_MODES = 5  # which the disc contains where no frequency is given
 DIGITS = 15  # of poles that are marked in figures
 LOOP_GAIN_BITS = 64  # of values that are drawn
 WIDER = 1.05  # radius of the disc of series over the frequency up to which poles are searched
-SHARES = (0.999, 0.993, 0.98, 0.965, 0.955)
-"""Shares of that radius: on circles of these poles are counted if one lies on the outermost."""
+SHARES = (0.999, 0.993, 0.98, 0.965, 0.955)  # of that radius: circles on which poles are counted in turn
 BEYOND = "poles of a network are counted in a disc"
 
 

@@ -41,16 +41,11 @@ if TYPE_CHECKING:
     from symflex.transfer import Given
 
 Interval = tuple[Ends, PoleCount]
-WIDER, WIDER_PART = 10, 2
-"""How many times its value a parameter of signals, or of parts, may have if no range is given."""
-SLIVER = 64
-"""Parts as narrow as the digits, up to which what lies between two boundaries is left to them."""
-LEAST = 10**6
-"""Part of the range to which values about zero are enclosed."""
-ABOUT = 4
-"""How many times its width a gap is widened to each side for a proof that one pair crosses in it."""
-MOST_GAPS = 1000
-"""Open parts side by side beyond which they are not halved: a pole touches the axis there, or stays on it."""
+WIDER, WIDER_PART = 10, 2  # times of its value that a parameter, of signals or of parts, may have by default
+SLIVER = 64  # parts as narrow as the digits, up to which what lies between two boundaries is theirs
+LEAST = 10**6  # part of the range to which values about zero are enclosed
+ABOUT = 4  # widths by which a gap is widened to each side to prove that one pair crosses in it
+MOST_GAPS = 1000  # open parts side by side beyond which a pole touches the axis, or stays on it
 
 
 def stability_over(

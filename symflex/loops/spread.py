@@ -37,8 +37,7 @@ from symflex.transfer import Given
 Point = tuple[Fraction, ...]  # a value of every parameter, in SI units
 MOST_BOXES = 10_000  # boxes after which it stays undecided: about a minute for lumped loops
 FOLLOWED = 4  # modes of a distributed model whose poles are pushed towards the axis
-TRIES = frozenset(4**i for i in range(8))
-"""After how many boxes a combination is sought again, from where poles may meet the axis."""
+TRIES = frozenset(4**i for i in range(8))  # numbers of boxes after which a combination is sought again
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,7 @@ SCHEMA = "symflex.stability/1"
 BITS = 128
 NOTHING_APART = PolesApart()
 NO_NOMINAL = "the gain has no value"
-BOXES = "boxes"
-"""The method for parameters that need not be gains."""
+BOXES = "boxes"  # the method for parameters that need not be gains
 BESIDE = "the value lies at a boundary, or outside of what was examined"
 
 
@@ -389,8 +388,7 @@ class PoleCount:
 
 
 SHORT_DIGITS = 6
-SHOWN = 3
-"""Frequencies of one boundary in print; the others are in the JSON."""
+SHOWN = 3  # frequencies of one boundary in print; the others are in the JSON
 
 
 def _beyond(stability: StabilityMap) -> Iterator[str]:

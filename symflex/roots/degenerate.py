@@ -38,14 +38,11 @@ if TYPE_CHECKING:
     from symflex.roots.networks.cramer import CramerEquations
 
 NOT_COUNTED = "it is not known which modes are hidden where wavenumbers vanish or meet"
-POINT_DIGITS = 50
-"""Digits of degenerate points: more than those that tell roots of the equations from them."""
+POINT_DIGITS = 50  # digits of degenerate points: more than those that tell roots of the equations from them
 NARROW = 128  # binary digits of abs(s) within which roots count as lying at a point: 38 decimal ones
 WIDER = 100  # doublings of the radius of the disc in which the determinants are bounded
-SPARE = 8
-"""Values on the circle beyond those that the bound takes: orders from about so high on are not counted."""
-MOST_POINTS = 64
-"""Values beyond which roots are not counted, as the bound is crude where waves grow thousandfold."""
+SPARE = 8  # values on the circle beyond those of the bound: higher orders are not counted
+MOST_POINTS = 64  # values beyond which roots are not counted: where waves grow thousandfold bounds are crude
 BITS = 1024, 4096  # precision of the coefficients; each order takes NARROW bits
 
 

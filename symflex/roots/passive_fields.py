@@ -35,14 +35,12 @@ from symflex.model.signs import Line, sign_between, sign_of, value_along
 
 BITS = 128
 MOST_STATES = 6  # most states of a field whose displacements and forces are identified by trial
-MOST_TOGETHER = 4
-"""Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
+MOST_TOGETHER = 4  # displacements that are coupled, whose energies take determinants of all choices
 LOSS, INERTIA = 1, 2  # the powers of s of a damping and of a mass
 LINE = 2  # states of a field whose waves go to and fro
 BEAM = 4  # states of a field whose equation is of fourth order
 Matrix = list[list[Factored]]
-Pair = tuple[int, int, int]
-"""The number of a displacement, that of its force, and the sign of the work they do."""
+Pair = tuple[int, int, int]  # numbers of a displacement and its force, and the sign of their work
 
 
 def fields_supply_nothing(model: Model, values: Mapping[str, ExactValue]) -> tuple[bool, bool]:

@@ -67,14 +67,12 @@ PASSIVE = "passive, nothing supplies energy"
 COMPRESSED = "compressed members supply energy only to slow motion, which has no pole in the right half-plane"
 OBSERVED = "(output)"  # no name of a specification reads so
 Powers = dict[tuple[int, int], arb]  # coefficients of a polynomial, by the powers of s and of the gain
-Ends = tuple[Variable | None, ...]
-"""What moves, or acts, at the nodes of an element; ``None`` at the reference."""
+Ends = tuple[Variable | None, ...]  # what moves, or acts, at an element's nodes; ``None`` at the reference
 GROWING = ((1, 1, -1, 1), (1, 1, 1, -1))
 """Signs of y, theta, f_a, tau_a at a beam's first end and of y, theta, f, tau at its second, if y, y', EI y''
 and EI y''' are positive: it delivers ``-EI y'''`` and ``EI y''`` at the first end, the opposite at the
 second."""
-FALLING = ((1, -1, 1, 1), (1, -1, -1, -1))
-"""The same if y, -y', EI y'' and -EI y''' are positive: seen from the second end."""
+FALLING = ((1, -1, 1, 1), (1, -1, -1, -1))  # the same, seen from the second end, if y and EI y'' fall
 
 
 @dataclass(frozen=True, slots=True)

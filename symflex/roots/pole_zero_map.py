@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.roots/1"
 REFINEMENTS = 4  # doublings of the digits before a root counts as on the boundary
-ROUNDS = 20
-"""Searches that go further, because poles and zeros that coincide are hidden, until enough modes are left."""
+ROUNDS = 20  # searches that go further, as coincident poles and zeros are hidden, for enough modes
 
 AT_REST = "at s = 0"
 MOST_NAMES = 3  # nodes and signals that one line of hidden motion names
@@ -143,8 +142,7 @@ class StabilityVerdict:
         )
 
 
-WORST_FIRST = ("unstable", "unknown", "marginal", "stable")
-"""The words, the one first that decides about a whole."""
+WORST_FIRST = ("unstable", "unknown", "marginal", "stable")  # what decides about a whole comes first
 NOT_EXAMINED = StabilityVerdict("unknown", None, certified=False, reason="not examined")
 
 

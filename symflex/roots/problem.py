@@ -23,8 +23,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.model.model import IMAGINARY
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
-ZERO_TEST_BITS = (64, 256, 1024, 4096)
-"""Precisions at which a coefficient is compared with zero, one after the other."""
+ZERO_TEST_BITS = (64, 256, 1024, 4096)  # precisions at which a coefficient is compared with zero, in turn
 
 
 @dataclass(frozen=True, slots=True)

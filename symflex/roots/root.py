@@ -21,8 +21,7 @@ ROUNDING = 1e-15  # what doubles of enclosures' ends may be off by, relative to 
 NEIGHBOURS = 8  # modes of nearly the same frequency among which images of a root are looked for
 FEWEST_ALONE = 3  # digits below which a number that stands alone says how far it may be off
 HUNDRED = 100  # two digits are fewer
-TOUCHING = "some roots could not be separated"
-"""Reason why roots that are all enclosed are not all certified."""
+TOUCHING = "some roots could not be separated"  # why roots that are all enclosed are not all certified
 
 
 @dataclass(frozen=True, slots=True)

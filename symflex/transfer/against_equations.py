@@ -34,15 +34,11 @@ from symflex.model.along import is_tapered
 from symflex.transfer.direct_solve import DirectSolve, NotFollowedError, Point, SingularPointError
 from symflex.transfer.enclose import enclosure
 
-BITS = 192
-"""Precision that is tried first; then one or two more an unknown, as long chains of members need."""
+BITS = 192  # precision that is tried first; then one or two more an unknown, as long chains of members need
 WANTED = 40  # bits of both values that are proved before they are compared
-SPREADS = (Fraction(1, 8), Fraction(1, 128), Fraction(0))
-"""How far parameters are taken from their declared values: less where a root or a wall would be negative."""
-FREQUENCY = (Fraction(-15, 13), Fraction(17, 9))
-"""Real and imaginary part of a complex frequency [rad/s]."""
-WHOLE = (1237, -1373)
-"""Two of them where all is polynomial: integers, which the engine puts into long polynomials at once."""
+SPREADS = (Fraction(1, 8), Fraction(1, 128), Fraction(0))  # how far values are off declared ones, in turn
+FREQUENCY = (Fraction(-15, 13), Fraction(17, 9))  # real and imaginary part of s [rad/s]
+WHOLE = (1237, -1373)  # two of them where all is polynomial: integers, short in the engine
 MOST = 1 << 20  # an integer in place of a parameter is smaller
 
 

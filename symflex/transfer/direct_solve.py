@@ -36,11 +36,9 @@ from symflex.transfer.enclose import later
 ZERO = acb(0)
 FEW_TERMS = 16  # a polynomial of so many terms is summed term by term
 TERMS = 40  # terms of a Taylor step, which is halved until the last of them are small
-TAYLOR_BITS = 80
-"""Bits by which the last terms are smaller than the states, twice what values are compared with."""
+TAYLOR_BITS = 80  # bits by which the last terms are smaller than the states, twice those compared
 LAST_TERMS = 3  # a coefficient may vanish by symmetry; so many in a row do not
-MOST_STEPS = 64
-"""Taylor steps along a member, halved ones counted, beyond which it is not followed: a horn takes four."""
+MOST_STEPS = 64  # Taylor steps along a member, halved ones too; a horn takes four
 FIRST_STEPS = 4  # steps that a member is cut into at first
 
 

@@ -48,8 +48,7 @@ from symflex.transfer.lowest_terms import cancel
 if TYPE_CHECKING:
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
 
-WAYS = 12
-"""Number of ways to solve the dispersion relations that are tried when orders of vanishing are looked for."""
+WAYS = 12  # ways to solve the dispersion relations that are tried when orders of vanishing are looked for
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,8 +19,7 @@ Ball = Callable[[acb], acb]
 FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54  # one more than the significand of a double
-NEAR = (200, 220)
-"""Negative powers of two between which the behaviour at a point is read off, where there is no number."""
+NEAR = (200, 220)  # negative powers of two between which behaviour at a point is read off without a number
 
 
 def double_value(

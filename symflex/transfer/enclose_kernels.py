@@ -322,8 +322,7 @@ def square_root(x: Value) -> Value:
 
 FINER = 2**30  # parts of the least distance of two roots to which they are isolated at the second try
 ROOM = 2  # box that is tried about a root, over the step to the root of an outermost polynomial
-WIDENINGS = 6
-"""Boxes that are tried about one root, each so much wider than the last: 1.5^6 is eleven times the first."""
+WIDENINGS = 6  # boxes that are tried about one root: 1.5^6 is eleven times the first
 GROWTH = 1.5
 STEPS = 8  # Newton steps that narrow a box at most; few are taken, as each has to leave a part of it
 HALF = 0.5  # steps that leave more than this of a box no longer double its digits

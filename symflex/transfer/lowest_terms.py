@@ -152,8 +152,7 @@ def _leading_coefficient(ring: Ring, f: fmpz_mpoly) -> fmpz_mpoly:
     return ring.context.from_dict(terms)
 
 
-Image = tuple["fmpz_mpoly", int]
-"""A polynomial in the parameter of the line, and the degree it can have at most."""
+Image = tuple["fmpz_mpoly", int]  # a polynomial in the line's parameter, and its highest possible degree
 
 
 class DeterminantsOnLine:

@@ -177,8 +177,7 @@ class NestedTransferFunction:
         return parameters_named(self.model, self.constants, self.generators)
 
 
-AnyTransferFunction = TransferFunction | NestedTransferFunction
-"""Either of the two exact representations."""
+AnyTransferFunction = TransferFunction | NestedTransferFunction  # both exact representations
 
 
 def derive_nested(
@@ -413,8 +412,7 @@ def _complex(value: Arithmetic) -> Value:
     return value if isinstance(value, acb_series) else acb(value)
 
 
-AnyBoundFunction = BoundTransferFunction | BoundNested
-"""Either of the two representations, with numbers."""
+AnyBoundFunction = BoundTransferFunction | BoundNested  # both representations, with numbers
 
 
 def bind_nested(tf: NestedTransferFunction, values: Mapping[str, Given] | None = None) -> BoundNested:

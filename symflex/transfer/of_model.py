@@ -33,22 +33,17 @@ from symflex.transfer.nested_form import (
 )
 from symflex.transfer.transfer_function import TransferFunction
 
-EXPANDED_TERMS = 5_000
-"""Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
+EXPANDED_TERMS = 5_000  # of a closed determinant beyond which nobody reads it: over fifty pages
 EXPANDED_PRODUCTS = 500
 """The same of a distributed model, where a term contains kernels of every member: four beams on springs have
 900, which print on 1,500 lines, three have 120."""
-READABLE_TERMS = 100
-"""Terms of a formula of several members beyond which its steps say more: two columns of a page."""
-CODE_PRODUCTS = 8
-"""The same of numeric code of several members: two beams at an angle have 12, and 90 kB of code."""
+READABLE_TERMS = 100  # of a formula of members beyond which its steps say more: two columns of a page
+CODE_PRODUCTS = 8  # of numeric code of members: two beams at an angle have 12, and 90 kB of code
 QUICK_PRODUCTS = 50
 """The same, beyond which roots are found faster without the expanded form: two links with a motor have 88.
 Below, damping may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
-CODE_MEMBERS = 4
-"""Members up to which code of a formula keeps its digits; of ten equal spans it loses all of them."""
-MOST_PRODUCTS = 10_000
-"""The same, beyond which nothing expanded fits into memory: five beams have 8,000, six 70,000."""
+CODE_MEMBERS = 4  # members up to which code of a formula keeps its digits; ten equal spans lose all
+MOST_PRODUCTS = 10_000  # beyond which nothing fits into memory: five beams have 8,000, six 70,000
 UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)
 """Limits of a distributed model's expanded form that was not asked for, counted as it is multiplied out: an
 estimate says little where one member's motion is another's."""

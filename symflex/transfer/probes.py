@@ -41,20 +41,17 @@ Evaluate = Callable[[Factored | None, int], Callable[[acb], acb]]
 
 FIRST: Final = (("-1", "0"), ("0", "1"), ("-5/13", "12/13"), ("12/13", "-5/13"))
 SECOND: Final = (("0", "-1"), ("-1", "0"), ("-3/5", "-4/5"), ("4/5", "3/5"))
-NEARBY: Final = (("-1", "0"), ("0", "1"))
-"""Directions of s, of length 1: branches are told apart on an axis only where s lies on it exactly."""
+NEARBY: Final = (("-1", "0"), ("0", "1"))  # directions of s: branches differ on an axis only exactly there
 SOLVED: Final = (("-1/4", "0"),)  # the same where laws that vary along x are solved, with fewer waves
 FIRST_BITS: Final = 64
-SOLVED_BITS: Final = 96
-"""Bits with which the test points of laws that vary along x are solved; with half of them it may take two."""
+SOLVED_BITS: Final = 96  # for test points of laws that vary along x; with half of them it may take two
 TINY: Final = 2.0**-40  # share of s by which a law that is solved at s may be varied
 LARGE: Final = 1000  # terms or steps from which a function is evaluated at two points only
 PARTS: Final = 64  # values are multiples of one over this
 TRIES: Final = 12  # draws of parameters before those are taken that lie near the declared ones
 STRICT: Final = 8  # draws with another side of 1 for all parameters but one; later ones have any
 NEAR: Final = 16  # how many times a declared value is larger than the step to the value taken for it
-DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))
-"""Hz, between which frequencies of a model lie that declares none."""
+DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))  # of a model that declares none [Hz]
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from symflex.transfer.expansion import Opening
 
 
-LARGE = 50_000
-"""Number of expanded terms from which a transfer function is opened only when that is asked for."""
+LARGE = 50_000  # expanded terms from which a transfer function is opened only when that is asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,8 +278,7 @@ _TURNS = {
     "rad": ("angle", "angular compliance"),
     "rad/s": ("angular velocity", "angular mobility"),
     "rad/s^2": ("angular acceleration", "angular accelerance"),
-}
-"""What turns, and its quotient by a torque."""
+}  # what turns, and its quotient by a torque
 _EFFORTS = tuple(unit_of(unit).dimension for unit in ("N", "N*m"))
 """What a free signal may be that loads a field: a force or a torque."""
 _FLEXIBILITIES = (("m/N", "receptance"), ("m/(N*s)", "mobility"), ("m/(N*s^2)", "accelerance"))
@@ -292,8 +290,7 @@ _PER_MOTION = {
     "angle": ("N*m", "dynamic stiffness"),
     "angular_velocity": ("N*m", "mechanical impedance"),
     "angular_acceleration": ("N*m", "apparent inertia"),
-}
-"""What an effort per imposed motion is called; the same motion elsewhere is a transmissibility (ISO 2041)."""
+}  # an effort per imposed motion; the same motion elsewhere is a transmissibility (ISO 2041)
 _RATIOS = {
     ("V", "V"): "voltage gain",
     ("A", "A"): "current gain",

@@ -43,8 +43,7 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
-SYMBOLIC_ELEMENTS = 12
-"""Lumped models up to this size keep their symbols, so that factors print in them."""
+SYMBOLIC_ELEMENTS = 12  # lumped models up to this size keep their symbols, so that factors print
 LONGEST = 100  # characters of a factor that is printed
 
 

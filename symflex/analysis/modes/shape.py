@@ -19,10 +19,8 @@ from symflex.errors.diagnostic import nearest
 from symflex.library.elements import Variable
 from symflex.roots import Root
 
-SQUARINGS = 7
-"""The 128th root of the 128th power of a matrix is near its spectral radius, whatever its size."""
-SAMPLES_PER_HALF_WAVE = 16
-"""The largest of so many samples is within 0.5 % of the crest: cos(pi/32) = 0.995."""
+SQUARINGS = 7  # the 128th root of a 128th power of a matrix is near its spectral radius
+SAMPLES_PER_HALF_WAVE = 16  # the largest is within 0.5 % of the crest: cos(pi/32) = 0.995
 FEWEST_SAMPLES, MOST_SAMPLES = 32, 4096
 
 
@@ -254,10 +252,8 @@ class EnclosedModeShape:
 
 
 TURNING = ("shaft",)
-TIE = 1 + 1e-9
-"""A displacement must be larger by this factor to replace an earlier one as the reference."""
-SECTIONS = 40
-"""Steps of golden section: the interval shrinks to 4e-9 of itself, finer than doubles resolve a maximum."""
+TIE = 1 + 1e-9  # a displacement must be larger by this factor to replace an earlier reference
+SECTIONS = 40  # steps of golden section: to 4e-9, finer than doubles resolve a maximum
 GOLDEN = 0.6180339887498949  # (sqrt(5) - 1)/2
 
 

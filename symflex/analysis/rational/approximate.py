@@ -34,8 +34,7 @@ from symflex.roots.root import count_roots, modes_of
 from symflex.transfer import AnyBoundFunction
 from symflex.transfer.bound import EnclosedTransferFunction
 
-FURTHER = (1, 4)
-"""Modes beyond those kept that are looked for: a double root counts as two and is not divided."""
+FURTHER = (1, 4)  # modes beyond those kept that are looked for: a double root is not divided
 
 
 @dataclass(frozen=True, slots=True)

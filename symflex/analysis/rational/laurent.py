@@ -62,13 +62,11 @@ from symflex.transfer.enclose_kernels import KernelValues
 FINER = (1, 2, 4)  # times the requested digits, to which the determinants of a network are known
 FIRST_BITS = 192
 LAST_BITS = 12288  # precision of the first attempt, and where doubling it ends: six times
-DETECTION_BITS = 768
-"""Precision at which a coefficient whose ball holds zero counts as zero if nothing proves it."""
+DETECTION_BITS = 768  # precision at which a coefficient counts as zero if its ball holds zero
 DOUBLE_DIGITS = 17  # digits that tell a double from its neighbours
 SLACK = 16  # terms that roots of vanishing coefficients may cost
 LONGEST = 160  # terms of the longest series tried
-NEWTON_STEPS = 16
-"""Each doubles the digits: eight take a double to the last precision; a poor start has as many again."""
+NEWTON_STEPS = 16  # each doubles the digits: eight reach the last precision; as many for a poor start
 COINCIDENT = 2  # zeros on top of a pole that are looked for
 
 

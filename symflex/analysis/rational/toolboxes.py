@@ -45,11 +45,9 @@ SCIPY_FORMS = (ZEROS_POLES_GAIN, TRANSFER_FUNCTION, STATE_SPACE)
 PERCENTS = (1, 5)  # what the validity of an approximation is stated for
 SCIPY_ZERO = 1e-14  # leading coefficients of a numerator that scipy.signal.normalize takes away
 
-DEFAULT_BAND_HZ = (0.1, 1e4)
-"""Band in which the loss of digits is sampled if the model names none: from slow servos to piezo drives."""
+DEFAULT_BAND_HZ = (0.1, 1e4)  # for the loss of digits if the model names none: servos to piezo drives
 SAMPLES = 200  # forty to a decade of that band
-DIGITS = 30
-"""Digits of the roots: twice what a double holds, so that each is rounded to the nearest one."""
+DIGITS = 30  # digits of the roots: twice what a double holds, so that each is rounded to the nearest one
 BITS = 384  # precision of the exact value that rounded coefficients are compared with
 
 Coefficients = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.float64]"]

@@ -30,8 +30,7 @@ from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.transfer.equations_at import EquationsAt, holds
 
-MOST_TIMES = 8
-"""Largest factor on the first precision; what is not enclosed then is not for want of bits."""
+MOST_TIMES = 8  # largest factor on the first precision; what is not enclosed then does not lack bits
 Entries = dict[tuple[int, int], acb]
 
 

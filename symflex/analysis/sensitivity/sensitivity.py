@@ -179,8 +179,7 @@ def _complex_json(value: acb | None, digits: int) -> dict[str, str] | None:
     return {"re": printed.re, "im": printed.im, "radius": printed.radius}
 
 
-MOST_TIMES = 8
-"""The first precision; beyond it, rounding is not why a derivative is not known or roots are not apart."""
+MOST_TIMES = 8  # the first precision; beyond it, rounding is not why something is not known
 
 
 def differentiate(

@@ -21,19 +21,16 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum
 
 SCHEMA = "symflex.respond/1"
-INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
-"""How often the unit impulse is integrated to become the input."""
+INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}  # how often the unit impulse is integrated
 FREE = "free"  # the name of no input
 OF_UNIT_SIZE = (*INTEGRATIONS, FREE)
 UP = 1 + 2.0**-40  # makes up for rounding when the radius of a ball becomes a double
 LARGEST_POWER = 100_000
-LARGEST = arb(10) ** LARGEST_POWER
-"""Values beyond it are refused: their decimals take minutes, and nobody reads them."""
+LARGEST = arb(10) ** LARGEST_POWER  # what is beyond is refused: its decimals take minutes
 SHORTER = "ask for a shorter time"
 ROWS = 21  # rows of the table; all points are in the JSON and in files
 SHORT_DIGITS = 6
-NARROWEST = 99
-"""Digits behind the point to which a radius in the table goes, or those asked for: 1e-2913 is below 1e-99."""
+NARROWEST = 99  # digits to which a radius in the table goes, or those asked for: 1e-2913 is below 1e-99
 IMPULSES = ("an impulse", "the derivative of an impulse")
 
 

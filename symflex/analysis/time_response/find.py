@@ -297,8 +297,7 @@ WAYS = (
     Way("delayed parts", _by_delays),
     *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),
     Way("estimated modes", _by_estimate),
-)
-"""All ways, in the order in which they are asked: exact ones first, then those that take the least time."""
+)  # in the order in which they are asked: exact ones first, then those that take the least time
 
 
 def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:

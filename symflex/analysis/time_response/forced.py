@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response.enclosed_response import EnclosedResponse
 
-MORE_DIGITS = 10
-"""Digits of the ramp's response beyond those printed: after many bends large terms cancel each other."""
+MORE_DIGITS = 10  # digits of the ramp's response beyond those printed: after many bends terms cancel
 BITS = 256  # precision of the sums: rounding adds nothing to the balls of what is summed
 FORCED = "forced"  # name of an input that is given by samples
 

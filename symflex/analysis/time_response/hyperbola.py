@@ -29,10 +29,8 @@ from symflex.transfer import BoundTransferFunction
 
 MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi
 """Angle a of the path, how far the outermost hyperbolas are turned from it, and more than arg z on them."""
-TURNS = (12.0, 2000.0)
-"""mu times the last time on a path: the first takes the fewest points, the second some seconds."""
-BAND, SPARE = 6.0, 10.0
-"""Ratio of the last time on a path to the first, and ln of what bounds may be larger than values."""
+TURNS = (12.0, 2000.0)  # mu times the last time on a path: the first takes fewest points, the second seconds
+BAND, SPARE = 6.0, 10.0  # ratio of last time to first on a path, and ln of bounds over values
 
 
 def along_hyperbolas(asked: Asked) -> Sampled:

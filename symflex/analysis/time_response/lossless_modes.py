@@ -47,8 +47,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 BITS = 2 * bits_of(EFFORT.pole_digits)  # precision of every value
-ANYWHERE = 0.7310585786
-"""Turns of theta at which there is no root as a rule: the constant in front is read off there."""
+ANYWHERE = 0.7310585786  # turns of theta, as a rule without a root, where the constant in front is read
 
 
 @dataclass(frozen=True)

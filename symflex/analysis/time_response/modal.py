@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response.function_size import Annulus, ModesBound, Ring
     from symflex.analysis.time_response.sample_times import SampleTimes
 
-SEARCHED_TOO_LONG = "SF505"
-"""The code of a search that ends by itself, next to roots that accumulate; the user's own budgets end all."""
+SEARCHED_TOO_LONG = "SF505"  # of a search that ends by itself; the user's own budgets end all
 BITS = bits_for_digits(2 * EFFORT.pole_digits)  # precision of sums
 CONTINUATION = (-1, 4, -6, 4)  # factors on the last four of a smooth sequence that give the next
 

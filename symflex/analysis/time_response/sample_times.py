@@ -30,12 +30,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 MOST_TIMES = 1_000_000  # as many lines as a file of measured data may have
-ROUNDING = 4 * 2.0**-53
-"""What numpy.linspace may be off by, of the last time: a product and a sum of doubles, and room."""
+ROUNDING = 4 * 2.0**-53  # what numpy.linspace may be off by, of the last time: twice a product and a sum
 FEWEST = 9  # times from which their even spacing saves anything
 TIME_CONSTANTS = 5.0  # after which 1 % of a motion is left
-PERIODS, UNDAMPED_PERIODS = 12, 4
-"""Periods of the slowest oscillation that are shown: more show nothing new."""
+PERIODS, UNDAMPED_PERIODS = 12, 4  # of the slowest oscillation that are shown: more show nothing
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,20 +50,15 @@ RISE = (0.1, 0.9)  # shares of the final value between which the rise time is co
 SETTLED = 0.02  # share of the final value within which a response has settled
 TEXT_DIGITS, SHORT_DIGITS = 10, 4
 CLOSE = 1e-6  # share of the final value: a maximum that is no higher above it is no peak
-MOST_WORK = 200_000
-"""Terms summed on intervals for one number, a second: a mode that rings a thousand times takes some each."""
-ECHO_DERIVATIVES = 8
-"""Terms of Taylor's polynomial of a piece with echoes: six of a pole close to 0 may cancel to 1e-13."""
+MOST_WORK = 200_000  # terms summed for one number, a second: a mode that rings a thousand times takes some
+ECHO_DERIVATIVES = 8  # terms of a piece's Taylor polynomial: six of a pole near 0 may cancel to 1e-13
 HALVINGS = 50
 MORE_DIGITS = 10  # digits of poles beyond those printed: differences of their terms lose some
-MODES_DIGITS, MOST_MODES = 8, 100
-"""Digits of responses of waves, which need few high modes, and how many modes: more cost digits."""
+MODES_DIGITS, MOST_MODES = 8, 100  # digits of responses of waves, and modes for these: more cost digits
 MODES_BITS = 128
 DELAYS_DIGITS = 60  # digits of poles of loops with delays: high powers of their differences lose some
-FADED = 1e-11
-"""Share of the final value that a response with delays may still have when residues replace its pieces."""
-SMOOTH_MODES = (400, 40, 20, 10, 5, 3)
-"""Terms of which a piece of a response of waves is made, tried in turn: few are smooth, many are sharp."""
+FADED = 1e-11  # share of the final value that a response with delays may have when residues take over
+SMOOTH_MODES = (400, 40, 20, 10, 5, 3)  # terms of a piece of waves, in turn: few are smooth, many sharp
 DEAD = 1e-14  # share of the final value below which a mode is left out
 MOST_PIECES = 60
 ZERO: Final = arb(0)

@@ -92,8 +92,7 @@ class Determinants:
         return self.system.closure.open(polynomial)
 
 
-MINOR_LIMIT = 200_000
-"""Minors of one system. A full matrix of 17 rows has 2^17 = 131,072 of them; those of a chain are few."""
+MINOR_LIMIT = 200_000  # minors of one system: a full matrix of 17 rows has 131,072, a chain few
 ROW_LIMIT = 700
 """Unknowns left after elimination; systems of more are given as nested expressions. Not a measured limit:
 nested, a chain of 700 masses takes 2.4 s and 60 MB."""

@@ -44,8 +44,7 @@ if TYPE_CHECKING:
 
 KEPT_LAST = 8  # rows an input may act on and be eliminated last; one that acts on more acts everywhere
 
-NO_UNKNOWN = -2
-"""The own column of a row that is of no unknown, such as a condition of a field; inputs have column -1."""
+NO_UNKNOWN = -2  # own column of a row of no unknown, such as a field's condition; inputs have -1
 
 EXPLAINED = 2_500  # unknowns up to which a singular system is explained: that takes a dense matrix
 

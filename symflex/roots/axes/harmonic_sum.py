@@ -48,8 +48,7 @@ from symflex.transfer import BoundTransferFunction
 EIGHTH = pi / 4
 BESIDE = 0.3  # how far from the ends the largest terms are looked for, in x
 OUTWEIGHED = 0.8  # most that all other terms may amount to, of the largest; less than 1
-FALL = 4.0
-"""Factor by which other terms, divided by their number, must have decayed at the edge of a layer."""
+FALL = 4.0  # factor by which other terms, over their number, decay up to the edge of a layer
 MARGIN = 1.1  # factor on the width of a layer, because terms do not decay evenly
 FIRST_STEP = 0.5  # first step along the arc
 SHORTEST = 1e-12  # share of the arc; a step that would have to be shorter says that a root lies on it
@@ -272,8 +271,7 @@ def _most(value: acb, turn: tuple[arb, arb]) -> arb:
     return (along * cosine if along < 0 else abs(along)) + abs(value.imag) * sine
 
 
-LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
-"""Power of x that wavenumbers are proportional to, by kind of dispersion."""
+LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}  # power of x of wavenumbers, by kind
 UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}  # what t is multiplied with to be x
 
 

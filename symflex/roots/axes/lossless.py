@@ -46,8 +46,7 @@ HALF = 0.5  # distance to one integer that separates it from all others
 ROUNDS = 40  # tries to aim a circle at a mode by its number; the first or second hits as a rule
 SECANTS = 30  # steps that aim a circle
 NEARLY = 0.2  # turns [rad] to which a circle is aimed
-ASIDE = (0.0, 0.6, -0.6, 1.2)
-"""Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
+ASIDE = (0.0, 0.6, -0.6, 1.2)  # turns by which circles that meet roots are moved; the first is mostly midway
 WITHIN, BEYOND = -1, 1
 SHARES = (0.5, 0.4, 0.6)  # shares at which a ring is cut in two
 HALVINGS = 60  # halvings of a ring until it is as thin as doubles can resolve

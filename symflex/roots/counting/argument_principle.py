@@ -33,8 +33,7 @@ BITS = 64  # precision of turns, of which only the nearest integer is wanted
 LAST_BITS = 2048  # largest precision: if a factor is still lost with it, a root is on the path
 FIRST_STEP = 0.2  # length of the first step [in z]
 SMALLEST = 1e-12  # step [in z] below which a root is said to lie on the path
-LOSSY = 0.01
-"""Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
+LOSSY = 0.01  # share of its bound below which a turn says that the bound is poor: exponentials cancel
 
 
 E_co = TypeVar("E_co", bound=Entire, covariant=True)

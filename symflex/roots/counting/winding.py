@@ -26,10 +26,8 @@ LARGEST_RING = 120  # octaves searched for the lowest root, from that of one wav
 FAR = 60.0  # logarithm of a frequency beyond all that matter
 SAME_ORDER = 0.05  # difference of a count from the order at 0, in turns, that rounding may cause
 LONGEST_STEP = 0.4  # longest step of a path [in z]
-PHASE_STEP = 2.0
-"""Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
-DISAGREEMENT = 0.3
-"""Largest difference between ln F at the end of a step and what the slopes at both ends predict."""
+PHASE_STEP = 2.0  # largest change [rad] of a kernel's argument over a step: no row of roots is missed
+DISAGREEMENT = 0.3  # largest difference between ln F at a step's end and what both ends' slopes predict
 BEND = 2.0  # largest change of ln F over a step that a change of slope may cause
 SMALLEST_STEP = 1e-13  # smallest step of a path [in z]; a path that needs a shorter one meets a root
 NEARLY_WHOLE = 0.05  # difference from an integer, in turns, that rounding may cause

@@ -32,8 +32,7 @@ BITS = 64  # precision of bounds, which need few digits
 SECTORS = 48  # into which the right angle is cut: less than two degrees each
 TILTED = SECTORS * 4 // 3  # as many from the real axis on make 120 degrees
 LARGEST = 1e36  # largest radius, relative to the frequency of about one wave in the longest part
-NARROW = 1.05
-"""How far above one that is none a radius may be: the path about what lies within takes steps."""
+NARROW = 1.05  # how far above one that is none a radius may be: what lies within is followed in steps
 LINEAR, QUADRATIC = 1, 2
 NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
 NOT_OUTWEIGHED = "no bound on the poles is known, as no term outweighs the others at high frequencies"

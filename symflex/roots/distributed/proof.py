@@ -254,8 +254,7 @@ def _log(size: float) -> float:
 
 
 SAME = 0.5  # largest distance from a whole number of an order that is read off doubles
-DEPTHS = (1.0, 4.0, 16.0, 64.0)
-"""How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
+DEPTHS = (1.0, 4.0, 16.0, 64.0)  # how far below the lowest root, in ln, circles about 0 are counted
 
 
 def roots_at_zero(

@@ -49,8 +49,7 @@ from symflex.transfer import BoundTransferFunction
 ACCUMULATION_DIGITS = 20  # digits of points that are only avoided
 WIDER_ANGLE = 1 + 1e-12  # a double next to a part of pi may be less than that
 FEW = 40  # roots that are sooner searched all than a part of them
-MORE_DIGITS = 30
-"""Digits beyond twice those asked for, in which a pole and a zero that cancel must agree."""
+MORE_DIGITS = 30  # digits beyond twice those asked for, in which a pole and a zero that cancel must agree
 
 
 class Side:

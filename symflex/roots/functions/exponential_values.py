@@ -31,8 +31,7 @@ from symflex.transfer.enclose_kernels import KernelValues
 
 Summed = tuple[tuple[Argument, ...], tuple[tuple[ExponentialSum, int], ...]]
 """Arguments of exponentials, and sums of these with their exponents."""
-Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]
-"""Terms of a polynomial in s and wavenumbers: a number, and what it is multiplied with."""
+Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]  # numbers, and what they are multiplied with
 
 
 def exponential_sums(value: Factored, table: KernelTable) -> Summed | None:

@@ -37,12 +37,10 @@ ORIGIN = -140.0  # ln(abs(s)) where the order of a root at 0 is read off
 SERIES_TERMS = (20, 80)  # lengths of the series about 0 in which the first term is sought
 BRANCH_BITS = 256  # precision of one value that is compared on all branches
 ANYWHERE = (0.7, 1.3)  # real and imaginary part of a frequency like any other
-BRANCHES = (1, 2, 4)
-"""Powers in which the choice of a wavenumber may cease to matter; four roots have no other."""
+BRANCHES = (1, 2, 4)  # powers in which a wavenumber's branch may cease to matter; four roots have no other
 SINGLE: Final = {"wave": 2, "bending": 4}  # dispersions of one wavenumber, and how many branches it has
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
-MODAL_WORK = 0.15
-"""What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
+MODAL_WORK = 0.15  # what sums over characteristic roots cost, in terms, over the order to the fourth
 
 
 @dataclass(eq=False)
@@ -473,8 +471,7 @@ def has_kernels(value: Factored, table: KernelTable) -> bool:
     return any(k.generator in used for k in table.kernels)
 
 
-ROOM = 1.5
-"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
+ROOM = 1.5  # largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2
 
 
 def deviation(values: acb) -> float:

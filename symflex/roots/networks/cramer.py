@@ -30,8 +30,7 @@ from symflex.transfer.equations_at import EquationsAt, Majorants, NamedValues
 MOST_LOST = 16  # bits that elimination may lose per equation; chains of beams lose about one
 ZERO = acb(0)
 BALANCING = 40  # rounds that make rows and columns alike; each about halves what is left to gain
-ROUNDING = 1e-9
-"""Error of logarithms in doubles, per row: far above what is lost, far below what matters."""
+ROUNDING = 1e-9  # error of logarithms in doubles, per row: far above what is lost, far below what matters
 
 
 @dataclass(frozen=True, slots=True)

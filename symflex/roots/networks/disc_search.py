@@ -22,10 +22,8 @@ from symflex.roots.networks.disc_series import GUARD_BITS, DiscSeries, RootNearC
 from symflex.roots.root import Root, mirror_images
 from symflex.transfer.equations_at import EssentialSingularityError
 
-RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)
-"""Radius of the circle where a bound is taken over that where values are."""
-MOST_POINTS = 1000
-"""Most points of a circle that may separate what is bounded beyond it from what lies on it."""
+RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)  # radii of bounds over those of values
+MOST_POINTS = 1000  # most points of a circle that may separate what is bounded beyond it from what is on it
 SAMPLES = 6  # points of a circle that tell how fast a function grows
 ROUGH_BITS = 24  # precision of values that only say how large a function is
 SERIES_BITS = 64  # bits to which a series gives the function where it is least on the circles looked at

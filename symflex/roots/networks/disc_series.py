@@ -24,8 +24,7 @@ from symflex.budget import spend
 
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8  # largest factor on the precision of a series to separate its roots
-SMALLEST_ARC = 2.0**-11
-"""Shortest arc of a circle on which the argument is followed [rad]; below, a root counts as on it."""
+SMALLEST_ARC = 2.0**-11  # shortest arc of a circle that is followed [rad]; below, a root counts as on it
 BISECTIONS = 60
 SERIES_TERMS = 40  # terms of the function about a point of a circle; the others are bounded
 LEFT_OUT = 8  # times what coefficients lack, that leaving some out may add: three bits of them

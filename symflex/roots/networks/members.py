@@ -26,11 +26,9 @@ from symflex.along.growth import balanced
 from symflex.balls import UndecidedError
 from symflex.balls.inertia import pivots
 
-HALF = 0.5
-"""What the bound on a piece's energy must stay below; 1 would do, and the rest is for rounding in doubles."""
+HALF = 0.5  # what the bound on a piece's energy must stay below; 1 would do, but for rounding in doubles
 MOST_HALVINGS = 60
-SERIES_TERMS = 40
-"""Terms of exp(abs(A) h), whose norm is at most 1: 1/40! is far below the rounding of doubles."""
+SERIES_TERMS = 40  # terms of exp(abs(A) h), whose norm is at most 1: 1/40! is far below rounding
 
 
 @dataclass(frozen=True, slots=True)

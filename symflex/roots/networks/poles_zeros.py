@@ -45,8 +45,7 @@ from symflex.transfer.equations_at import EssentialSingularityError
 if TYPE_CHECKING:
     from symflex.roots.passivity import EnergyProof
 
-WITTRICK_WILLIAMS = "wittrick-williams"
-"""What stands in a certificate: the count of Wittrick and Williams."""
+WITTRICK_WILLIAMS = "wittrick-williams"  # what stands in a certificate: the count of both
 WIDER = 1e-3  # how far beyond the limits of a band is searched, relative to them
 NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 GUARD_BITS = 64  # what the elimination of a network loses mostly; where it loses more, more are taken
 PATIENCE = 3  # secants that may leave most of an interval before it is halved
 NEAR = 1e-3  # relative width of an interval in which secants begin
-NUDGE = 2.0**-20
-"""Parts of an interval by which a point moves that is an eigenvalue itself, of the network or of a member."""
+NUDGE = 2.0**-20  # parts of an interval by which a point moves that is an eigenvalue itself
 MOST_TIMES = 4  # the precision of samples, where a sign is not decided with it
 LOWEST = 2.0**-40  # lambda [rad^2/s^2] below which no eigenvalue but 0 is expected, 1e-6 rad/s
 SHRINKING = 2.0**-30  # size of a root's disc relative to the one in which it lies

@@ -33,8 +33,7 @@ CLOSE = BOX_SHARE + 0.02  # the last Newton step before a box is drawn is by so 
 FIRST_BITS = 64  # precision of the first Newton steps
 STEPS = 80  # Newton steps in all
 SMALLER = 4  # a middle this many times closer to an axis than the box is large is put on it
-PATIENCE = 10
-"""Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
+PATIENCE = 10  # Newton steps at one precision, after the first, beyond which a root cannot be simple
 
 
 class _SlowError(Exception):

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 
 MARGIN = 0.03  # how far beyond the axes cells reach [rad], so that no side lies on a row of roots
-RIGHT_HALF = 1.3
-"""Angle of the first cut across a half-plane [rad]: to the right of lightly damped roots."""
+RIGHT_HALF = 1.3  # angle of the first cut across a half-plane [rad]: to the right of lightly damped roots
 SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
 """Shares at which a cell may be cut: off its middle, where symmetry puts roots."""
 NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
@@ -37,8 +36,7 @@ SEARCH_STEPS = 30  # steps of Newton's method in doubles
 CONVERGED = 1e-11  # step [in z] after which no further one is needed
 FIRST_BITS = 128  # precision of points handed to proofs
 NEAR = 0.1  # size of cells in which a root without a box is enclosed by a circle
-NEIGHBOURS = 1e-4
-"""Relative radius of the disc about a root in which others are sought that it may not be told from."""
+NEIGHBOURS = 1e-4  # relative radius of the disc about a root in which others are sought, not told apart
 FADED = 100.0  # width in ln of a ring where kernels do not vary faster further out, and roots are few
 HIGHEST = 300.0  # ln of the radius [rad/s] beyond which nothing is sought
 MODES_LIMIT = 2000  # most modes of one search; ask for further ones by a band
