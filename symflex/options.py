@@ -495,7 +495,7 @@ class PlotOptions:
     resolve: Stated = option("1 %", "--resolve", metavar="SHARE", **SHOWN, help="As for symflex stability.")
     box: bool = option(False, "--box", help="Draw the largest box about the values that is stable.")
     modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
-    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png.")
+    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png; .gif of modes.")
     width: float | str | None = option(None, "--width", **WIDTH)
     font: str | None = option(None, "--font", **FONT)
     until: str | None = option(

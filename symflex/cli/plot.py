@@ -77,6 +77,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
+    modes -o FILE.gif shows one period of every shape, again and again.
+
     Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
     paper's font, and --font (latex by default) only sets how much space it gets. You need no LaTeX to write
     it.
@@ -93,7 +95,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         return (_plot_over if is_over else _plot_record if given.record else _plot_sweep)(spec, given)
     if given.kind.endswith(".toml") and not Path(spec.path).exists():
         raise _exchanged(spec, given)
-    path = check_place(given.output, PICTURES) if given.output else None
+    path = check_place(given.output, (".gif", *PICTURES)) if given.output else None
     model = spec.load()
     if given.modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=given.modes))

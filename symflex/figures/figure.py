@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -17,21 +19,26 @@ Raster = tuple[bytes, dict[str, int]]
 class ShownFigure(Figure):
     r"""A figure that belongs to no window, and that a notebook shows where it is a cell's value.
 
+    One of mode shapes also knows its ``moving`` artists: what places each, given the factor that the motion
+    has turned by, or None for what is not shown in motion.
+
     >>> data, size = ShownFigure(figsize=(3.5, 2.0))._repr_png_()
     >>> data[:4], size
     (b'\x89PNG', {'width': 420, 'height': 240})
     """
 
+    moving: tuple[tuple[Artist, Callable[[complex], object] | None], ...] = ()
+
     def _repr_png_(self) -> Raster:
         return raster_of(self)
 
     def savefig(self, fname: Any, **kwargs: Any) -> None:  # noqa: ANN401 (as matplotlib has it)
-        """Save the figure as matplotlib does; PGF as ``symflex plot`` writes it, which needs no TeX."""
+        """Save the figure as matplotlib does; GIF, and PGF without TeX, as ``symflex plot`` writes them."""
         from symflex.figures.files import save  # its backend takes time to load
 
         format = kwargs.get("format") or Path(str(fname)).suffix.removeprefix(".")
-        if isinstance(fname, str | Path) and format.lower() == "pgf":
-            save(self, Path(fname), "pgf")
+        if isinstance(fname, str | Path) and format.lower() in ("gif", "pgf"):
+            save(self, Path(fname), format.lower())
         else:
             super().savefig(fname, **kwargs)
 

@@ -12,14 +12,17 @@ import html
 import logging
 import re
 import warnings
+from cmath import exp, pi
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO, StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pgf import RendererPgf
 from matplotlib.figure import Figure
 
@@ -37,11 +40,16 @@ if TYPE_CHECKING:
 
 # What would differ from run to run, or from one version of matplotlib to the next, is left out.
 FORMATS: Final[dict[str, dict[str, str | None]]] = {
+    "gif": {},
     "pdf": {"Creator": "symflex", "Producer": None, "CreationDate": None},
     "pgf": {},
     "png": {"Software": None},
     "svg": {"Creator": "symflex", "Date": None},
 }
+
+FRAMES, FRAME_MS = 30, 50  # browsers play what is shorter than 20 ms slowly; a period lasts 1.5 s
+FRAME_DOTS: Final = 144  # per inch: sharp on a slide, and 200 kB for five modes
+FRAME_COLOURS: Final = 32
 
 # Colours that figures draw with, and the variables of the style sheet that stand for them on a page.
 _COLOURS: Final = {
@@ -60,9 +68,9 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: bool = False) -> bytes:
     """Return a figure as the content of a file; equal figures give equal bytes.
 
-    ``format`` is ``pdf``, ``pgf``, ``png`` or ``svg``; ``font`` is that in which the figure was drawn. With
-    ``has_text`` an SVG holds texts, not outlines of letters. Raises UsageError: SF208 for any other format or
-    font.
+    ``format`` is ``pdf``, ``pgf``, ``png``, ``svg`` or ``gif``, in which mode shapes move; ``font`` is that
+    in which the figure was drawn. With ``has_text`` an SVG holds texts, not outlines of letters. Raises
+    UsageError: SF208 for any other format or font, SF902 for a GIF of what does not move.
     """
     if format not in FORMATS:
         hint = nearest(format, FORMATS) or "formats: " + ", ".join(FORMATS)
@@ -71,8 +79,45 @@ def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: b
     with paper_style(font):
         if format == "pgf":
             return pgf_figure(figure).encode("ascii")
+        if format == "gif":
+            return _animation(figure)
         with _quietly(), rc_context({"svg.fonttype": "none"} if has_text else {}):
             figure.savefig(buffer, format=format, metadata=FORMATS[format])
+    return buffer.getvalue()
+
+
+def _animation(figure: Figure) -> bytes:
+    """Return one period of a motion, repeated without end."""
+    from PIL import Image  # only animations need it
+
+    moving = getattr(figure, "moving", ())  # of a ShownFigure, which imports this file to save itself
+    if not moving:
+        hint = "formats of other figures: pdf, pgf, png, svg"
+        raise UsageError(Diagnostic("SF902", "only mode shapes move: no GIF of another figure", None, hint))
+    canvas, dpi, pictures, buffer = FigureCanvasAgg(figure), figure.dpi, [], BytesIO()
+    try:
+        figure.dpi = FRAME_DOTS
+        for artist, _ in moving:
+            artist.set_visible(False)
+        canvas.draw()  # type: ignore[no-untyped-call]
+        still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
+        for i in range(FRAMES):
+            canvas.restore_region(still)  # type: ignore[no-untyped-call]
+            for artist, place in moving:
+                if place is not None:
+                    place(exp(2j * pi * i / FRAMES))
+                    artist.set_visible(True)
+                    figure.draw_artist(artist)
+            dots = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+            frame = Image.fromarray(dots).convert("RGB")
+            pictures.append(frame.quantize(FRAME_COLOURS, dither=Image.Dither.NONE))
+        pictures[0].save(buffer, "GIF", save_all=True, append_images=pictures[1:], duration=FRAME_MS, loop=0)
+    finally:
+        figure.dpi = dpi
+        for artist, place in moving:
+            artist.set_visible(True)
+            if place is not None:
+                place(1)
     return buffer.getvalue()
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import floor, log10
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -17,7 +18,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 from symflex.analysis.modes import DistributedShape, EnclosedModeShape, lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.figures.axes import Canvas, root_figure
-from symflex.figures.figure import new_figure
+from symflex.figures.figure import ShownFigure, new_figure
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.runs import Panel, Plan, Run, Stems, panels_of
 from symflex.figures.style import (
@@ -39,6 +40,9 @@ from symflex.transfer import AnyBoundFunction
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    Points = npt.NDArray[np.float64]
+    Amplitudes = npt.NDArray[np.complex128]
+
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
 ROW_INCHES, PLAN_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 1.5, 0.17, 0.38, 0.06
@@ -58,6 +62,7 @@ FINER, MOST_POINTS = 6, 8000
 """Points drawn for every one that no wave is missed by, which makes a hundred a half wave; and in all."""
 UNIT_NAMES: Final = {"m": "displacement", "rad": "angle", "V": "voltage", "": "signal"}
 LAGGING: Final = (0, (4, 1.5))
+Moving = tuple[Artist, Callable[[complex], object] | None]
 Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 
 
@@ -111,6 +116,7 @@ def draw_shapes(
     height = above + len(shapes) * (HEADING_INCHES + row) + below
     figure = root_figure(own[0]) if own else new_figure(width, height)
     runs = sum(isinstance(panel, Run) for panel in panels)
+    moving: list[Moving] = []
     for i, shape in enumerate(shapes):
         bottom = height - above - (i + 1) * (HEADING_INCHES + row)
         left = 0.0
@@ -119,15 +125,19 @@ def draw_shapes(
             box = (left / width, bottom / height, room / width, row / height)
             axes = own[i * len(panels) + j] if own else figure.add_axes(box)
             if isinstance(panel, Plan):
-                _draw_plan(axes, panel, shape)
+                parts = _draw_plan(axes, panel, shape)
             else:
-                _draw_panel(axes, panel, shape)
+                parts = _draw_panel(axes, panel, shape)
                 _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
+            still = shape.pole.is_real
+            moving += [(artist, _stays if still and place else place) for artist, place in parts]
             if j == 0:
                 axes.set_title(heading(shape), loc="left", pad=2.5, fontsize=7.5)
             if own:
                 axes.set_ylabel(labels[j])
             left += room
+    if isinstance(figure, ShownFigure):
+        figure.moving = tuple(moving)
     if own:
         return figure
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
@@ -244,7 +254,18 @@ def _members(
         yield np.array([x + c * along, y + s * along]), moved
 
 
-def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
+def _stays(_: complex) -> None:
+    """Leave what does not oscillate where it is."""
+
+
+def _moving_line(axes: Axes, rest: Points, moved: Amplitudes, **style: Any) -> Moving:  # noqa: ANN401
+    """Draw points where they are at the crest of the motion; a row for x and one for y."""
+    (line,) = axes.plot(*(rest + moved.real), **style)
+    return line, lambda turn: line.set_data(*(rest + (turn * moved).real))
+
+
+def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> list[Moving]:
+    moving: list[Moving] = []
     members = list(_members(panel, shape))
     rest = np.concatenate([place for place, _ in members], axis=1)
     size = float(max(np.ptp(rest, axis=1)))
@@ -255,23 +276,26 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
         axes.plot(*place, color=QUIET, linewidth=0.5, zorder=1)
         if is_lagging:
             swung = place + scale * moved.imag
-            axes.plot(*swung, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
-        axes.plot(*(place + scale * moved.real), color=COLOURS[0], zorder=3, solid_capstyle="round")
+            (lagging,) = axes.plot(*swung, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
+            moving.append((lagging, None))
+        style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
+        moving.append(_moving_line(axes, place, scale * moved, **style))
     for node, x, y in panel.loaded:
-        right, up = (complex(shape.motion(f"{node}.{c}").value.mid()).real for c in ("x", "y"))
-        _draw_inertia(axes, x + scale * right, y + scale * up)
+        swings = [[complex(shape.motion(f"{node}.{c}").value.mid())] for c in ("x", "y")]
+        moving.append(_draw_inertia(axes, x, y, np.array(swings) * complex(scale)))
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.03)  # beyond the moved members, which count for the limits
     axes.set_axis_off()
+    return moving
 
 
-def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> None:
+def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> list[Moving]:
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
     values, is_lagging = _amplitudes(panel, shape), _lags(panel, shape)
     if isinstance(panel, Run):
-        _draw_run(axes, panel, shape, is_lagging=is_lagging)
+        moving = _draw_run(axes, panel, shape, is_lagging=is_lagging)
     else:
-        _draw_stems(axes, values, is_lagging=is_lagging)
+        moving = _draw_stems(axes, values, is_lagging=is_lagging)
     axes.tick_params(top=False, right=False)
     if _is_normalised(panel, shape):
         axes.set_ylim(-MARGIN, MARGIN)
@@ -282,6 +306,7 @@ def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> None:
         axes.yaxis.set_major_locator(MaxNLocator(nbins=3, symmetric=True, steps=[1, 2, 3, 4, 5, 10]))
         axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
         axes.yaxis.get_offset_text().set_fontsize(6)
+    return moving
 
 
 def _is_normalised(panel: Panel, shape: EnclosedModeShape) -> bool:
@@ -303,36 +328,54 @@ def _unit_of_reference(shape: EnclosedModeShape) -> str:
     return shape.motion(shape.reference).unit
 
 
-def _draw_run(axes: Axes, panel: Run, shape: EnclosedModeShape, *, is_lagging: bool) -> None:
+def _draw_run(axes: Axes, panel: Run, shape: EnclosedModeShape, *, is_lagging: bool) -> list[Moving]:
+    moving: list[Moving] = []
     for joint in panel.ends[1:-1]:
         axes.axvline(joint, color=FAINT, linewidth=0.6, zorder=0)
     for x, values in _curves(panel, shape):
         if is_lagging:
-            axes.plot(x, values.imag, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
-        axes.plot(x, values.real, color=COLOURS[0], zorder=3, solid_capstyle="round")
+            (lagging,) = axes.plot(
+                x, values.imag, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2
+            )
+            moving.append((lagging, None))
+        rest, moved = np.array([x, 0 * x]), np.array([0 * values, values])
+        style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
+        moving.append(_moving_line(axes, rest, moved, **style))
     for node, place in panel.loaded:
         name = node if any(m.name == node for m in shape.motions) else f"{node}.y"
-        _draw_inertia(axes, place, complex(shape.motion(name).value.mid()).real)
+        amplitude = complex(shape.motion(name).value.mid())
+        moving.append(_draw_inertia(axes, place, 0.0, np.array([[0j], [amplitude]])))
     span = panel.ends[-1] - panel.ends[0]
     axes.set_xlim(panel.ends[0] - 0.02 * span, panel.ends[-1] + 0.02 * span)
+    return moving
 
 
-def _draw_inertia(axes: Axes, x: float, y: float) -> None:
-    axes.plot([x], [y], "o", color=COLOURS[0], markersize=4.2, clip_on=False, zorder=4)
+def _draw_inertia(axes: Axes, x: float, y: float, moved: Amplitudes) -> Moving:
+    style = {"marker": "o", "linestyle": "none", "markersize": 4.2, "clip_on": False, "zorder": 4}
+    return _moving_line(axes, np.array([[x], [y]]), moved, color=COLOURS[0], **style)
 
 
-def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: bool) -> None:
+def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: bool) -> list[Moving]:
+    moving: list[Moving] = []
     places = np.arange(1, len(values) + 1)
+    rest, moved = np.array([places, 0 * places]), np.array([0 * values, values])
     is_crowded = len(values) > NAMES_LIMIT
     if len(values) > 1:
-        axes.plot(places, values.real, color=COLOURS[0], linewidth=0.5, alpha=0.6, zorder=2)
-    axes.vlines(places, 0, values.real, color=COLOURS[0], linewidth=0.5 if is_crowded else 1.1, zorder=3)
-    axes.plot(places, values.real, "o", color=COLOURS[0], markersize=1.8 if is_crowded else 3.6, zorder=4)
+        style = {"color": COLOURS[0], "linewidth": 0.5, "alpha": 0.6, "zorder": 2}
+        moving.append(_moving_line(axes, rest, moved, **style))
+    width = 0.5 if is_crowded else 1.1
+    stems = axes.vlines(places, 0, values.real, color=COLOURS[0], linewidth=width, zorder=3)
+    ends = [[(place, 0.0), (place, value)] for place, value in zip(places, values, strict=True)]
+    moving.append((stems, lambda turn: stems.set_segments(list((np.array(ends) * (1, turn)).real))))
+    style = {"marker": "o", "linestyle": "none", "markersize": 1.8 if is_crowded else 3.6, "zorder": 4}
+    moving.append(_moving_line(axes, rest, moved, color=COLOURS[0], **style))
     if is_lagging:
         size = 1.4 if is_crowded else 2.8
         (marks,) = axes.plot(places, values.imag, "D", color=COLOURS[1], markersize=size, zorder=5)
         marks.set(markerfacecolor="none", markeredgewidth=0.8)
+        moving.append((marks, None))
     axes.set_xlim(0.5, len(values) + 0.5)
+    return moving
 
 
 def _set_x_axis(axes: Axes, panel: Run | Stems, room: float, *, is_last: bool, is_named: bool) -> None:

@@ -3,11 +3,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from scipy.optimize import brentq
 
 from symflex import pipeline
 from symflex.analysis.modes import lowest_modes
-from symflex.errors import ModelError
+from symflex.errors import ModelError, UsageError
 from symflex.figures import draw, render
 from symflex.figures.modes import heading, label_of_value
 from symflex.figures.runs import Run, Stems, panels_of
@@ -235,3 +236,25 @@ def test_numbers_keep_four_digits():
         (2.5e-8, r"2.500\cdot 10^{-8}"),
     ):
         assert label_of_value(value, 4) == label, (value, label)
+
+
+def test_a_gif_holds_one_period_of_every_mode(tmp_path):
+    spring = 'k = { type = "spring", between = ["ground", "x"], k = "1 N/m" }'
+    figure = drawn(model_of(f'a = {{ type = "mass", at = "x", m = "1 kg" }}\n{spring}'))
+    figure.savefig(tmp_path / "modes.gif")
+    with Image.open(tmp_path / "modes.gif") as animation:
+        assert (animation.n_frames, animation.info["loop"]) == (30, 0)
+        crest = animation.convert("L").tobytes()
+        animation.seek(15)
+        assert animation.convert("L").tobytes() != crest
+    artist, place = figure.moving[-1]
+    place(0.6 + 0.8j)
+    assert list(artist.get_ydata()) == pytest.approx([0.6])
+    assert figure.axes[0].get_title(loc="left") == "$0.1592$ Hz"
+
+
+def test_only_what_moves_becomes_a_gif():
+    model = pipeline.load(EPPINGER / "six_mass.toml")
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
+    with pytest.raises(UsageError, match="only mode shapes move"):
+        render(draw("bode", [bound]), "gif")
