@@ -48,7 +48,7 @@ SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
     "cosh": lambda _, inner: Call("sinh", inner),
     "tanh": lambda whole, _: sum_of([number(1), negative(power(whole, 2))]),
     "atan": lambda _, inner: quotient(number(1), sum_of([number(1), power(inner, 2)])),
-    "abs": lambda whole, inner: quotient(inner, whole),
+    "abs": lambda _, inner: Call("sgn", inner),
     "sgn": lambda *_: number(0),
     "sign": lambda *_: number(0),
 }

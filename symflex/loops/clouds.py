@@ -133,11 +133,7 @@ def _sides(s: complex, size: complex, larger: float) -> Sides:
     top = s.imag + high if s.imag else -low
     if low <= 0:
         low = -top
-    return _rounded((s.real - wide, s.real + wide, low, top))
-
-
-def _rounded(sides: Sequence[float]) -> Sides:
-    left, right, low, high = (float(f"{x:.6g}") for x in sides)
+    left, right, low, high = (float(f"{x:.6g}") for x in (s.real - wide, s.real + wide, low, top))
     return left, right, low, high
 
 

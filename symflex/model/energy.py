@@ -45,6 +45,7 @@ from symflex.model.network import Draft, DraftElement
 from symflex.model.operating_point import (
     NOWHERE,
     SMOOTH,
+    in_s,
     linearised,
     read_operating_point,
 )
@@ -183,7 +184,11 @@ def with_motion(
         elif all(d.name != p.name for d in found):
             declared.append(p)
     definitions = in_order(reader, [*draft.definitions, *found])
-    draft = replace(draft, declared=tuple(declared), definitions=definitions, signals=signals)
+    outputs = tuple(replace(o, expression=in_s(o.expression, loads)) for o in draft.outputs)
+    signals = tuple(replace(x, expression=in_s(x.expression, loads)) for x in signals)
+    draft = replace(
+        draft, declared=tuple(declared), definitions=definitions, signals=signals, outputs=outputs
+    )
     return _hung(draft, {x.name for x in energy}), point
 
 

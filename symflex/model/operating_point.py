@@ -167,13 +167,8 @@ def linearised(
     if reader.problems:
         raise SpecError(*reader.problems)
     if rest is None:
-
-        def in_s(side: Expression) -> Expression:
-            plain = without_brackets(side, point.varies)
-            rates = [n for n in nodes(plain) if isinstance(n, Derivative)]
-            return replace_values(plain, {n: _term(n, number(1)) for n in rates})
-
-        rewritten = {n: replace(e, left=in_s(e.left), right=in_s(e.right)) for n, e in equations.items()}
+        plain = {n: [without_brackets(x, point.varies) for x in e.children] for n, e in equations.items()}
+        rewritten = {n: Equation(*map(in_s, plain[n]), span=e.span) for n, e in equations.items()}
         kept = tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals)
         return kept, [], None, {}
     for x in signals:
@@ -198,6 +193,12 @@ def linearised(
         raise SpecError(*reader.problems)
     kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
     return kept, point.definitions, point.described(equations, made), point.by_value
+
+
+def in_s(expression: Expression, names: Collection[str] | None = None) -> Expression:
+    """Return an expression with ``s^2*x`` in place of ``x''``, for the names given, or all."""
+    rates = [n for n in nodes(expression) if isinstance(n, Derivative) and (names is None or n.name in names)]
+    return replace_values(expression, {n: _term(n, number(1)) for n in rates})
 
 
 class _AboutRest:

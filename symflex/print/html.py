@@ -92,18 +92,14 @@ def passages_html(passages: Iterable[Passage]) -> str:
             continue
         head, *body = passage.rows if passage.has_head else [("",) * len(passage.rows[0]), *passage.rows]
         sides = [NUMBER if all(map(NUMERIC.match, cells)) else TEXT for cells in zip(*body, strict=True)]
-        cells = [[_typeset(cell) for cell in row] for row in (head, *body)]
+        signs = [[c.replace("+-", "\u00b1").replace("-+", "\u2213") for c in row] for row in (head, *body)]
+        cells = [[escape_html(MINUS.sub("\u2212", cell)) for cell in row] for row in signs]
         parts.append(html_table(cells[0], sides or [TEXT] * len(head), cells[1:], said))
     return "\n".join(parts)
 
 
 def _indent(line: str) -> int:
     return len(line) - len(line.lstrip())
-
-
-def _typeset(cell: str) -> str:
-    signs = cell.replace("+-", "\u00b1").replace("-+", "\u2213")
-    return escape_html(MINUS.sub("\u2212", signs))
 
 
 LONGEST_TEXT: Final = 400

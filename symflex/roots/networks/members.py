@@ -86,7 +86,9 @@ class MemberBalls:
         held = 0
         for _ in range(halvings):
             joint = end + start
-            held = 2 * held + _negative(joint)
+            # as many pivots are negative as eigenvalues
+            rows = [dict(enumerate(row)) for row in joint.tolist()]
+            held = 2 * held + pivots(rows, range(len(rows))).negative
             inner = _inverse(joint)
             left, right = across * inner, across.transpose() * inner
             start, end, across = (start - left * across.transpose(), end - right * across, -(left * across))
@@ -164,9 +166,3 @@ def _inverse(matrix: arb_mat) -> arb_mat:
         return matrix.inv()
     except ZeroDivisionError:
         raise UndecidedError from None
-
-
-def _negative(matrix: arb_mat) -> int:
-    """Return how many eigenvalues of a symmetric matrix are negative, by its pivots."""
-    rows = [dict(enumerate(row)) for row in matrix.tolist()]
-    return pivots(rows, range(len(rows))).negative

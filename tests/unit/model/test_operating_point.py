@@ -68,6 +68,7 @@ EQUATIONS = {
         "r phi", ["r'' = r*phi'^2 - k/r^2 + u", "r^2*phi'' + 2*r*r'*phi' = 0"],
         {"r": "R", "phi'": "sqrt(k/R^3)"}, [], "u", {"k": 3.98e14, "R": 7e6},
     ),
+    "quadratic drag at rest": ("v", ["m*v' + b*v + c*abs(v)*v = F"], {}, [], "F", {"m": 3, "b": 2, "c": 5}),
     "absolute value": ("v", ["m*v' + c*abs(v)*v = F"], {"v": "-V", "F": "-c*V^2"}, [], "F",
                        {"m": 3, "c": 0.2, "V": 5}),
     "thermistor": ("T", ["C*T' = I^2*R*exp(b/T) - k*(T - A)"], {"T": "T_0", "I": "I_0"}, ["I_0"], "I",
@@ -279,7 +280,7 @@ REFUSED = {
     "x' = x^0.5 - u": "SF224",
     "x' = a^x - u": "SF407",
     "x' = sgn(x) - u": "SF222",
-    "x' = abs(x)*x - u": "SF224",
+    "x' = abs(x) - u": "SF222",
     "x' = 1/x - u": "SF224",
     "x' = s*x*x - u": "SF222",
     "x' = x*(s + 1)*x - u": "SF222",
@@ -387,3 +388,18 @@ def test_a_coordinate_that_is_a_node_moves_with_what_is_attached_there():
 def test_a_bracket_has_a_derivative_without_an_operating_point_too():
     text = _text("x", ["(m*x)' + 3*x = u"], {}, [], "u", {"m": 2}).partition("[operating_point]")[0]
     assert str(loads(text).transfer_function("O_x/u")) == "O_x/u = 1/(m*s + 3)"
+
+
+def test_outputs_and_signals_have_derivatives_in_time():
+    section = {"unknowns": ["x"], "equations": ["m*x'' + b*x' + k*sin(x) = F"]}
+    model = Model(
+        parameters={"m": 2, "b": 3, "k": 5},
+        equations=section,
+        operating_point={"x": "0"},
+        signals={"v": "x'"},
+        inputs={"F": {}},
+        outputs={"A": "x''", "V": "2*v"},
+    )
+    s, whole = 1 + 2j, 2 * (1 + 2j) ** 2 + 3 * (1 + 2j) + 5
+    assert model.transfer_function("A/F").bind()(s) == pytest.approx(s**2 / whole)
+    assert model.transfer_function("V/F").bind()(s) == pytest.approx(2 * s / whole)
