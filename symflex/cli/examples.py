@@ -56,14 +56,11 @@ def examples(context: click.Context, *, as_json: bool) -> int:
         emit_json({"schema": "symflex.examples/1", "examples": rows})
         return 0
     for name, path in examples.items():
-        say(_line(name, path, max(len(p.stem) for p in examples.values() if p.parent in (path, path.parent))))
+        width = max(len(p.stem) for p in examples.values() if p.parent in (path, path.parent))
+        head = f"{name.ljust(width + 2)}  " if name in FOLDERS else f"  {path.stem.ljust(width)}  "
+        said = textwrap.fill(head + title_of(name, path), terminal_width(), subsequent_indent=" " * len(head))
+        say(said)
     return 0
-
-
-def _line(name: str, path: Path, width: int) -> str:
-    """Return a line of the list."""
-    head = f"{name.ljust(width + 2)}  " if name in FOLDERS else f"  {path.stem.ljust(width)}  "
-    return textwrap.fill(head + title_of(name, path), terminal_width(), subsequent_indent=" " * len(head))
 
 
 @examples.command("copy")

@@ -255,8 +255,8 @@ class _AboutRest:
                     self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
         for value in self.rest.values.values():
             for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
-                message = f"'{_written(leaf)}' is no parameter; values at rest are constant"
-                hint = nearest_name(_written(leaf), list(self.constants))
+                message = f"'{format_expression(leaf)}' is no parameter; values at rest are constant"
+                hint = nearest_name(format_expression(leaf), list(self.constants))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
 
     def linear(self, equation: Equation) -> Equation | None:
@@ -264,10 +264,12 @@ class _AboutRest:
         try:
             whole = sum_of([self._with_primes(equation.left), negative(self._with_primes(equation.right))])
             leaves = [n for n in dict.fromkeys(nodes(whole)) if self.varies(n)]
-            self.seen |= {_written(n) for n in leaves} | {n.name for n in leaves if isinstance(n, Derivative)}
+            self.seen |= {format_expression(n) for n in leaves} | {
+                n.name for n in leaves if isinstance(n, Derivative)
+            }
             self._infer_rates(equation)
             slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
-            values = {n: self._value_at_rest(_written(n)) for n in leaves}
+            values = {n: self._value_at_rest(format_expression(n)) for n in leaves}
             self._check_domain(replace_values(whole, values), equation.span)
             rest = simplified(self.at_rest(whole), {LAPLACE: number(0)})
             self.left_over.append((shorter(rest), equation))
@@ -282,7 +284,7 @@ class _AboutRest:
             self.reader.note("SF224", message, equation.span, "give other values in [operating_point]")
         else:
             moving = [(n, c) for n, c in slopes if not is_number(c, 0)]
-            self.slopes.append({_written(n): c for n, c in moving})
+            self.slopes.append({format_expression(n): c for n, c in moving})
             moving.sort(key=lambda part: -getattr(part[0], "order", 0))  # as books do: accelerations first
             left = [_term(n, c) for n, c in moving if _base(n) not in self.inputs]
             right = [negative(_term(n, c)) for n, c in moving if _base(n) in self.inputs]
@@ -327,15 +329,17 @@ class _AboutRest:
         for one, other in ((equation.left, equation.right), (equation.right, equation.left)):
             match self._with_primes(one):
                 case Derivative(name, 1) as rate if name not in self.values and Name(name) not in self.bare:
-                    self.values.setdefault(_written(rate), self.at_rest(other))
+                    self.values.setdefault(format_expression(rate), self.at_rest(other))
 
     def at_rest(self, expression: Expression) -> Expression:
         """Return an expression with the values at rest in place of all that varies.
 
         Raises ValueError with an absolute value of unknown sign.
         """
-        leaves = {n: self._value_at_rest(_written(n)) for n in nodes(expression) if self.varies(n)}
-        rest = simplified(replace_values(expression, leaves), {_written(n): v for n, v in leaves.items()})
+        leaves = {n: self._value_at_rest(format_expression(n)) for n in nodes(expression) if self.varies(n)}
+        rest = simplified(
+            replace_values(expression, leaves), {format_expression(n): v for n, v in leaves.items()}
+        )
         for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name in ("abs", "sgn", "sign")]:
             size = part.argument.operand if isinstance(part.argument, Negative) else part.argument
             if is_number(size, 0) or not self._is_positive(size):
@@ -584,12 +588,8 @@ def _order_of_s(factor: Expression) -> int:
     return 0
 
 
-def _written(node: Expression) -> str:
-    return format_expression(node)
-
-
 def _base(node: Expression) -> str:
-    return node.name if isinstance(node, Derivative) else _written(node)
+    return node.name if isinstance(node, Derivative) else format_expression(node)
 
 
 def _term(node: Expression, slope: Expression) -> Expression:

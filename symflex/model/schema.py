@@ -18,7 +18,7 @@ from typing import Any
 
 from symflex.library import ParameterPort
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK, Block
-from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Choice, Element, Port
+from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Element, Port
 from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIGURE_KINDS, MODES_LIMIT
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
@@ -133,7 +133,12 @@ def _element(element: Element) -> Schema:
         if port.pair:
             properties[port.pair] = {**_several(2, 2), "description": f"{port.doc}, and that of its reaction"}
     properties |= {p.name: _value_of(p) for p in element.parameters}
-    properties |= {choice.name: _choice(choice) for choice in element.choices}
+    properties |= {
+        choice.name: _said({"type": "boolean"}, choice.doc)
+        if choice.is_flag
+        else _said({"enum": list(choice.values)}, f"{choice.doc}; {choice.default} by default")
+        for choice in element.choices
+    }
     taken_by = {factor for p in element.parameters for factor in p.of}
     required = ["type", *(p.name for p in element.ports if p.default is None and not p.pair)]
     required += [
@@ -160,12 +165,6 @@ def _value_of(parameter: ParameterPort) -> Schema:
     default = f"; {parameter.default} by default" if parameter.default is not None else ""
     product = f", in place of {', '.join(parameter.of)}" if parameter.of else ""
     return _said(VALUE, f"{parameter.doc}{unit}{product}{default}")
-
-
-def _choice(choice: Choice) -> Schema:
-    if choice.is_flag:
-        return _said({"type": "boolean"}, choice.doc)
-    return _said({"enum": list(choice.values)}, f"{choice.doc}; {choice.default} by default")
 
 
 def _inputs() -> list[Schema]:

@@ -359,7 +359,8 @@ class _Evaluator:
             unit = unit.root(degree)
         if unit is None:
             message = f"the power {exponent.magnitude} of this unit has no exact factor"
-            raise RejectedError("SF202", message, base.start, exponent.end)
+            hint = "divide by one unit under the root: K*sqrt(p/p_1), with p_1 = '1 bar'"
+            raise RejectedError("SF202", message, base.start, exponent.end, hint)
         return _checked_unit(PlacedUnit(base.before * unit, base.start, exponent.end))
 
     def raise_superscript(self, base: PlacedUnit, superscript: Token) -> PlacedUnit:

@@ -162,6 +162,10 @@ class _Splitter:
             ]:
                 above = product_of([over[0].numerator, *(f for f in factors if f is not over[0])])
                 return self.apart(owner, quotient(above, over[0].denominator))
+            case Product(factors) if wide := [f for f in factors if self._is_sum_of_blocks(f)]:
+                inner = self.apart(owner, product_of(f for f in factors if f is not wide[0]))
+                name = Name(self._signal(f"{owner}_in", inner))
+                return self.apart(owner, sum_of(product_of([t, name]) for t in wide[0].children))
             case Product(factors) if any(self._varies(f) for f in factors):
                 applied = [f.name for f in factors if self._is_block(f)]
                 value = product_of(
@@ -175,6 +179,10 @@ class _Splitter:
     def _is_block(self, expression: Expression) -> TypeGuard[Name]:
         return isinstance(expression, Name) and expression.name in self._blocks
 
+    def _is_sum_of_blocks(self, expression: Expression) -> bool:
+        is_constant = isinstance(expression, Sum) and not self._varies(expression)
+        return is_constant and any(map(self._is_block, nodes(expression)))
+
     def _varies(self, expression: Expression) -> bool:
         return any(
             isinstance(n, Attribute) or (isinstance(n, Name) and n.name in self._varying)
@@ -186,6 +194,7 @@ class _Splitter:
         candidates = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
         name = next(x for x in candidates if x not in self._taken)
         self._taken.add(name)
+        self._varying.add(name)
         self.added.append(Signal(name, expression))
         return name
 
