@@ -61,8 +61,7 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-TINY = 2.0**-64
-"""Radius of a value of the characteristic function on its boundary, where it vanishes."""
+TINY = 2.0**-64  # radius of a value of the characteristic function on its boundary, where it vanishes
 
 
 def boundary(model: Model, over: Sequence[str]) -> Conditions:

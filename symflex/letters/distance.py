@@ -33,20 +33,14 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128
-DECADE = 10
-"""Ratio of a band's ends to the lowest and the highest root, where the model declares no band."""
-NARROWEST = 1e-4
-"""Shortest piece of a band whose magnitude is examined, as a share of the band's logarithm."""
-UNCHANGED = 1e-12
-"""Change below which the radius of a ball is all there is."""
-LOST = 0.5
-"""Displacement from which a root is no longer taken for the same one."""
-DECIBELS = 1.0
-"""Difference in magnitude that statements are about: 12 %."""
+DECADE = 10  # ratio of a band's ends to the lowest and the highest root, where the model declares no band
+NARROWEST = 1e-4  # shortest piece of a band whose magnitude is examined, as a share of the band's logarithm
+UNCHANGED = 1e-12  # change below which the radius of a ball is all there is
+LOST = 0.5  # displacement from which a root is no longer taken for the same one
+DECIBELS = 1.0  # difference in magnitude that statements are about: 12 %
 BESIDE = 1.05
 """Ratio of frequencies up to which a part of the band is not told apart from a resonance or from a gap."""
-SHOWN = 6
-"""Number of parts of a band, or of roots, that a sentence lists."""
+SHOWN = 6  # number of parts of a band, or of roots, that a sentence lists
 
 
 def percent(share: float) -> str:

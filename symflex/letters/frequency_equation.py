@@ -47,10 +47,8 @@ if TYPE_CHECKING:
 
 Key = tuple[int, ...]
 """Powers of q and of every kernel."""
-MOST_RATIOS: Final = 3
-"""Ratios of parameters that an equation may hold beside q."""
-BESIDE: Final = arb("1e-6")
-"""Part of q by which the two sides of a root are apart from it."""
+MOST_RATIOS: Final = 3  # ratios of parameters that an equation may hold beside q
+BESIDE: Final = arb("1e-6")  # part of q by which the two sides of a root are apart from it
 Q: Final = "q"
 EXACT: Final = {"cos": "all solutions: q = (2*n - 1)*pi/2", "sin": "all solutions: q = n*pi"}
 """The solutions of an equation that is one function, n = 1, 2, ..."""

@@ -73,8 +73,7 @@ NAMES: Final = {
     "s": ("tau", "time ratio"),
 }
 """Names of groups, by the unit of what is divided."""
-BITS, ENOUGH = 192, 64
-"""Precision at the test points, and how many bits of it have to agree."""
+BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it have to agree
 
 
 def dimensionless_of(tf: AnyTransferFunction) -> InLetters:

@@ -59,8 +59,7 @@ if TYPE_CHECKING:
 
 ENDS: Final = ("0", "infinity")
 MINUS: Final = Number(Fraction(-1))
-ORDERS: Final = (8, 16, 32)
-"""Powers of a wavenumber up to which kernels are expanded, one after the other."""
+ORDERS: Final = (8, 16, 32)  # powers of a wavenumber up to which kernels are expanded, one after the other
 STEPS: Final = (16, 32, 48)
 """Binary orders of magnitude by which the points of a check lie beyond the scale of its parameters."""
 FARTHER: Final = 8  # times as many without exponentials, whose values would have too many digits

@@ -48,13 +48,10 @@ if TYPE_CHECKING:
     Kind = tuple[str, bool | None, Sequence[SymbolicRelation]]
     """What roots are if inequalities hold, whether these do at the model's values, None if undecided."""
 
-PAIR: Final = 2
-"""Degree of a factor with a natural frequency and a damping ratio."""
+PAIR: Final = 2  # degree of a factor with a natural frequency and a damping ratio
 IF: Final = " if "
-LONGEST: Final = 140
-"""Characters of a formula or a side of a condition that one still reads off."""
-MOST_TERMS: Final = 200
-"""Terms of a factor that is read back; longer ones have no short formulas."""
+LONGEST: Final = 140  # characters of a formula or a side of a condition that one still reads off
+MOST_TERMS: Final = 200  # terms of a factor that is read back; longer ones have no short formulas
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,12 +48,9 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.transfer import TransferFunction
 
-LONGEST: Final = 40
-"""Terms of a condition that a person still reads: half a page."""
-MOST_TERMS: Final = 20_000
-"""Terms of a determinant, which take about a second."""
-SQUARES: Final = 3
-"""Generators one after the other whose squares are completed to prove a sign."""
+LONGEST: Final = 40  # terms of a condition that a person still reads: half a page
+MOST_TERMS: Final = 20_000  # terms of a determinant, which take about a second
+SQUARES: Final = 3  # generators one after the other whose squares are completed to prove a sign
 POINTS: Final = 12
 BITS: Final = 192
 """Random values of all letters at which conditions are compared with roots, and precision of these."""
