@@ -11,26 +11,22 @@ balls on the whole piece (the mean value theorem for ln Q); pieces are halved un
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from decimal import ROUND_CEILING, Context
 from fractions import Fraction
 from functools import cache
 from math import inf, isfinite, isnan, log, nextafter
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.balls import covered, precision
 from symflex.print.forms.printed import Approximation
+from symflex.roots import PoleZeroMap, Root
 from symflex.roots.locate import locate
 from symflex.roots.region import Band
 from symflex.roots.root import modes_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 BITS = 128
 DECADE = 10  # ratio of a band's ends to the lowest and the highest root, where the model declares no band

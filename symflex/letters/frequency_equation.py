@@ -14,12 +14,14 @@ q_n is that of a certified root of the function, and the equation as it is print
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import lcm, prod
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors, terms_of
 from symflex.balls import precision
@@ -34,16 +36,9 @@ from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import plain_printer, wave_times_length, wavenumber_laws
 from symflex.print.roots import roots_of
+from symflex.roots import PoleZeroMap, Root
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 from symflex.transfer.enclose import enclosure, later
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from fractions import Fraction
-
-    from flint import fmpz_mpoly
-
-    from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 Key = tuple[int, ...]
 """Powers of q and of every kernel."""

@@ -15,13 +15,15 @@ groups in place of the others. What is shown is read again and compared with the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import fmpq, fmpq_mat
 
 from symflex import expressions as e
+from symflex.algebra import Factored
 from symflex.algebra.ring import terms_of
 from symflex.balls import precision
 from symflex.errors import SymflexError, Text
@@ -38,6 +40,7 @@ from symflex.letters.limits import (
 )
 from symflex.library.elements import LineElement
 from symflex.model import ExactValue, with_numbers
+from symflex.model.model import ModelParameter
 from symflex.print.forms import print_form
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.printed import S
@@ -45,19 +48,13 @@ from symflex.print.forms.shapes import plain, powers_of
 from symflex.print.label import symbol
 from symflex.print.latex.equation import ratio_latex
 from symflex.quantities import Dimension, unit_of
+from symflex.transfer import AnyTransferFunction, TransferFunction
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all
 from symflex.transfer.probes import probes_of
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.algebra import Factored
-    from symflex.model.model import ModelParameter
-    from symflex.transfer import AnyTransferFunction, TransferFunction
-
-    Exponents = dict[str, Fraction]
-    """A product of powers of quantities."""
+Exponents = dict[str, Fraction]
+"""A product of powers of quantities."""
 
 ONE: Final = Fraction(1)
 BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")

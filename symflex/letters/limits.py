@@ -14,6 +14,7 @@ balls at points of the positive axis ever closer to that end: the quotient has t
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,7 +22,7 @@ from itertools import pairwise
 from math import factorial, inf, prod, tau
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from flint import acb, fmpz
+from flint import acb, fmpz, fmpz_mpoly
 
 from symflex import expressions as e
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring
@@ -40,22 +41,18 @@ from symflex.print.latex.equation import model_labels, ratio_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.text import WIDTH, broken, hanging
 from symflex.quantities import Dimension, unit_of
+from symflex.transfer import AnyTransferFunction
 from symflex.transfer.enclose import enclosure
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.probes import probes_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import sympy
-    from flint import fmpz_mpoly
 
-    from symflex.transfer import AnyTransferFunction
-
-    Key = tuple[int, ...]
-    Powers = dict[Expression, Fraction]
-    Lead = tuple[Factored, Fraction, Mapping[Any, int]]
-    """A value, in which wavenumbers stand for themselves, a power of s, and exponentials and oscillations."""
+Key = tuple[int, ...]
+Powers = dict[Expression, Fraction]
+Lead = tuple[Factored, Fraction, Mapping[Any, int]]
+"""A value, in which wavenumbers stand for themselves, a power of s, and exponentials and oscillations."""
 
 ENDS: Final = ("0", "infinity")
 MINUS: Final = Number(Fraction(-1))

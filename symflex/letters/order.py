@@ -12,9 +12,9 @@ the fourth powers of wavenumbers, which the dispersion relations make rational i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from symflex.algebra import NO_KERNELS, Factored, Ring
 from symflex.algebra.ring import by_powers, terms_of
@@ -29,9 +29,6 @@ from symflex.print.forms.shapes import of_powers
 from symflex.print.read_back import read_back
 from symflex.transfer import TransferFunction, bind
 from symflex.transfer.lowest_terms import cancel
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:

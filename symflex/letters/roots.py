@@ -14,39 +14,31 @@ Math. Monthly 29, 51). Of real roots, as many are positive as the signs of coeff
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex import expressions as e
-from symflex.algebra import LAPLACE, Factored
+from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.expressions import Call, Expression, Name, format_expression
 from symflex.letters.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of
-from symflex.print.forms.arrange import length, with_squares
+from symflex.model import Model
+from symflex.print.forms.arrange import ProductPrinter, length, with_squares
 from symflex.print.forms.naming import Naming
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.roots import SHORT_DIGITS
 from symflex.print.text import INDENT, WIDTH, broken
-from symflex.roots import figure
+from symflex.roots import Root, figure
 from symflex.roots.passivity import energy_proof
+from symflex.transfer import TransferFunction
 from symflex.transfer.lowest_terms import cancel
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Ring
-    from symflex.model import Model
-    from symflex.print.forms.arrange import ProductPrinter
-    from symflex.roots import Root
-    from symflex.transfer import TransferFunction
-
-    Kind = tuple[str, bool | None, Sequence[SymbolicRelation]]
-    """What roots are if inequalities hold, whether these do at the model's values, None if undecided."""
+Kind = tuple[str, bool | None, Sequence[SymbolicRelation]]
+"""What roots are if inequalities hold, whether these do at the model's values, None if undecided."""
 
 PAIR: Final = 2  # degree of a factor with a natural frequency and a damping ratio
 IF: Final = " if "

@@ -13,21 +13,22 @@ determinants ``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmache
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from random import Random
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
-from flint import acb, acb_poly
+from flint import acb, acb_poly, fmpz_mpoly
 
 from symflex.algebra import Ring, by_powers, degree_in, irreducible_factors, summed, terms_of
 from symflex.balls import precision
 from symflex.equations.elimination.determinants import Minors
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, Text, UsageError
-from symflex.expressions import PROGRAM_LIMITS, format_expression, number, parse
+from symflex.expressions import PROGRAM_LIMITS, Expression, format_expression, number, parse
 from symflex.library.elements import CIRCUITS
 from symflex.loops.over import seen_pair
+from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
 from symflex.print.forms.arrange import length
@@ -36,17 +37,9 @@ from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.text import broken
 from symflex.roots.passivity import energy_proof
+from symflex.transfer import TransferFunction
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all, pick_pairs
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from flint import fmpz_mpoly
-
-    from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.transfer import TransferFunction
 
 LONGEST: Final = 40  # terms of a condition that a person still reads: half a page
 MOST_TERMS: Final = 20_000  # terms of a determinant, which take about a second

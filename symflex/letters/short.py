@@ -14,13 +14,13 @@ end of its letter. Terms of the other sign take away what they are at most.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import prod
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
 from symflex.algebra.ring import irreducible_factors
@@ -32,29 +32,20 @@ from symflex.letters.distance import BITS, UNCHANGED, alike, band_of, distance, 
 from symflex.letters.order import truncated
 from symflex.model import spread_box
 from symflex.model.model import IMAGINARY
-from symflex.options import share_of
-from symflex.print.forms import print_form
+from symflex.options import DeriveOptions, share_of
+from symflex.print.forms import PrintedForm, print_form
 from symflex.print.forms.printed import Approximation, terms_of
-from symflex.transfer import BoundTransferFunction, TransferFunction, bind
+from symflex.roots import PoleZeroMap
+from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.bind import values_for
 from symflex.transfer.enclose import enclose, enclosure
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.options import DeriveOptions
-    from symflex.print.forms import PrintedForm
-    from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyTransferFunction
-
-    Key = tuple[int, ...]
-    Term = tuple[tuple[int, ...], int]
-    Share = tuple[arb, int]
-    Box = Mapping[str, tuple[Fraction, Fraction]]
-    Image = tuple[fmpz_mpoly, Factored, int]
-    """A factor, the shorter one in its place, and its exponent."""
+Key = tuple[int, ...]
+Term = tuple[tuple[int, ...], int]
+Share = tuple[arb, int]
+Box = Mapping[str, tuple[Fraction, Fraction]]
+Image = tuple[fmpz_mpoly, Factored, int]
+"""A factor, the shorter one in its place, and its exponent."""
 
 MOST_TERMS = 20_000
 """Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
